@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/simulation/coupling.hpp"
@@ -76,8 +77,7 @@ std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
   model.material_names = pyroclast::specimen::phases(setup.specimen);
   const pyroclast::InterfaceTable interfaces(model.material_names, setup.motion->contacts.interfaces);
   model.interface_names = interfaces.names();
-  const auto matrix = static_cast<int>(std::ranges::find(model.material_names, setup.specimen.matrix) -
-                                       model.material_names.begin());
+  const int matrix = pyroclast::place_in(model.material_names, setup.specimen.matrix);
   add_cells(model, result.complex, std::vector<int>(blocks, matrix),
             [&](int a, int b) { return interfaces.between(a, b); });
   for (int g = 0; g < model.gridpoint_count(); ++g) {

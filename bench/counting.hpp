@@ -101,12 +101,14 @@ struct OneByOne {
     y = load(at(0) + 1) - load(less(0) + 1);
     z = load(at(0) + 2) - load(less(0) + 2);
   }
-  static void load_fours(const double* p, Value& x, Value& y, Value& z) { load_triples(p, x, y, z); }
   template <class At>
   static void gather_fours(At at, Value& x, Value& y, Value& z) {
     load_triples(at(0), x, y, z);
   }
-  static void store_fours(double* p, Value x, Value y, Value z) { store_triples(p, x, y, z); }
+  template <class At>
+  static void put_fours(At at, Value x, Value y, Value z) {
+    store_triples(at(0), x, y, z);
+  }
   template <class At>
   static void add_to_fours(At at, Value x, Value y, Value z) {
     double* const p = at(0);

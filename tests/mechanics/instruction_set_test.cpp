@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
@@ -41,6 +42,24 @@ double damaged_share(const Mechanics<Dim>& m) {
                m.read().remembered(c, Remembers::mixed_damage) > 0.0;
   }
   return static_cast<double>(damaged) / m.model().contact_count();
+}
+
+/// Expects the bits of another layout's run. Sums over the body add up in another order: 1e-12 of the largest
+/// is round-off of some thousand terms.
+template <int Dim>
+void expect_same_bits(const Mechanics<Dim>& m, const Mechanics<Dim>& expected, const std::string& layout) {
+  SCOPED_TRACE(layout);
+  EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
+  EXPECT_TRUE(m.read().velocities() == expected.read().velocities());
+  EXPECT_TRUE(m.read().forces() == expected.read().forces());
+  for (int c = 0; c < expected.model().contact_count(); ++c)
+    ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals) << "contact " << c;
+  const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
+  for (const auto part : {&EnergyLedger::loading, &EnergyLedger::zones, &EnergyLedger::kinetic,
+                          &EnergyLedger::local_damping, &EnergyLedger::property_change})
+    EXPECT_NEAR(a.*part, b.*part, 1e-12 * turnover(b));
+  EXPECT_NEAR(m.totals().unbalanced_ratio(), expected.totals().unbalanced_ratio(),
+              1e-12 * expected.totals().unbalanced_ratio());
 }
 
 /// A specimen pulled, sheared and pressed until it is cracked all over.
@@ -104,8 +123,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, EveryInstructionSet,
 // Promise: bit by bit the same, on any number of threads, in a body that is cracked all over.
 TEST_P(EveryInstructionSet, GivesTheSameBits) {
   const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
-  auto parameters = quasi_static<2>();
-  parameters.damping_form = DampingForm::combined;
+  auto parameters = cracking<2>();
   parameters.kinematics = GetParam().kinematics;
   parameters.viscous_damping = GetParam().viscous;
   const auto run = [&](InstructionSet set, int threads) {
@@ -136,12 +154,10 @@ TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
 }
 
 // Promise: neither how blocks are bundled, some of them in pieces, nor how they are cut into chunks changes a
-// force, so no displacement, velocity, damage or slip either. Sums over the body add up in another order:
-// 1e-12 of the largest is round-off of some thousand terms.
+// force, so no displacement, velocity, damage or slip either.
 TEST(AnyLayout, GivesTheSameBits) {
   const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
-  auto parameters = quasi_static<2>();
-  parameters.damping_form = DampingForm::combined;
+  auto parameters = cracking<2>();
   const auto run = [&](const ModelOf<2>& body, int fewest_blocks, int most_zones, int threads) {
     parameters.layout = {.fewest_blocks = fewest_blocks, .most_zones = most_zones};
     return cracked(body, parameters, usable_instruction_sets().back(), true, threads);
@@ -157,21 +173,9 @@ TEST(AnyLayout, GivesTheSameBits) {
     ModelOf<2> cut = model;
     cut.cut_into_chunks(chunk_blocks);
     for (const int threads : {1, 2}) {
-      const auto what = testing::Message()
-                        << fewest_blocks << " blocks a bundle, " << most_zones << " zones a piece, "
-                        << chunk_blocks << " blocks a chunk, " << threads << " threads";
-      const auto m = run(cut, fewest_blocks, most_zones, threads);
-      EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
-      EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
-      EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
-      for (int c = 0; c < model.contact_count(); ++c) {
-        ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals)
-            << what << ", contact " << c;
-      }
-      const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
-      EXPECT_NEAR(a.loading, b.loading, 1e-12 * turnover(b)) << what;
-      EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
-      EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
+      expect_same_bits(run(cut, fewest_blocks, most_zones, threads), expected,
+                       fmt::format("{} blocks a bundle, {} zones a piece, {} blocks a chunk, {} threads",
+                                   fewest_blocks, most_zones, chunk_blocks, threads));
     }
   }
 }
@@ -212,8 +216,7 @@ Mechanics<2> pressed(const ModelOf<2>& model, const MechanicsParameters& paramet
 TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
   const ModelOf<2> model = between_platens(small_specimen(150), 0.01, 0.5);
   for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
-    auto parameters = quasi_static<2>();
-    parameters.damping_form = DampingForm::combined;
+    auto parameters = cracking<2>();
     parameters.kinematics = kinematics;
     parameters.layout.most_zones = 1000;
     const auto expected = pressed(model, parameters, 1);
@@ -223,22 +226,9 @@ TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
     };
     for (const auto [most_zones, threads] : {Cut{8, 1}, Cut{8, 3}, Cut{24, 2}}) {
       parameters.layout.most_zones = most_zones;
-      const auto what = testing::Message() << most_zones << " zones a piece, " << threads << " threads";
       const auto m = pressed(model, parameters, threads);
       ASSERT_GE(m.body().layout.parts.size(), expected.body().layout.parts.size() + 2);
-      EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
-      EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
-      EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
-      for (int c = 0; c < model.contact_count(); ++c) {
-        ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals) << what;
-      }
-      const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
-      for (const auto part : {&EnergyLedger::loading, &EnergyLedger::zones, &EnergyLedger::kinetic,
-                              &EnergyLedger::local_damping, &EnergyLedger::property_change})
-        EXPECT_NEAR(a.*part, b.*part, 1e-12 * turnover(b)) << what;
-      EXPECT_NEAR(m.totals().unbalanced_ratio(), expected.totals().unbalanced_ratio(),
-                  1e-12 * expected.totals().unbalanced_ratio())
-          << what;
+      expect_same_bits(m, expected, fmt::format("{} zones a piece, {} threads", most_zones, threads));
     }
   }
 }
@@ -296,18 +286,10 @@ TEST(AnyLayout, GivesTheSameBitsInThreeDimensions) {
         Cut{22, 24, 1, 3}}) {
     ModelOf<3> cut = model;
     cut.cut_into_chunks(chunk_blocks);
-    const auto m = run(cut, {.most_zones = most_zones, .most_gridpoints = most_gridpoints}, threads);
-    const auto what = testing::Message() << most_gridpoints << " gridpoints, " << most_zones
-                                         << " zones a piece, " << chunk_blocks << " blocks a chunk";
-    EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
-    EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
-    EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
-    for (int c = 0; c < model.contact_count(); ++c) {
-      ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals) << what;
-    }
-    const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
-    EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
-    EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
+    expect_same_bits(run(cut, {.most_zones = most_zones, .most_gridpoints = most_gridpoints}, threads),
+                     expected,
+                     fmt::format("{} gridpoints, {} zones a piece, {} blocks a chunk, {} threads",
+                                 most_gridpoints, most_zones, chunk_blocks, threads));
   }
 }
 

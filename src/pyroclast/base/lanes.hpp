@@ -178,21 +178,19 @@ struct Portable {
     y -= b;
     z -= c;
   }
-  /// Reads consecutive fours and puts their first three numbers apart into x, y and z.
-  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
-    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
-  }
   /// Reads fours, that of lane i at at(i), and puts their first three numbers apart.
   template <class At>
   static void gather_fours(At at, Value& x, Value& y, Value& z) {
     part_pairs(load(at(0)), load(at(1)), x, y);
     z = __builtin_shufflevector(load(at(0) + 2), load(at(1) + 2), 0, 2);
   }
-  static void store_fours(double* p, Value x, Value y, Value z) {
-    store(p, __builtin_shufflevector(x, y, 0, 2));
-    store(p + 2, z);
-    store(p + 4, __builtin_shufflevector(x, y, 1, 3));
-    store(p + 6, __builtin_shufflevector(z, z, 1, 1));
+  /// Writes x, y and z, and a number that means nothing, as fours, that of lane i to at(i).
+  template <class At>
+  static void put_fours(At at, Value x, Value y, Value z) {
+    store(at(0), __builtin_shufflevector(x, y, 0, 2));
+    store(at(0) + 2, z);
+    store(at(1), __builtin_shufflevector(x, y, 1, 3));
+    store(at(1) + 2, __builtin_shufflevector(z, z, 1, 1));
   }
   /// Adds x, y and z to the first three numbers of fours, those of lane i to the four at at(i), lane by lane.
   template <class At>
@@ -219,7 +217,22 @@ struct Portable {
 };
 
 #ifdef __AVX2__
-struct Avx2 {
+/// Fours of sets that make them one by one: `Set::for_each_four` calls f(i, four) for the lanes in turn, with
+/// x, y, z and a number that means nothing.
+template <class Set>
+struct FoursOneByOne {
+  template <class At, class Value>
+  static void put_fours(At at, Value x, Value y, Value z) {
+    Set::for_each_four(x, y, z, [&](int i, __m256d four) { _mm256_store_pd(at(i), four); });
+  }
+  template <class At, class Value>
+  static void add_to_fours(At at, Value x, Value y, Value z) {
+    Set::for_each_four(x, y, z,
+                       [&](int i, __m256d four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
+  }
+};
+
+struct Avx2 : FoursOneByOne<Avx2> {
   static constexpr int kWidth = 4;
   using Value = __m256d;
   using Truth = __m256d;
@@ -303,21 +316,10 @@ struct Avx2 {
     const auto difference = [&](int i) { return _mm256_loadu_pd(at(i)) - _mm256_loadu_pd(less(i)); };
     part_fours(difference(0), difference(1), difference(2), difference(3), x, y, z);
   }
-  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
-    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
-  }
   template <class At>
   static void gather_fours(At at, Value& x, Value& y, Value& z) {
     part_fours(_mm256_load_pd(at(0)), _mm256_load_pd(at(1)), _mm256_load_pd(at(2)), _mm256_load_pd(at(3)), x,
                y, z);
-  }
-  static void store_fours(double* p, Value x, Value y, Value z) {
-    for_each_four(x, y, z,
-                  [&](int i, Value four) { _mm256_store_pd(p + static_cast<std::ptrdiff_t>(4 * i), four); });
-  }
-  template <class At>
-  static void add_to_fours(At at, Value x, Value y, Value z) {
-    for_each_four(x, y, z, [&](int i, Value four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
   }
   /// Puts the first three numbers of the fours of four lanes apart.
   static void part_fours(Value a, Value b, Value c, Value d, Value& x, Value& y, Value& z) {
@@ -326,7 +328,6 @@ struct Avx2 {
     y = _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20);
     z = _mm256_permute2f128_pd(xz01, xz23, 0x31);
   }
-  /// Calls f(i, four) for the lanes in turn, with x, y, z and a number that means nothing.
   template <class F>
   [[gnu::always_inline]] static void for_each_four(Value x, Value y, Value z, F f) {
     const Value xy02 = _mm256_unpacklo_pd(x, y), xy13 = _mm256_unpackhi_pd(x, y);
@@ -340,7 +341,7 @@ struct Avx2 {
 #endif
 
 #ifdef __AVX512F__
-struct Avx512 {
+struct Avx512 : FoursOneByOne<Avx512> {
   static constexpr int kWidth = 8;
   using Value = __m512d;
   using Truth = __mmask8;
@@ -424,21 +425,9 @@ struct Avx512 {
     const auto difference = [&](int i, int j) { return two_fours(at, i, j) - two_fours(less, i, j); };
     part_fours(difference(0, 2), difference(1, 3), difference(4, 6), difference(5, 7), x, y, z);
   }
-  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
-    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
-  }
   template <class At>
   static void gather_fours(At at, Value& x, Value& y, Value& z) {
     gather_triples(at, x, y, z);
-  }
-  static void store_fours(double* p, Value x, Value y, Value z) {
-    for_each_four(
-        x, y, z, [&](int i, __m256d four) { _mm256_store_pd(p + static_cast<std::ptrdiff_t>(4 * i), four); });
-  }
-  template <class At>
-  static void add_to_fours(At at, Value x, Value y, Value z) {
-    for_each_four(x, y, z,
-                  [&](int i, __m256d four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
   }
   /// Reads the fours of two lanes into one vector.
   template <class At>
@@ -452,7 +441,6 @@ struct Avx512 {
     y = _mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0b10001000);
     z = _mm512_shuffle_f64x2(xz0, xz4, 0b11011101);
   }
-  /// Calls f(i, four) for the lanes in turn, with x, y, z and a number that means nothing.
   template <class F>
   [[gnu::always_inline]] static void for_each_four(Value x, Value y, Value z, F f) {
     const Value xy_even = _mm512_unpacklo_pd(x, y), xy_odd = _mm512_unpackhi_pd(x, y);

@@ -353,15 +353,10 @@ class LayoutBuilder {
     bundle.zones = static_cast<int>(zones.size());
     bundle.centre = gridpoints - 1;
     bundle.first_corners = static_cast<int>(ragged_zones_.size());
-    for (int first = 0; first < bundle.zones; first += kLanes) {
-      RaggedCorners<Dim> corners;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const int zone = zones[first + lane < bundle.zones ? first + lane : first];
-        for (int n = 0; n < Dim; ++n)
-          corners[n][lane] = static_cast<std::uint16_t>(4 * (model_.zones[zone][n] - first_gridpoint));
-      }
-      ragged_zones_.push_back(corners);
-    }
+    for_each_lane(zones, ragged_zones_, [&](RaggedCorners<Dim>& corners, std::size_t lane, int zone) {
+      for (int n = 0; n < Dim; ++n)
+        corners[n][lane] = static_cast<std::uint16_t>(4 * (model_.zones[zone][n] - first_gridpoint));
+    });
     start(bundle);
     std::array<int, kLanes> lanes;
     lanes.fill(block);
@@ -389,7 +384,12 @@ class LayoutBuilder {
       bundle.zones = std::min(zones, kLanes * share(zone_packs, i + 1)) - zone;
       bundle.first_corners = static_cast<int>(piece_zones_.size());
       start(bundle);
-      add_corners({in_order.begin() + zone, in_order.begin() + zone + bundle.zones});
+      for_each_lane(std::span(in_order).subspan(zone, bundle.zones), piece_zones_,
+                    [&](ZoneCorners<Dim>& corners, std::size_t lane, int its) {
+                      for (int n = 0; n <= Dim; ++n)
+                        corners.offset[n][lane] =
+                            offset_of<Dim>(layout_.gridpoint_slot[model_.zones[its][n]]);
+                    });
       if (i + 1 == pieces && has_centre(block)) {
         bundle.centre = gridpoints - 1 - slot_of(share(packs, i), 0);
         bundle.corners_of_block = {first_corners, first_corners + zone_packs};
@@ -401,17 +401,14 @@ class LayoutBuilder {
     }
   }
 
-  /// Adds the corners of zones of a piece. An idle lane repeats its pack's first zone, whose forces are then
-  /// left out.
-  void add_corners(std::span<const int> zones) {
+  /// Adds packs for zones of a block, and calls `fill(pack, lane, zone)` for each lane. An idle lane repeats
+  /// its pack's first zone, whose forces are then left out.
+  template <class Pack, class Fill>
+  static void for_each_lane(std::span<const int> zones, std::vector<Pack>& packs, Fill fill) {
     for (std::size_t first = 0; first < zones.size(); first += kLanes) {
-      ZoneCorners<Dim> corners;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const int zone = zones[first + lane < zones.size() ? first + lane : first];
-        for (int n = 0; n <= Dim; ++n)
-          corners.offset[n][lane] = offset_of<Dim>(layout_.gridpoint_slot[model_.zones[zone][n]]);
-      }
-      piece_zones_.push_back(corners);
+      Pack& pack = packs.emplace_back();
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        fill(pack, lane, zones[first + lane < zones.size() ? first + lane : first]);
     }
   }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <set>
 #include <unordered_set>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/model/model_parts.hpp"
 
 namespace pyroclast {
@@ -140,18 +140,27 @@ BearingBlock add_bearing(ModelOf<2>& model, const Specimen& specimen, const Seat
 
 }  // namespace
 
-int place_in(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::ranges::find(names, name) - names.begin());
-}
-
-int place_in(const std::vector<int>& list, int item) {
-  return static_cast<int>(std::ranges::find(list, item) - list.begin());
-}
-
 std::vector<int> all_from(int first, int last) {
   std::vector<int> result(last - first);
   std::iota(result.begin(), result.end(), first);
   return result;
+}
+
+void name_blocks(Model& model, int first_block) {
+  const int first = model.block_gridpoints[first_block];
+  model.sets["specimen"] = all_from(first, model.gridpoint_count());
+  for (int block = first_block; block < model.block_count(); ++block) {
+    auto& set = model.sets[model.material_names[model.block_material[block]]];
+    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g) set.push_back(g);
+  }
+}
+
+void name_contacts(Model& model, const std::string& body, int first_contact) {
+  for (int contact = first_contact; contact < model.contact_count(); ++contact) {
+    const std::string& interface = model.interface_names[model.joint(contact).interface];
+    model.contact_sets[body].push_back(contact);
+    if (interface != body) model.contact_sets[interface].push_back(contact);
+  }
 }
 
 std::vector<double> bearing_rows(double thickness, double width) {
@@ -215,17 +224,14 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
     }
   };
   add_bearings(true);
-  const int first_cell = model.block_count(), first_gridpoint = model.gridpoint_count();
+  const int first_cell = model.block_count();
   for (std::size_t cell = 0; cell < tessellation.cells.size(); ++cell) {
     std::vector<Vec<2>> corners;
     for (int v : tessellation.cells[cell]) corners.push_back(tessellation.vertices[v]);
     const auto zoned = specimen::zone_block(corners);
     model.add_block(zoned.gridpoints, zoned.zones, specimen.phase[cell]);
   }
-  model.sets["specimen"] = all_from(first_gridpoint, model.gridpoint_count());
-  for (int block = first_cell; block < model.block_count(); ++block)
-    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-      model.sets[specimen.phases[model.block_material[block]]].push_back(g);
+  name_blocks(model, first_cell);
   add_bearings(false);
 
   const auto gridpoint = [&](int cell, int vertex) {
@@ -233,12 +239,6 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
   };
   auto& whole_outline = model.sets["outline"];
   for (const specimen::Side& side : region.sides()) model.sets[side.name];
-  // slits are parted from the start: they are no cracks
-  const auto add_contacts = [&](const std::string& body, int interface, int first) {
-    for (const std::string& name : std::set{body, model.interface_names[interface]})
-      for (int contact = first; contact < model.contact_count(); ++contact)
-        model.contact_sets[name].push_back(contact);
-  };
   std::size_t on_outline = 0;
   for (const Edge& e : edges) {
     const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
@@ -257,8 +257,8 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
           auto& wall = model.sets[notch.name + ((cell == e.left) == is_left ? "_left" : "_right")];
           for (const int v : {e.v0, e.v1}) wall.push_back(gridpoint(cell, v));
         }
-      } else {
-        add_contacts("specimen", interface, first_contact);
+      } else {  // slits are parted from the start: they are no cracks
+        name_contacts(model, "specimen", first_contact);
       }
       continue;
     }
@@ -270,7 +270,7 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
       };
       const int first_contact = model.contact_count();
       model.join_faces(a, {opposite(e.v0), opposite(e.v1)}, blocks[i].interface);
-      add_contacts(bearings[i].name, blocks[i].interface, first_contact);
+      name_contacts(model, bearings[i].name, first_contact);
     }
     whole_outline.insert(whole_outline.end(), a.begin(), a.end());
     for (int on = side; on >= 0; on = region.sides()[on].part_of) {

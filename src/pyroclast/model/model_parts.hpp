@@ -8,10 +8,6 @@
 /// Parts that the making of models in the plane and in space share.
 namespace pyroclast {
 
-// The next two return the position in a list, which must hold the item.
-int place_in(const std::vector<std::string>& names, const std::string& name);
-int place_in(const std::vector<int>& list, int item);
-
 /// Returns the numbers from `first` up to `last`, excluded.
 std::vector<int> all_from(int first, int last);
 
@@ -21,6 +17,14 @@ std::vector<int> all_from(int first, int last);
 /// \param thickness  of the bearing, m
 /// \param width      mean width of the zones at the seat, m
 std::vector<double> bearing_rows(double thickness, double width);
+
+/// Names the blocks from a number on: adds their gridpoints to the set `specimen`, and to those of their
+/// materials.
+void name_blocks(Model& model, int first_block);
+
+/// Names the contacts from a number on: adds them to the set of contacts of a body, and to those of their
+/// interfaces.
+void name_contacts(Model& model, const std::string& body, int first_contact);
 
 /// Adds the materials and interfaces of bearings, each once, behind those of the specimen.
 void add_bearing_names(Model& model, const std::vector<Bearing>& bearings);

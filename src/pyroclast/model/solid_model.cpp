@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/model/model_parts.hpp"
 
@@ -165,21 +165,13 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
       blocks[i].interface = place_in(model.interface_names, bearing.interface);
     }
   };
-  const auto add_contacts = [&](const std::string& body, int first) {
-    for (int contact = first; contact < model.contact_count(); ++contact)
-      for (const std::string& name : std::set{body, model.interface_names[model.joint(contact).interface]})
-        model.contact_sets[name].push_back(contact);
-  };
 
   add_bearings(true);
-  const int first_block = model.block_count(), first_gridpoint = model.gridpoint_count();
+  const int first_block = model.block_count();
   const auto vertices =
       add_cells(model, complex, specimen.phase, [&](int a, int b) { return table.between(a, b); });
-  model.sets["specimen"] = all_from(first_gridpoint, model.gridpoint_count());
-  for (int block = first_block; block < model.block_count(); ++block)
-    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-      model.sets[specimen.phases[model.block_material[block]]].push_back(g);
-  add_contacts("specimen", 0);
+  name_blocks(model, first_block);
+  name_contacts(model, "specimen", 0);
   add_bearings(false);
 
   for (const std::string& side : sides) model.sets[side];
@@ -197,7 +189,7 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
       for (const int v : corners) opposite.push_back(blocks[i].inner(v));
       const int first_contact = model.contact_count();
       model.join_faces(its, opposite, blocks[i].interface);
-      add_contacts(bearings[i].name, first_contact);
+      name_contacts(model, bearings[i].name, first_contact);
     }
   }
   // a corner of a block may belong to several faces

@@ -32,13 +32,9 @@ double volume(const Complex& complex, std::size_t cell) {
   const auto& at = complex.vertices;
   const Vec<3> origin = at[complex.faces[complex.cells[cell].front()].corners.front()];
   double six = 0.0;
-  for (const int f : complex.cells[cell]) {
-    const CellFace& face = complex.faces[f];
-    const double sense = face.inner == static_cast<int>(cell) ? 1.0 : -1.0;
-    const Vec<3> first = at[face.corners[0]] - origin;
-    for (std::size_t i = 1; i + 1 < face.corners.size(); ++i)
-      six += sense * dot(first, cross(at[face.corners[i]] - origin, at[face.corners[i + 1]] - origin));
-  }
+  for_each_triangle(complex, cell, [&](int a, int b, int c) {
+    six += dot(at[a] - origin, cross(at[b] - origin, at[c] - origin));
+  });
   return six / 6.0;
 }
 

@@ -27,6 +27,19 @@ struct Complex {
   std::vector<std::vector<int>> cells;  ///< faces of each cell
 };
 
+/// Calls `f(a, b, c)` for the triangles of a cell's faces, with their vertices counter-clockwise seen from
+/// outside of the cell.
+template <class F>
+void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
+  for (const int number : complex.cells[cell]) {
+    const CellFace& face = complex.faces[number];
+    const auto& corner = face.corners;
+    const bool is_inner = face.inner == static_cast<int>(cell);
+    for (std::size_t i = 1; i + 1 < corner.size(); ++i)
+      f(corner[0], corner[is_inner ? i : i + 1], corner[is_inner ? i + 1 : i]);
+  }
+}
+
 /// Returns the vector of a face's area, m²: out of the cell `inner`, as long as the area is large. On a bent
 /// face it is that of its mean plane.
 Vec<3> area_vector(const Complex& complex, const CellFace& face);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/solid/laguerre.hpp"
 #include "pyroclast/specimen/gradation.hpp"
@@ -19,37 +19,16 @@ namespace pyroclast::solid {
 
 namespace {
 
-/// Largest difference of the placed fraction from that asked for.
-constexpr double kFractionError = 0.01;
 /// Diameter, in block sizes, below which a stone is too small for its shape to mean anything.
 constexpr double kSmallestStone = 2.0;
 /// Largest number of rounds in which seeds are drawn anew. Seeds that keep their distance need one.
 constexpr int kMostRounds = 20;
 
-int index_of(const std::vector<std::string>& phases, const std::string& name) {
-  return static_cast<int>(std::ranges::find(phases, name) - phases.begin());
-}
-
-/// Throws Error for what a solid cannot have, or a parameter out of range.
-void require_possible(const specimen::SpecimenParameters& p) {
+/// Throws Error for cells that a solid cannot have.
+void require_own_cells(const specimen::SpecimenParameters& p) {
   if (p.cells || p.blocks.tessellation || !p.blocks.phases.empty())
     throw Error("a solid cannot be made of cells from elsewhere yet");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
-  if (p.blocks.count < 1) throw Error(fmt::format("a solid of {} blocks cannot be made", p.blocks.count));
-  if (!(p.blocks.radius_spread >= 0.0 && p.blocks.radius_spread < 1.0))
-    throw Error(
-        fmt::format("the radius spread is {:g}, but it must be from 0 to below 1", p.blocks.radius_spread));
-}
-
-/// Throws Error for a grading that is none.
-void require_grading(const specimen::AggregateParameters& p) {
-  if (p.fraction == 0.0) return;
-  if (!(p.fraction > 0.0 && p.fraction < 1.0))
-    throw Error(fmt::format("the aggregate fraction is {:g}, but it must be from 0 to below 1", p.fraction));
-  const bool ascend = std::ranges::adjacent_find(p.sieves, std::ranges::greater_equal()) == p.sieves.end();
-  if (p.sieves.size() < 2 || !ascend || !(p.d_min > 0.0) || p.sieves.front() != p.d_min ||
-      p.sieves.back() != p.d_max)
-    throw Error("the sieves of the aggregates must ascend from d_min, above 0, to d_max");
 }
 
 /// Returns the kinds of aggregate: the first, and inclusions that are round. Throws Error for others.
@@ -60,10 +39,8 @@ std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::Speci
     if (round == nullptr) throw Error("a solid cannot have fibres yet");
     kinds.push_back(round);
   }
-  for (const auto* const kind : kinds) {
+  for (const auto* const kind : kinds)
     if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
-    require_grading(*kind);
-  }
   return kinds;
 }
 
@@ -76,23 +53,15 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
     const auto& asked = *kinds[kind];
     specimen.fraction_asked += asked.fraction;
     if (asked.fraction == 0.0) continue;
-    const auto diameters = specimen::draw_diameters<3>(asked, body.volume(), random);
-    for (Ball& ball : specimen::place(diameters, room, asked, specimen.balls, random)) {
-      ball.phase = index_of(specimen.phases, asked.phase);
-      ball.kind = kind;
-      specimen.balls.push_back(ball);
-    }
+    specimen::draw_and_place(room, asked, place_in(specimen.phases, asked.phase), kind, random,
+                             specimen.balls);
   }
   for (const Ball& ball : specimen.balls)
     specimen.fraction_placed += specimen::extent_of_round<3>(ball.diameter) / body.volume();
-  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) <= kFractionError) return;
   double smallest = 0.0;
   for (const auto* const kind : kinds)
     if (kind->fraction > 0.0) smallest = std::max(smallest, kind->d_min);
-  throw Error(fmt::format(
-      "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and {} is allowed between them: a "
-      "smallest aggregate of {:.4g} m is too large for the specimen.",
-      specimen.fraction_placed, specimen.fraction_asked, kFractionError, smallest));
+  specimen::require_placed(specimen.fraction_placed, specimen.fraction_asked, smallest);
 }
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.
@@ -186,12 +155,13 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
   // where they are.
   Random aggregate_random(2 * p.seed), block_random(2 * p.seed + 1);
-  require_possible(p);
+  require_own_cells(p);
   const auto kinds = kinds_of(p);
+  specimen::require_valid(p);
   SolidSpecimen specimen;
   specimen.body = body;
   specimen.phases = specimen::phases(p);
-  specimen.matrix = index_of(specimen.phases, p.matrix);
+  specimen.matrix = place_in(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
   specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics.seeds_redrawn);
   const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);

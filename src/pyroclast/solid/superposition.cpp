@@ -67,29 +67,6 @@ double common_volume_of_tetrahedron(const std::array<Vec<3>, 3>& corner, double 
   return distance * area / 3.0 + sector * (all - angle);
 }
 
-/// Calls `f(a, b, c)` for the triangles of a cell's faces, counter-clockwise seen from outside.
-template <class F>
-void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
-  for (const int number : complex.cells[cell]) {
-    const CellFace& face = complex.faces[number];
-    const auto at = [&](std::size_t i) { return complex.vertices[face.corners[i]]; };
-    for (std::size_t i = 1; i + 1 < face.corners.size(); ++i) {
-      if (face.inner == static_cast<int>(cell))
-        f(at(0), at(i), at(i + 1));
-      else
-        f(at(0), at(i + 1), at(i));
-    }
-  }
-}
-
-specimen::StoneGrid<3> grid_of(const Prism& body, const std::vector<Ball>& balls) {
-  double bin = norm(body.high() - body.low());
-  for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
-  specimen::StoneGrid<3> grid(body.low(), body.high(), bin);
-  for (const Ball& ball : balls) grid.insert(ball);
-  return grid;
-}
-
 /// Share of a cell that a ball covers.
 struct Cover {
   int cell;
@@ -99,7 +76,7 @@ struct Cover {
 
 /// Returns the covers of all cells, cell by cell.
 std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const std::vector<Ball>& balls) {
-  const specimen::StoneGrid<3> grid = grid_of(body, balls);
+  const specimen::StoneGrid<3> grid(body.low(), body.high(), balls);
   std::vector<Cover> covers;
   std::vector<int> nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
@@ -123,7 +100,7 @@ std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const st
 /// Returns the ball around the centroid of each cell.
 std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
                                     const std::vector<Ball>& balls) {
-  const specimen::StoneGrid<3> grid = grid_of(body, balls);
+  const specimen::StoneGrid<3> grid(body.low(), body.high(), balls);
   std::vector<int> stone, nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     const Vec<3> centre = zone_cell(complex, cell).gridpoints.back();
@@ -156,8 +133,9 @@ double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& cen
   // A centre in the very plane of a face would see it from both sides.
   const Vec<3> beside = centre + Vec<3>{{1.1e-10, 0.7e-10, 1.3e-10}} * radius;
   double volume = 0.0;
-  for_each_triangle(complex, cell, [&](const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
-    volume += common_volume_of_tetrahedron({a - beside, b - beside, c - beside}, radius);
+  const auto& at = complex.vertices;
+  for_each_triangle(complex, cell, [&](int a, int b, int c) {
+    volume += common_volume_of_tetrahedron({at[a] - beside, at[b] - beside, at[c] - beside}, radius);
   });
   constexpr double kRounding = 1e-12;  // left by a ball that does not touch the cell
   const double ball = specimen::extent_of_round<3>(2.0 * radius);

@@ -1,32 +1,24 @@
-#include <algorithm>
-
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/solid/complex.hpp"
 
 namespace pyroclast::solid {
 
 ZonedCell zone_cell(const Complex& complex, std::size_t cell) {
   ZonedCell zoned;
+  auto& vertices = zoned.vertices;
+  const auto gridpoint = [&](int vertex) { return place_in(vertices, vertex); };
+  for (const int face : complex.cells[cell])
+    for (const int v : complex.faces[face].corners)
+      if (gridpoint(v) == static_cast<int>(vertices.size())) vertices.push_back(v);
   std::vector<std::array<int, 3>> triangles;  // gridpoints, counter-clockwise seen from outside
-  for (const int f : complex.cells[cell]) {
-    const CellFace& face = complex.faces[f];
-    std::vector<int> corners;
-    for (const int v : face.corners) {
-      const auto gridpoint = static_cast<int>(std::ranges::find(zoned.vertices, v) - zoned.vertices.begin());
-      if (gridpoint == static_cast<int>(zoned.vertices.size())) zoned.vertices.push_back(v);
-      corners.push_back(gridpoint);
-    }
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-      if (face.inner == static_cast<int>(cell))
-        triangles.push_back({corners[0], corners[i], corners[i + 1]});
-      else
-        triangles.push_back({corners[0], corners[i + 1], corners[i]});
-    }
-  }
+  for_each_triangle(complex, cell, [&](int a, int b, int c) {
+    triangles.push_back({gridpoint(a), gridpoint(b), gridpoint(c)});
+  });
   auto& x = zoned.gridpoints;
   Vec<3> middle{};
-  for (const int v : zoned.vertices) {
+  for (const int v : vertices) {
     x.push_back(complex.vertices[v]);
-    middle += complex.vertices[v] * (1.0 / static_cast<double>(zoned.vertices.size()));
+    middle += complex.vertices[v] * (1.0 / static_cast<double>(vertices.size()));
   }
   Vec<3> moment{};
   double all = 0.0;

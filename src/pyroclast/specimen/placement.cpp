@@ -96,6 +96,30 @@ template std::vector<RoundStone<2>> place(std::span<const double>, const Room<2>
 template std::vector<RoundStone<3>> place(std::span<const double>, const Room<3>&, const AggregateParameters&,
                                           const std::vector<RoundStone<3>>&, Random&);
 
+template <int Dim>
+void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
+                    Random& random, std::vector<RoundStone<Dim>>& standing) {
+  const auto diameters = draw_diameters<Dim>(parameters, room.extent, random);
+  for (RoundStone<Dim>& stone : place(diameters, room, parameters, standing, random)) {
+    stone.phase = phase;
+    stone.kind = kind;
+    standing.push_back(stone);
+  }
+}
+
+template void draw_and_place(const Room<2>&, const AggregateParameters&, int, int, Random&,
+                             std::vector<RoundStone<2>>&);
+template void draw_and_place(const Room<3>&, const AggregateParameters&, int, int, Random&,
+                             std::vector<RoundStone<3>>&);
+
+void require_placed(double placed, double asked, double d_min) {
+  if (std::abs(placed - asked) > 0.01)
+    throw Error(fmt::format(
+        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and 0.01 is allowed between "
+        "them: the smallest aggregate, {:.4g} m, is too large for the specimen.",
+        placed, asked, d_min));
+}
+
 std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
                                 std::span<const Aggregate> standing, Random& random) {
   const auto fits = [&](const Fibre& fibre) {

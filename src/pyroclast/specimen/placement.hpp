@@ -30,6 +30,15 @@ std::vector<RoundStone<Dim>> place(std::span<const double> diameters, const Room
                                    const AggregateParameters& parameters,
                                    const std::vector<RoundStone<Dim>>& standing, Random& random);
 
+/// Draws the diameters of the stones of a kind, places them as above and adds them to those that stand.
+template <int Dim>
+void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
+                    Random& random, std::vector<RoundStone<Dim>>& standing);
+
+/// Throws Error when the placed fraction of aggregate is off by more than 0.01 from that asked for.
+/// \param d_min  smallest diameter, which the message names, m
+void require_placed(double placed, double asked, double d_min);
+
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.
 std::vector<Fibre> place_fibres(const FibreParameters& parameters, const Region& region,

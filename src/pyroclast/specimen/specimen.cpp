@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
@@ -31,10 +32,6 @@ constexpr double kSmallChange = 0.1;
 void require(bool condition, std::string_view what, double value, std::string_view allowed) {
   if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
 }
-
-/// Largest overlap of stones that touch each other or the outline, as a share of the diameter: a file of nine
-/// digits tells no more.
-constexpr double kTouching = 1e-6;
 
 void require_valid(const AggregateParameters& p) {
   if (!p.stones.empty()) return;  // add_stones tests them
@@ -79,8 +76,9 @@ void require_valid(const BlockParameters& p) {
   require(p.relaxation >= 0, "The number of relaxation steps", p.relaxation, "0 or more");
 }
 
+}  // namespace
+
 void require_valid(const SpecimenParameters& p) {
-  require(p.region.area() > 0.0, "The area of the specimen", p.region.area(), "a positive area");
   require(p.covered_fraction >= 0.0 && p.covered_fraction < 1.0, "The covered fraction", p.covered_fraction,
           "0 to below 1");
   require_valid(p.aggregates);
@@ -88,9 +86,11 @@ void require_valid(const SpecimenParameters& p) {
   require_valid(p.blocks);
 }
 
-int index_of(const std::vector<std::string>& phases, const std::string& name) {
-  return static_cast<int>(std::find(phases.begin(), phases.end(), name) - phases.begin());
-}
+namespace {
+
+/// Largest overlap of stones that touch each other or the outline, as a share of the diameter: a file of nine
+/// digits tells no more.
+constexpr double kTouching = 1e-6;
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
@@ -106,7 +106,7 @@ void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, i
     };
     if (p.region.distance_before_cuts(stone.centre) > tolerance - radius)
       fail("does not lie in the specimen, all of it");
-    const Aggregate circle{stone.centre, stone.diameter, index_of(specimen.phases, stone.phase), kind};
+    const Aggregate circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind};
     if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
     grid.insert(circle);
     circles.push_back(circle);
@@ -122,18 +122,14 @@ void add_aggregates(const SpecimenParameters& p, const AggregateParameters& aske
   specimen.fraction_asked += asked.fraction;
   if (!asked.stones.empty()) return add_stones(p, asked, kind, specimen);
   if (asked.fraction == 0.0) return;
-  const auto diameters = draw_diameters<2>(asked, p.region.area(), random);
-  for (Aggregate& circle : place(diameters, room_in(p.region), asked, specimen.aggregates, random)) {
-    circle.phase = index_of(specimen.phases, asked.phase);
-    circle.kind = kind;
-    specimen.aggregates.push_back(circle);
-  }
+  draw_and_place(room_in(p.region), asked, place_in(specimen.phases, asked.phase), kind, random,
+                 specimen.aggregates);
 }
 
 void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random& random,
                 Specimen& specimen) {
   for (Fibre& fibre : place_fibres(kind, p.region, specimen.aggregates, random)) {
-    fibre.phase = index_of(specimen.phases, kind.phase);
+    fibre.phase = place_in(specimen.phases, kind.phase);
     specimen.fibres.push_back(fibre);
   }
 }
@@ -199,9 +195,11 @@ std::vector<std::string> warnings(const Specimen& s) {
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   if (parameters.cells) {
     Specimen specimen = specimen_from(*parameters.cells, parameters.region);
-    specimen.matrix = index_of(specimen.phases, parameters.matrix);
+    specimen.matrix = place_in(specimen.phases, parameters.matrix);
     return specimen;
   }
+  require(parameters.region.area() > 0.0, "The area of the specimen", parameters.region.area(),
+          "a positive area");
   require_valid(parameters);
   // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
   // where they are.
@@ -220,17 +218,12 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
     else
       add_fibres(parameters, std::get<FibreParameters>(inclusions), aggregate_random, specimen);
   specimen.fraction_placed = fraction_of(specimen.aggregates, specimen_area);
-  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) > 0.01) {
-    throw Error(fmt::format(
-        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and 0.01 is allowed between "
-        "them: the smallest aggregate, {:.4g} m, is too large for the specimen.",
-        specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min));
-  }
+  require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min);
 
   Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   if (blocks.phase.empty()) {
-    const int matrix = specimen.matrix = index_of(specimen.phases, parameters.matrix);
+    const int matrix = specimen.matrix = place_in(specimen.phases, parameters.matrix);
     Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
     specimen.covered_fraction = superposed.covered_fraction;
     specimen.phase = std::move(superposed.phase);

@@ -134,6 +134,9 @@ struct SpecimenParameters {
   double covered_fraction = 0.5;
 };
 
+/// Throws Error when a parameter other than the region is out of range.
+void require_valid(const SpecimenParameters& parameters);
+
 /// Returns the names of the phases that the blocks can have: those of cells, of the blocks' own phases, or
 /// aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
@@ -22,6 +24,11 @@ class StoneGrid {
       bins *= static_cast<std::size_t>(count_[d]);
     }
     bins_.resize(bins);
+  }
+  /// Makes a grid over a box for stones, and inserts them. Its bins are twice as wide as the smallest.
+  StoneGrid(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const RoundStone<Dim>> stones)
+      : StoneGrid(low, high, bin_for(low, high, stones)) {
+    for (const RoundStone<Dim>& stone : stones) insert(stone);
   }
 
   void insert(const RoundStone<Dim>& stone) {
@@ -52,8 +59,7 @@ class StoneGrid {
       found.insert(found.end(), bin.begin(), bin.end());
       return true;
     });
-    std::ranges::sort(found);
-    found.erase(std::unique(found.begin(), found.end()), found.end());  // Clang 14 cannot do ranges::unique
+    sort_unique(found);
   }
 
   const std::vector<RoundStone<Dim>>& stones() const { return stones_; }
@@ -62,6 +68,11 @@ class StoneGrid {
   struct Reach {
     Vec<Dim> lower, upper;
   };
+  static double bin_for(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const RoundStone<Dim>> stones) {
+    double bin = norm(high - low);
+    for (const RoundStone<Dim>& stone : stones) bin = std::min(bin, 2.0 * stone.diameter);
+    return bin;
+  }
   static Reach reach(const RoundStone<Dim>& stone, double gap) {
     Vec<Dim> radius;
     radius.c.fill(0.5 * stone.diameter + gap);

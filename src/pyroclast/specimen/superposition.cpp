@@ -17,11 +17,7 @@ namespace {
 template <class F>
 auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> aggregates,
                    F&& f) {
-  double bin = std::max(box.width(), box.height());
-  for (const Aggregate& a : aggregates) bin = std::min(bin, 2.0 * a.diameter);
-  StoneGrid<2> grid(box.low, box.high, bin);
-  for (const Aggregate& a : aggregates) grid.insert(a);
-
+  const StoneGrid<2> grid(box.low, box.high, aggregates);
   std::vector<decltype(f(Corners{}, grid.stones()))> result;
   std::vector<Vec<2>> polygon;
   std::vector<Aggregate> nearby;

@@ -121,13 +121,17 @@ struct Packs {
   /// Reads eight consecutive fours.
   static Vector load(const Four* p) {
     Vector v;
-    unroll<Real::kParts>(
-        [&](auto i) { Set::load_fours(p[i * Set::kWidth].c, v[0].part[i], v[1].part[i], v[2].part[i]); });
+    unroll<Real::kParts>([&](auto i) {
+      const auto at = [&](int lane) { return p[i * Set::kWidth + lane].c; };
+      Set::gather_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
+    });
     return v;
   }
   static void store(const Vector& v, Four* p) {
-    unroll<Real::kParts>(
-        [&](auto i) { Set::store_fours(p[i * Set::kWidth].c, v[0].part[i], v[1].part[i], v[2].part[i]); });
+    unroll<Real::kParts>([&](auto i) {
+      const auto at = [&](int lane) { return p[i * Set::kWidth + lane].c; };
+      Set::put_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
+    });
   }
   /// Reads fours by their places in an array of numbers.
   template <class Place>

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+
+namespace pyroclast {
+
+/// Returns the position of an item in a list; the length of the list where the item is not in it.
+template <class List, class Item>
+int place_in(const List& list, const Item& item) {
+  return static_cast<int>(std::ranges::find(list, item) - std::ranges::begin(list));
+}
+
+}  // namespace pyroclast
