@@ -49,7 +49,7 @@ void add_properties(Sample<Dim>& sample, const Setup& setup, double block_size) 
 std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {
   auto parameters = setup.specimen;
   parameters.blocks.count = static_cast<int>(std::lround(zones / kZonesPerBlock));
-  const auto made = pyroclast::make_checked_specimen(parameters);
+  const auto made = pyroclast::specimen::make_specimen(parameters);
   const auto& box = made.region.box();
   auto sample = std::make_unique<Sample<2>>();
   sample->model = pyroclast::make_concrete_model(made, setup.thickness, setup.motion->contacts.interfaces,

@@ -21,7 +21,7 @@ for temperature in (300, 500):  # degC
     found[temperature] = cracks.assign(steepness=90.0 - np.abs(along - 90.0))  # 90 degrees: along the load
 table = pandas.concat(found, names=["temperature"])
 print(table.groupby("temperature")[["opening_m", "steepness"]].describe().T)
-share = (table["opening_m"] * table["area_m2"]).groupby("temperature").sum() / (run.specimen.area * run.thickness)
+share = (table["opening_m"] * table["area_m2"]).groupby("temperature").sum() / (run.specimen.extent * run.thickness)
 steepness = np.average(table["steepness"], weights=table["area_m2"] * table["opening_m"])
 print(f"cracks are {steepness:.0f} degrees steep on the mean; shares of the volume: {share.round(4).to_dict()}")
 assert 0.006 < share.iloc[-1] < 0.02, "aggregate expands and mortar shrinks"

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from .session import Sets as Sets
     from .session import State as State
     from .session import Views as Views
+    from .specimen import SolidSpecimen as SolidSpecimen
     from .specimen import Specimen as Specimen
     from .stages import Key as Key
     from .stages import Stage as Stage
@@ -73,7 +74,7 @@ else:
         "laws": ("Law",),
         "results": ("Results", "SpecimenFolder", "read"),
         "session": ("Fields", "History", "Observer", "Run", "Sets", "State", "Views"),
-        "specimen": ("Specimen",),
+        "specimen": ("SolidSpecimen", "Specimen"),
         "stages": ("Key", "Stage", "Verdict"),
         "study.study": ("Study",),
         "units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _core, functions
 from .errors import DeckError, Diagnostic, Error
-from .specimen import Specimen
+from .specimen import SolidSpecimen, Specimen, wrapped
 from .stages import Stage
 from .units import Quantity, in_si
 
@@ -200,6 +200,8 @@ class Deck:
 
         Raises DeckError for a bare number where a unit is needed, and Error where the deck has no place for the key.
         """
+        if isinstance(value, SolidSpecimen):
+            raise Error("a deck cannot take blocks in space yet; it makes a solid by specimen.depth or a cylinder")
         if isinstance(value, Specimen):
             self._set_specimen(path, value)
             return
@@ -326,10 +328,10 @@ class Deck:
         tables = functions.Scratch()
         return _core.check(self._resolved(tables))
 
-    def make_specimen(self, seed: int | None = None) -> Specimen:
+    def make_specimen(self, seed: int | None = None) -> Specimen | SolidSpecimen:
         """The specimen that a run of this deck has, with this seed or the deck's. Raises as `Run`."""
         tables = functions.Scratch()
-        return Specimen(_core.Specimen.of_deck(self._resolved(tables), seed))
+        return wrapped(_core.Specimen.of_deck(self._resolved(tables), seed))
 
     def save(self, file: str | Path) -> None:
         """Writes the deck, and beside it tables of its functions and the blocks of its specimen, as files whose names

@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from .results import Frame, Results
 
 _NAME = re.compile(r"(.+) \[(.+)\]")  # of an array in a file
-_COMPONENTS = {3: ("component", ["x", "y"]), 6: ("tensor", ["xx", "yy", "zz", "xy", "yz", "xz"])}
-"""By the length of an array's rows: a dimension and its labels. The third of a vector is out of the plane and zero."""
+_COMPONENTS = {3: ("component", ["x", "y", "z"]), 6: ("tensor", ["xx", "yy", "zz", "xy", "yz", "xz"])}
+"""By the length of an array's rows: a dimension and its labels."""
+_ENDS = {2: ["corner", "middle"], 4: ["corner", "edge_after", "middle", "edge_before"]}
+"""By the number of corners of a contact's cell: what they are."""
 _OF_CONTACTS = "contact_"  # before the names of contacts' fields that blocks have too
 _PA = 1e6  # from MPa
 
@@ -44,6 +46,7 @@ class _Field:
     shape: tuple[int, ...]  #: in the file
     dtype: np.dtype[Any]
     is_optional: bool  #: some frames may be without it, where it is NaN
+    dimension: int  #: of the body; the third component of a vector in the plane is zero and left out
 
     @property
     def name(self) -> str:
@@ -63,7 +66,7 @@ class _Field:
     @property
     def components(self) -> dict[str, int]:
         """The dimension along a row with its size, where it is one."""
-        return {name: len(labels) for name, labels in (_COMPONENTS[n] for n in self.shape[1:])}
+        return {name: len(labels) for name, labels in (_labels(n, self.dimension) for n in self.shape[1:])}
 
     def read(self, folder: Path, frame: int) -> Array:
         """(rows, components) of a frame."""
@@ -72,7 +75,13 @@ class _Field:
             values: Array = np.full(self.shape, np.nan, self.dtype)
         else:
             values = read_array(path, self.path, self.shape)
-        return values if len(self.shape) == 1 else values[:, :len(_COMPONENTS[self.shape[1]][1])]
+        return values if len(self.shape) == 1 else values[:, :len(_labels(self.shape[1], self.dimension)[1])]
+
+
+def _labels(length: int, dimension: int) -> tuple[str, list[str]]:
+    """Of `_COMPONENTS`, those that a body has."""
+    name, labels = _COMPONENTS[length]
+    return name, labels[:dimension] if name == "component" else labels
 
 
 class _OfFrames(BackendArray):
@@ -107,7 +116,7 @@ def fields_of(results: Results) -> xarray.Dataset:
     def read(field: _Field, frame: int) -> Array:
         values = field.read(folder, frame)
         if field.on == "end":
-            values = values[mesh.contacts.lines]
+            values = values[mesh.contacts.cells]
         return values
 
     of_blocks = {field.name for field in fields if field.part == "blocks"}
@@ -116,7 +125,7 @@ def fields_of(results: Results) -> xarray.Dataset:
         name = _OF_CONTACTS + field.name if field.part == "contacts" and field.name in of_blocks else field.name
         variables[name] = _variable(results.frames, field, sizes[field.on] | field.components, partial(read, field),
                                     field.dtype)
-    coordinates = _of_frames(results) | _of_components(fields) | _of_zones(mesh)
+    coordinates = _of_frames(results) | _of_components(fields, mesh) | _of_zones(mesh)
     if any(field.part == "contacts" for field in fields):
         coordinates |= _of_contacts(mesh)
     return xarray.Dataset(variables, coordinates, {"title": results.title})
@@ -125,18 +134,18 @@ def fields_of(results: Results) -> xarray.Dataset:
 def block_fields_of(results: Results) -> xarray.Dataset:
     """`Results.block_fields`."""
     mesh, folder = results.mesh, results.folder / "fields"
-    triangles, area = mesh.blocks.triangles, mesh.blocks.areas
+    zones, size = mesh.blocks.zones, mesh.blocks.sizes
     numbers, first, block = np.unique(mesh.blocks.block, return_index=True, return_inverse=True)
 
     def mean(of_zones: Array) -> Array:
-        columns = of_zones.reshape(len(area), -1).T
-        sums = np.stack([np.bincount(block, area * column) for column in columns], axis=1)
-        means: Array = sums / np.bincount(block, area)[:, None]
+        columns = of_zones.reshape(len(size), -1).T
+        sums = np.stack([np.bincount(block, size * column) for column in columns], axis=1)
+        means: Array = sums / np.bincount(block, size)[:, None]
         return means.reshape(-1, *of_zones.shape[1:])
 
     def read(field: _Field, frame: int) -> Array:
         values = field.read(folder, frame)
-        return mean(values[triangles].mean(axis=1, dtype=float) if field.on == "gridpoint" else values)
+        return mean(values[zones].mean(axis=1, dtype=float) if field.on == "gridpoint" else values)
 
     fields = [field for field in _listed(results) if field.part == "blocks"]
     variables = {field.name: _variable(results.frames, field, {"block": len(numbers)} | field.components,
@@ -145,10 +154,10 @@ def block_fields_of(results: Results) -> xarray.Dataset:
         "block": (("block",), numbers, {}),
         "material": (("block",), np.array(mesh.blocks.materials)[mesh.blocks.material[first]], {}),
         "bearing": (("block",), mesh.blocks.of_bearing[first], {}),
-        "area": (("block",), np.bincount(block, area), {"units": "m2"}),
-        "position": (("block", "component"), mean(mesh.blocks.points[triangles].mean(axis=1)), {"units": "m"}),
+        **_size_of(mesh, "block", np.bincount(block, size)),
+        "position": (("block", "component"), mean(mesh.blocks.points[zones].mean(axis=1)), {"units": "m"}),
     }
-    return xarray.Dataset(variables, _of_frames(results) | _of_components(fields) | coordinates,
+    return xarray.Dataset(variables, _of_frames(results) | _of_components(fields, mesh) | coordinates,
                           {"title": results.title})
 
 
@@ -164,13 +173,13 @@ def _listed(results: Results) -> list[_Field]:
     if not results.frames:
         raise Error(f"{results.folder}: keeps no frame of its fields")
     first, last = (frame.number for frame in (results.frames[0], results.frames[-1]))
-    sizes = _sizes(results.mesh)
+    sizes, dimension = _sizes(results.mesh), results.mesh.blocks.dimension
     found: dict[tuple[str, str], _Field] = {}
     for part in ("blocks", "contacts") if results.moves else ("blocks",):
         for number in (first, last):
             file = results.folder / "fields" / f"{part}_{number:04d}.hdf"
             for path, shape, dtype in _arrays(file):
-                field = found.setdefault((part, path), _Field(part, path, shape, dtype, number != first))
+                field = found.setdefault((part, path), _Field(part, path, shape, dtype, number != first, dimension))
                 if shape[0] != (rows := prod(sizes[field.on].values())):
                     raise Error(f"{file}: /{path} has shape {shape}, but the mesh asks for {rows} rows")
     return list(found.values())
@@ -178,9 +187,9 @@ def _listed(results: Results) -> list[_Field]:
 
 def _sizes(mesh: Mesh) -> dict[str, dict[str, int]]:
     """Dimensions of the rows of fields, with their sizes, by what they are on."""
-    contacts = {"contact": len(mesh.contacts.lines)}
-    return {"gridpoint": {"gridpoint": len(mesh.blocks.points)}, "zone": {"zone": len(mesh.blocks.triangles)},
-            "contact": contacts, "end": contacts | {"end": 2}}
+    contacts, ends = ({name: length} for name, length in zip(("contact", "end"), mesh.contacts.cells.shape))
+    return {"gridpoint": {"gridpoint": len(mesh.blocks.points)}, "zone": {"zone": len(mesh.blocks.zones)},
+            "contact": contacts, "end": contacts | ends}
 
 
 def _arrays(path: Path) -> list[tuple[str, tuple[int, ...], np.dtype[Any]]]:
@@ -231,28 +240,37 @@ def _of_frames(results: Results) -> dict[str, Variable]:
     return found
 
 
-def _of_components(fields: list[_Field]) -> dict[str, Variable]:
+def _of_components(fields: list[_Field], mesh: Mesh) -> dict[str, Variable]:
     there = {3, *(n for field in fields for n in field.shape[1:])}  # positions have components
-    return {name: ((name,), labels, {}) for name, labels in (_COMPONENTS[n] for n in sorted(there))}
+    return {name: ((name,), labels, {})
+            for name, labels in (_labels(n, mesh.blocks.dimension) for n in sorted(there))}
+
+
+def _size_of(mesh: Mesh, on: str, sizes: Array) -> dict[str, Variable]:
+    """Areas, or in space volumes, of zones or blocks."""
+    if mesh.blocks.dimension == 2:
+        return {"area": ((on,), sizes, {"units": "m2"})}
+    return {"volume": ((on,), sizes, {"units": "m3"})}
 
 
 def _of_zones(mesh: Mesh) -> dict[str, Variable]:
     blocks = mesh.blocks
     return {
         "position": (("gridpoint", "component"), blocks.points, {"units": "m"}),
-        "zones": (("zone", "corner"), blocks.triangles, {}),
+        "zones": (("zone", "corner"), blocks.zones, {}),
         "block": (("zone",), blocks.block, {}),
         "material": (("zone",), np.array(blocks.materials)[blocks.material], {}),
         "bearing": (("zone",), blocks.of_bearing, {}),
-        "area": (("zone",), blocks.areas, {"units": "m2"}),
+        **_size_of(mesh, "zone", blocks.sizes),
     }
 
 
 def _of_contacts(mesh: Mesh) -> dict[str, Variable]:
     contacts = mesh.contacts
     return {
-        "end": (("end",), ["corner", "middle"], {}),
-        "contact_position": (("contact", "end", "component"), contacts.points[contacts.lines], {"units": "m"}),
+        "end": (("end",), _ENDS[contacts.cells.shape[1]], {}),
+        "contact_position": (("contact", "end", "component"), contacts.points[contacts.cells], {"units": "m"}),
         "interface": (("contact",), np.array(contacts.interfaces)[contacts.interface], {}),
-        "length": (("contact",), contacts.length, {"units": "m"}),
+        **({"length": (("contact",), contacts.extent, {"units": "m"})} if mesh.blocks.dimension == 2 else
+           {"contact_area": (("contact",), contacts.extent, {"units": "m2"})}),
     }

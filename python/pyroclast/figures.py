@@ -1,6 +1,7 @@
 """Draws the figures of runs and specimens.
 
     python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/..., or with --out FOLDER there
+    python3 -m pyroclast.figures plane RUN_DIR --axis z --at 0.5    RUN_DIR/figures/plane_z_0.5.png, of a solid
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
     python3 -m pyroclast.figures levels RUN_DIR... --out FILE
@@ -12,7 +13,7 @@ a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png. A run that keeps no fields gets
-those of them that are drawn from its history.
+those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -40,6 +41,7 @@ from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
 from .results import Results, SpecimenFolder
 from .sections import fracture, gradation, morphology, select_frames
+from .solid_sections import cracks_inside, plane_section
 from .style import save
 from .writing import make_folder
 
@@ -79,6 +81,8 @@ def _of_heating(run: Results, magnification: float | None,
         yield from _of_conduction(run)
     if run.has_fields:
         yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+        if run.frames and run.ends_heated and run.mesh.blocks.dimension == 3:
+            yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
 
 
 def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
@@ -91,6 +95,8 @@ def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str
         yield from _of_conduction(run)
     if run.has_fields:
         yield "fracture", lambda: record_fracture(run, magnification)
+        if run.frames and run.mesh.blocks.dimension == 3:
+            yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
 
 
 def _of_conduction(run: Results) -> Iterator[tuple[str, Callable[[], Figure]]]:
@@ -98,6 +104,8 @@ def _of_conduction(run: Results) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if not run.has_fields:
         return
     yield "temperature", lambda: temperature_field(run)
+    if run.mesh.blocks.dimension == 3:
+        return  # the depth of heat is not drawn in a solid yet
     profile = read_profile(run)
     yield "temperature_profile", lambda: temperature_profile(run, profile)
     if profile.isotherm.any():
@@ -115,6 +123,8 @@ def _of_compression(run: Results, magnification: float | None) -> Iterator[tuple
         path = run.folder / "fields" / "frames.csv"
         raise Error(f"{path}: no frame of the loading stage; fracture cannot be drawn")
     yield "fracture", lambda: fracture(run, marks, magnification)
+    if run.mesh.blocks.dimension == 3:
+        yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
 
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
@@ -153,6 +163,22 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
 
+def draw_plane(folder: Path, axis: str, at: float, file_format: str = "png", magnification: float = 1.0,
+               frame: int | None = None, out: Path | None = None) -> Iterator[Path]:
+    """Draws a plane through a solid into the figures/ folder of its run; yields the path.
+
+    frame: number of a frame; None: the last. out: folder in the place of the run's own, which is then only read.
+    """
+    run = Results(folder)
+    if not run.has_fields or not run.frames or run.mesh.blocks.dimension != 3 or not run.moves:
+        raise Error(f"{folder}: a plane is drawn through a solid that moves and keeps frames; this run has none")
+    found = run.frames[-1:] if frame is None else [one for one in run.frames if one.number == frame]
+    if not found:
+        raise Error(f"{folder}: has no frame {frame}; its frames are 0 to {run.frames[-1].number}")
+    figure = plane_section(run, found[0], axis, at, magnification)
+    yield save(figure, (out or make_folder(run.folder / "figures")) / f"plane_{axis}_{at:g}.{file_format}")
+
+
 def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None) -> Iterator[Path]:
     """Draws the curves of several runs into one file, its format by its ending; what: see `compare_runs`."""
     _check_ending(out)
@@ -175,6 +201,16 @@ def _positive(text: str) -> float:
     value = float(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def _share(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text} is not a share between 0 and 1")
     return value
 
 
@@ -201,6 +237,19 @@ def _parser() -> argparse.ArgumentParser:
                      help="into this folder; the run's own is then only read (default: its figures/)")
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures, asked.out))
+
+    plane = commands.add_parser("plane", help="a plane through a solid, with its cracks, at the last frame")
+    plane.add_argument("folder", type=Path, metavar="RUN_DIR")
+    plane.add_argument("--axis", choices=("x", "y", "z"), default="z", help="across which it stands (default: z)")
+    plane.add_argument("--at", type=_share, default=0.5, metavar="SHARE",
+                       help="of the specimen's size along that axis (default: 0.5)")
+    plane.add_argument("--magnification", type=_positive, default=1.0, metavar="FACTOR", help="of displacements")
+    plane.add_argument("--frame", type=int, metavar="NUMBER", help="of the run (default: its last)")
+    plane.add_argument("--format", choices=_FORMATS, default="png")
+    plane.add_argument("--out", type=Path, metavar="FOLDER",
+                       help="into this folder; the run's own is then only read (default: its figures/)")
+    plane.set_defaults(draw=lambda asked: draw_plane(asked.folder, asked.axis, asked.at, asked.format,
+                                                     asked.magnification, asked.frame, asked.out))
 
     for name, draw, help_text in (("specimen", draw_specimen, "morphology and gradation of a specimen"),
                                   ("properties", draw_properties, "properties over the temperature")):

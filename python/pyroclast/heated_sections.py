@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection, TriMesh
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
+from .crack_styles import count_cracks
 from .errors import Error
-from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
+from .sections import (Panel, draw_scale_bar, fracture_panels, frame_section, height_over_width,
+                       points_of_contact)
+from .solid_sections import draw_temperature_cut_open
 
 if TYPE_CHECKING:
     from .results import Frame, Results
@@ -28,7 +32,6 @@ LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
 _NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
 _MOST_PANELS = 5
 _FIELDS = 4
-_NOTE = "Counts are contact points (two an edge): broken | damaged by more than half."
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
@@ -70,7 +73,7 @@ def heating_fracture(run: Results, temperatures: Sequence[float] | None = None,
     else:
         selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
     panels = [_panel(run, frame) for frame in selected]
-    return fracture_panels([("", panels)], style.title_of(run), magnification, _NOTE)
+    return fracture_panels([("", panels)], style.title_of(run), magnification, _note(run))
 
 
 def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) -> Frame:
@@ -94,7 +97,11 @@ def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPER
         raise Error("levels: no runs were given")
     ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
     rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
-    return fracture_panels(rows, "", magnification, _NOTE)
+    return fracture_panels(rows, "", magnification, _note(ordered[0]))
+
+
+def _note(run: Results) -> str:
+    return f"Counts are contact points ({points_of_contact(run)}): broken | damaged by more than half."
 
 
 def _row_labels(runs: Sequence[Results]) -> list[str]:
@@ -146,7 +153,7 @@ def temperature_field(run: Results) -> Figure:
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     blocks = run.mesh.blocks
-    specimen = blocks.triangles[~blocks.of_bearing]
+    specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]
     scale = Normalize(min(field.min() for field in within), max(field.max() for field in within))
     panel_height = (style.WIDTH / (_FIELDS + 0.4) - 0.12) * height_over_width(blocks)
@@ -163,11 +170,11 @@ def temperature_field(run: Results) -> Figure:
     return figure
 
 
-def draw_temperature(axes: Axes, run: Results, frame: Frame) -> TriMesh:
+def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
     """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
-    within = field[np.unique(blocks.triangles[~blocks.of_bearing])]
+    within = field[np.unique(blocks.zones[~blocks.of_bearing])]
     colours = _draw_temperature(axes, run, field, Normalize(within.min(), within.max()))
     draw_scale_bar(axes, blocks)
     return colours
@@ -187,12 +194,16 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
     return [different[round(step)] for step in steps]
 
 
-def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> TriMesh:
+def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> ScalarMappable:
     blocks = run.mesh.blocks
+    if blocks.dimension == 3:
+        colours = draw_temperature_cut_open(axes, blocks, field, scale)
+        frame_section(axes, blocks)
+        return colours
     x, y = style.MILLI * blocks.points.T
-    platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_bearing]]
+    platens = style.MILLI * blocks.points[blocks.zones[blocks.of_bearing]]
     axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
-    specimen = Triangulation(x, y, blocks.triangles[~blocks.of_bearing])
+    specimen = Triangulation(x, y, blocks.zones[~blocks.of_bearing])
     colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
     frame_section(axes, blocks)
     return colours

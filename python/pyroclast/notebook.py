@@ -19,9 +19,10 @@ from . import style
 from .columns import Columns
 from .errors import Error
 from .heated_sections import draw_temperature
-from .mesh import BlockMesh
+from .mesh import BlockMesh, ContactMesh, Mesh, cells_of_contacts
 from .records import abscissa, leading, records_in
 from .sections import draw_blocks, draw_specimen, frame_section
+from .solid_sections import crack_lines, flat
 
 if TYPE_CHECKING:
     from .results import Results
@@ -91,7 +92,8 @@ def draw_body(axes: Axes, run: Run) -> None:
                        of_bearing)
     draw_blocks(axes, blocks, blocks.points)
     if run.moves:
-        axes.add_collection(LineCollection(style.MILLI * _cracks(run), colors=style.VERMILLION, linewidths=0.9))
+        lines = flat(_cracks(run) if blocks.dimension == 2 else _cracks_of_solid(run, blocks))
+        axes.add_collection(LineCollection(style.MILLI * lines, colors=style.VERMILLION, linewidths=0.9))
     frame_section(axes, blocks)
 
 
@@ -116,6 +118,16 @@ def _cracks(run: Run) -> np.ndarray:
     ends = contacts[["x_m", "y_m"]]
     middles = ends.groupby(contacts["face"]).transform("mean")
     return np.stack([ends, middles], axis=1)[damage >= _OPEN]
+
+
+def _cracks_of_solid(run: Run, blocks: BlockMesh) -> np.ndarray:
+    """(lines, 2, 3), m: where damaged contact points show on a solid that is cut open."""
+    contacts = run.contacts()
+    damage = contacts[[name for name in contacts if "damage" in name]].max(axis=1).to_numpy()
+    cells = cells_of_contacts(contacts[["x_m", "y_m", "z_m"]].to_numpy(), contacts["face"].to_numpy())
+    mesh = Mesh(blocks, ContactMesh(cells.reshape(-1, 3), np.arange(4 * len(cells)).reshape(-1, 4),
+                                    np.zeros(len(cells), int), ("",), contacts["area_m2"].to_numpy()))
+    return crack_lines(mesh, cells, damage >= _OPEN)
 
 
 def png_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> bytes:

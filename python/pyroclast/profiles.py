@@ -79,7 +79,7 @@ def read_profile(run: Results) -> Profile:
 def _places(blocks: BlockMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of each point the gridpoints (n, 3) of the specimen's zone that holds it, or is nearest to holding it, and their
     weights (n, 3), which add up to 1."""
-    zones = blocks.triangles[~blocks.of_bearing]
+    zones = blocks.zones[~blocks.of_bearing]
     a, b, c = (blocks.points[zones[:, i]] for i in range(3))
     area = _cross(b - a, c - a)
     area = np.where(area > 0.0, area, np.inf)  # a zone without area holds nothing

@@ -99,7 +99,7 @@ def cracks(run: Results) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def heating_cracks(run: Results) -> Figure:
-    """Cracked contact points and crack length by mode and interface, and the mean opening, while heated."""
+    """Cracked contact points and crack length, of a solid area, by mode and interface, and the mean opening, while heated."""
     figure = style.new_figure(5.4)
     figure.suptitle(style.title_of(run), fontsize=9.0)
     modes = list(run.crack_modes) or ["tension"]
@@ -109,12 +109,15 @@ def heating_cracks(run: Results) -> Figure:
     length, opening = (figure.add_subplot(lower[i]) for i in range(2))
     panels = [*counts, length, opening]
     course = heating_course(run)
+    in_space = any(name.endswith("_area_m2") for name in run.history.names)
+    extent, label = ("area_m2", "Area of all cracks, $D>0$ [m²]") if in_space else (
+        "length_m", "Length of all cracks, $D>0$ [m]")
     for axes, mode in zip(counts, modes):
         _draw_counts(axes, course, mode)
         for interface, dashes in zip(run.crack_modes.get(mode, []), cycle(_DASHES)):
-            length.plot(*style.thinned(course.over, course[f"{mode}_{interface}_length_m"]), color=_MODE_COLOURS[mode],
+            length.plot(*style.thinned(course.over, course[f"{mode}_{interface}_{extent}"]), color=_MODE_COLOURS[mode],
                         linestyle=dashes, linewidth=0.7)
-    length.set_ylabel("Length of all cracks, $D>0$ [m]")
+    length.set_ylabel(label)
     opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
     for axes in panels:

@@ -11,18 +11,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from . import style
+from .crack_styles import count_cracks
 from .curves import draw_tables
 from .errors import Error
 from .progress import MINUTES_LABEL, Course
-from .sections import Panel, count_cracks, fracture_panels
+from .sections import Panel, fracture_panels, points_of_contact
 
 if TYPE_CHECKING:
     from .results import Frame, Results
 
-_SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
+_SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
 """Unit of a column, how it is drawn, and what a value is multiplied by for that."""
 _KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force", "stress": "Stress",
-          "temperature": "Temperature", "crack_length": "Length of cracks", "crack_opening": "Opening of cracks"}
+          "temperature": "Temperature", "crack_length": "Length of cracks", "crack_area": "Area of cracks",
+          "crack_opening": "Opening of cracks"}
 _TIME_LABEL = "Time [s]"
 _AT_PEAK = 0.95
 """Where a record has this share of its largest value, it is at its peak."""
@@ -192,7 +194,7 @@ def record_fracture(run: Results, magnification: float | None = None) -> Figure:
     panels = [Panel(run, frame, letter, f"{what}\n{_caption(run, frame, found)}")
               for letter, (what, frame) in zip("ABC", marks.items())]
     return fracture_panels([("", panels)], style.title_of(run), magnification,
-                           "Counts are contact points (two an edge) of A–M and M–M contacts.")
+                           f"Counts are contact points ({points_of_contact(run)}) of A–M and M–M contacts.")
 
 
 def _caption(run: Results, frame: Frame, found: list[Record]) -> str:

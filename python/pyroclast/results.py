@@ -504,22 +504,22 @@ class Results:
         return read_mesh(self.folder / "fields" / "mesh.h5")
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
-        """(N, 2), m."""
-        shape = (len(self.mesh.blocks.points), 3)
-        return self._field("blocks", frame, "PointData/displacement [m]", shape)[:, :2]
+        """(N, dimension), m."""
+        blocks = self.mesh.blocks
+        return self._field("blocks", frame, "PointData/displacement [m]", (len(blocks.points), 3))[:, :blocks.dimension]
 
     def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
         """(N,), °C."""
         return self._field("blocks", frame, "PointData/temperature [degC]", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
-        """(2C, 2), m, of the points of the contact mesh."""
-        shape = (len(self.mesh.contacts.points), 3)
-        return self._field("contacts", frame, "PointData/displacement [m]", shape)[:, :2]
+        """Of the points of the contact mesh, m."""
+        points = self.mesh.contacts.points
+        return self._field("contacts", frame, "PointData/displacement [m]", (len(points), 3))[:, :points.shape[1]]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
         """(C,), by its name with unit, for instance "tension_damage [1]" or "opening [m]"."""
-        return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
+        return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.cells),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
         return read_array(self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf", f"VTKHDF/{name}", shape)
@@ -532,15 +532,15 @@ class Results:
         A frame is read when values of it are asked for, and nothing is kept: `fields["stress"].isel(frame=-1)` takes
         the memory of a frame. `fields.load()` reads all of them, which takes `fields.nbytes`.
 
-        Dimensions are `frame` and `gridpoint`, `zone` or `contact`; of vectors `component` (x, y), and of tensors
-        `tensor` (xx, yy, zz, xy, yz, xz). Displacements of contacts have the `end` of their lines too: `corner`,
-        `middle`. Fields of contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is
-        NaN.
+        Dimensions are `frame` and `gridpoint`, `zone` or `contact`; of vectors `component` (x, y, of a solid z), of
+        tensors `tensor` (xx, yy, zz, xy, yz, xz). Displacements of contacts have the `end` of their cells too:
+        `corner`, `middle`, and of a solid the middles of the edges beside, `edge_after` and `edge_before`. Fields of
+        contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is NaN.
 
         Coordinates of frames: `stage`, `step`, `time` and `heating_time` [s], `test_strain` and `test_stress` [Pa],
         positive in compression, and `mean_temperature` [degC]. Of gridpoints: `position` [m]. Of zones: `zones` (their
-        gridpoints), `block`, `material`, `bearing` (whether they are of one), `area` [m²]. Of contacts:
-        `contact_position` [m], `interface`, `length` [m].
+        gridpoints), `block`, `material`, `bearing` (whether they are of one), `area` [m²], of a solid `volume` [m³]. Of
+        contacts: `contact_position` [m], `interface`, `length` [m], of a solid `contact_area` [m²].
 
         Raises Error where the run keeps no frames, or xarray is not installed.
         """
@@ -550,11 +550,11 @@ class Results:
 
     @cached_property
     def block_fields(self) -> xarray.Dataset:
-        """The fields of blocks, each the mean over a block's zones by area: dimensions `frame`, `block`, and
-        `component` or `tensor`.
+        """The fields of blocks, each the mean over a block's zones by area, of a solid by volume. Dimensions are
+        `frame`, `block`, and `component` or `tensor`.
 
-        Coordinates of frames as of `fields`. Of blocks: `material`, `bearing`, `area` [m²], `position` [m] of the
-        centre. It is read as `fields` are, a frame at a time.
+        Coordinates of frames as of `fields`. Of blocks: `material`, `bearing`, `area` [m²] or `volume` [m³],
+        `position` [m] of the centre. It is read as `fields` are, a frame at a time.
         """
         library("xarray", "Results.block_fields")
         from .fields import block_fields_of
@@ -612,7 +612,7 @@ class SpecimenFolder:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Of the area, by material."""
+        """Of the area, of a solid of the volume, by material."""
         shares = self.facts.get("fraction")
         if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
                                                    for v in shares.values()):
@@ -621,7 +621,7 @@ class SpecimenFolder:
 
     @cached_property
     def aggregates(self) -> Table:
-        """Placed circles: x_m, y_m, diameter_m."""
+        """Placed circles: x_m, y_m, diameter_m; of a solid the balls, with z_m."""
         return Table(self._tables / "aggregates.csv", may_be_empty=True)
 
     @cached_property

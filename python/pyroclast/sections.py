@@ -16,15 +16,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
+from .crack_styles import count_cracks, cracked, cracks_of
 from .errors import Error
 from .mesh import BlockMesh, ContactMesh
+from .solid_sections import crack_lines, draw_cut_open, flat
 
 if TYPE_CHECKING:
+    from .files import Table
     from .results import Frame, Results, SpecimenFolder
 
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
-_HALF = 0.5  # damage from which a crack is drawn
 _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
 _MARGIN = np.full((2, 2), 0.08)  # around what is drawn, of its width: below (x, y) and above
@@ -58,33 +60,6 @@ def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: floa
 
 
 @dataclass(frozen=True)
-class _CrackStyle:
-    mode: str
-    broken: bool
-    colour: str
-    width: float  # points, at most
-
-    @property
-    def label(self) -> str:
-        state = "broken ($D=1$)" if self.broken else f"damaged by more than half (${_HALF}<D<1$)"
-        return f"{self.mode} crack, {state}"
-
-    def holds(self, damage: np.ndarray) -> np.ndarray:
-        return damage >= 1.0 if self.broken else (damage > _HALF) & (damage < 1.0)
-
-
-# Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
-_CRACKS = (
-    _CrackStyle("mixed", False, style.MIXED_TINT, 0.7),
-    _CrackStyle("tension", False, style.TENSION_TINT, 0.7),
-    _CrackStyle("shear", False, style.SHEAR_TINT, 0.4),
-    _CrackStyle("mixed", True, style.MIXED_COLOUR, 1.8),
-    _CrackStyle("tension", True, style.TENSION_COLOUR, 1.8),
-    _CrackStyle("shear", True, style.SHEAR_COLOUR, 0.8),
-)
-
-
-@dataclass(frozen=True)
 class Panel:
     """One fractured specimen in a figure; without a frame only the caption is drawn, in its place."""
 
@@ -101,7 +76,12 @@ def fracture(run: Results, marks: Mapping[str, Frame], magnification: float | No
     """
     panels = [Panel(run, frame, letter, _caption(run, frame)) for letter, frame in marks.items()]
     return fracture_panels([("", panels)], style.title_of(run), magnification,
-                           "Counts are contact points (two an edge) of A–M and M–M contacts.")
+                           f"Counts are contact points ({points_of_contact(run)}) of A–M and M–M contacts.")
+
+
+def points_of_contact(run: Results) -> str:
+    """How many contact points two blocks have."""
+    return "two an edge" if run.mesh.blocks.dimension == 2 else "one a corner of a face"
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -172,7 +152,7 @@ def _draw_panel(axes: Axes, panel: Panel, points: np.ndarray, magnification: flo
 
 def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without bearings, m."""
-    points = blocks.points[blocks.triangles[~blocks.of_bearing].ravel()]
+    points = blocks.points[blocks.zones[~blocks.of_bearing].ravel()]
     if not len(points):
         raise Error(f"{blocks.path}: /blocks/material has bearings only")
     return points.min(axis=0), points.max(axis=0)
@@ -186,8 +166,9 @@ def _panel_box(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> tuple[np.ndar
 
 
 def _block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of all blocks, bearings too, where they were at first, m."""
-    return blocks.points.min(axis=0), blocks.points.max(axis=0)
+    """Lower left and upper right corner in the picture of all blocks, bearings too, where they were at first, m."""
+    points = flat(blocks.points)
+    return points.min(axis=0), points.max(axis=0)
 
 
 def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
@@ -198,7 +179,8 @@ def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
     margin = _MARGIN
     for blocks, drawn in panels:
         low, high = _block_box(blocks)
-        reach = np.array([low - drawn.min(axis=0), drawn.max(axis=0) - high]) / (high - low)[0]
+        places = flat(drawn)
+        reach = np.array([low - places.min(axis=0), places.max(axis=0) - high]) / (high - low)[0]
         margin = np.maximum(margin, 0.2 * _MARGIN + reach)
     return np.minimum(margin, _LARGEST_MARGIN)
 
@@ -208,23 +190,6 @@ def _visible_magnification(run: Results, frame: Frame) -> float:
     moved = np.percentile(np.linalg.norm(run.gridpoint_displacement(frame), axis=1), 95)
     fitting = [m for m in _MAGNIFICATIONS if m * moved <= _LARGEST_MOVE_DRAWN * (high - low)[1]]
     return fitting[-1] if fitting and moved > 0.0 else 1
-
-
-def _cracked(run: Results, frame: Frame, crack: _CrackStyle) -> np.ndarray:
-    """(C,) bool: contact points that are drawn so."""
-    contacts = run.mesh.contacts
-    names = run.crack_modes[crack.mode]
-    can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
-    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
-
-
-def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Cracked contact points that `fracture` draws, by mode (of `Results.crack_modes`) and whether broken."""
-    return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _cracks_of(run)}
-
-
-def _cracks_of(run: Results) -> list[_CrackStyle]:
-    return [crack for crack in _CRACKS if crack.mode in run.crack_modes]
 
 
 def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
@@ -237,10 +202,12 @@ def _draw_fractured(axes: Axes, run: Results, frame: Frame, points: np.ndarray, 
                     columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
     draw_blocks(axes, blocks, points)
-    lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
+    cells = (contacts.points + magnification * run.contact_displacement(frame))[contacts.cells]
     thinning = _thinning(blocks, contacts, max(columns, _PANELS))
-    for crack in _cracks_of(run):
-        drawn = style.MILLI * lines[_cracked(run, frame, crack)]
+    for crack in cracks_of(run):
+        which = cracked(run, frame, crack)
+        lines = cells[which] if blocks.dimension == 2 else crack_lines(run.mesh, cells, which)
+        drawn = style.MILLI * flat(lines)
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
                                            capstyle="round", rasterized=True))
 
@@ -249,12 +216,17 @@ def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
     """Factor on line widths that keeps cracks apart where blocks are small in print."""
     low, high = _panel_box(blocks)
     points_per_metre = 72.0 * style.WIDTH / columns / (high - low)[0]
-    edge = 2.0 * points_per_metre * np.median(contacts.length) if len(contacts.length) else np.inf
+    # the extent of a contact point is half of an edge, or the part of a face at a corner
+    sizes = 2.0 * contacts.extent if blocks.dimension == 2 else 2.0 * np.sqrt(contacts.extent)
+    edge = points_per_metre * np.median(sizes) if len(sizes) else np.inf
     return float(np.clip(edge / _EDGE_OF_FULL_WIDTH, _LEAST_THINNING, 1.0))
 
 
 def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
-    """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
+    """Fills the blocks; without an edge colour their seams are closed. A solid lacks the quarter towards the eye."""
+    if blocks.dimension == 3:
+        draw_cut_open(axes, blocks, points, edge)
+        return
     outlines, material = blocks.outlines
     for kind, colour in enumerate(style.phase_colours(blocks.materials, blocks.bearing_materials)):
         polygons = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
@@ -290,7 +262,9 @@ def _listed(counts: dict[tuple[str, bool], int], broken: bool) -> str:
 
 
 def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
-    """A round length below the specimen's left side."""
+    """A round length below the specimen's left side; nothing in the picture of a solid, which has its axes."""
+    if blocks.dimension == 3:
+        return
     low, high = specimen_box(blocks)
     width = style.MILLI * (high - low)[0]
     length = max(step for step in (1, 2, 5, 10, 20, 50, 100, 200, 500) if step <= max(0.4 * width, 1))
@@ -302,7 +276,7 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
 def fracture_legend(run: Results) -> list:
     """Handles of the cracks and materials that `fracture` and `draw_specimen` draw."""
     lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
-             for crack in _cracks_of(run)]
+             for crack in cracks_of(run)]
     return lines + _material_legend(run.mesh.blocks)
 
 
@@ -314,30 +288,37 @@ def _material_legend(blocks: BlockMesh) -> list[Patch]:
 
 @matplotlib.rc_context(style.STYLE)
 def morphology(specimen: SpecimenFolder) -> Figure:
-    """Blocks by material and the circles that were placed (paper, Figure 7)."""
+    """Blocks by material and the circles that were placed (paper, Figure 7); a solid cut open."""
     blocks, circles = specimen.mesh.blocks, specimen.aggregates
     low, high = _panel_box(blocks)
     figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
     draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
+    if blocks.dimension == 3:
+        frame_section(axes, blocks)
+    else:
+        _draw_circles(axes, circles)
+        axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
+        axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
+        axes.set_aspect("equal")
+        axes.grid(False)
+        axes.set_xlabel("x [mm]")
+        axes.set_ylabel("y [mm]")
+    axes.set_title(f"{specimen.fact('blocks'):.0f} blocks{_shares(specimen)}")
+    handles: list[Artist] = list(_material_legend(blocks))
+    if circles.rows and blocks.dimension == 2:
+        handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
+                              label="placed circle"))
+    style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
+    return figure
+
+
+def _draw_circles(axes: Axes, circles: Table) -> None:
     diameters = style.MILLI * circles["diameter_m"]
     axes.add_collection(EllipseCollection(
         diameters, diameters, np.zeros(circles.rows), units="xy", facecolors="none", edgecolors=style.BLUE,
         linewidths=0.9, offsets=style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
         offset_transform=axes.transData))
-    axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
-    axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
-    axes.set_aspect("equal")
-    axes.grid(False)
-    axes.set_xlabel("x [mm]")
-    axes.set_ylabel("y [mm]")
-    axes.set_title(f"{specimen.fact('blocks'):.0f} blocks{_shares(specimen)}")
-    handles: list[Artist] = list(_material_legend(blocks))
-    if circles.rows:
-        handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
-                              label="placed circle"))
-    style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
-    return figure
 
 
 def _shares(specimen: SpecimenFolder) -> str:
@@ -349,7 +330,9 @@ def _shares(specimen: SpecimenFolder) -> str:
     shares = {name: share for name, share in specimen.shares.items() if share > 0.0}
     if len(shares) < 2:
         return ""
-    return "; of the area " + ", ".join(f"{style.plain(name)} {100.0 * share:.1f} %" for name, share in shares.items())
+    of_what = "area" if specimen.mesh.blocks.dimension == 2 else "volume"
+    told = (f"{style.plain(name)} {100.0 * share:.1f} %" for name, share in shares.items())
+    return f"; of the {of_what} " + ", ".join(told)
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -368,6 +351,7 @@ def gradation(specimen: SpecimenFolder) -> Figure:
     axes.set_xticks([], minor=True)
     axes.set_ylim(0.0, 102.0)
     axes.set_xlabel("Aggregate diameter [mm]")
-    axes.set_ylabel("Passing, by area, within the coarse range [%]")
+    by = "volume" if "z_m" in specimen.aggregates else "area"
+    axes.set_ylabel(f"Passing, by {by}, within the coarse range [%]")
     axes.legend(loc="upper left")
     return figure

@@ -24,7 +24,7 @@ from .columns import Array, ColumnNames, Columns
 from .decks import Deck, Value, as_deck, table_text, toml, without_functions
 from .errors import Error
 from .libraries import library
-from .specimen import Specimen
+from .specimen import SolidSpecimen, Specimen, wrapped
 from .stages import Stage
 from .units import Quantity, in_si
 
@@ -673,9 +673,9 @@ class Run:
     # Arrays
 
     @property
-    def specimen(self) -> Specimen:
+    def specimen(self) -> Specimen | SolidSpecimen:
         """Its blocks, without bearings."""
-        return Specimen(self._core.specimen)
+        return wrapped(self._core.specimen)
 
     @property
     def sets(self) -> Sets:
@@ -741,17 +741,19 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0, in m, with its fields (`displacement_m`, `stress_Pa`,
-        ...), and `block` and `material` of zones. `field_data` has the names of the materials: their number and the
+        """The body now as a mesh of triangles in space, z = 0, or of tetrahedra, in m, with its fields
+        (`displacement_m`, `stress_Pa`, ...), and `block` and `material` of zones. `field_data` has the names of the
+        materials: their number and the
         dimension of their zones, as meshes of gmsh do.
         """
         block = self.zone_block
         points = {name: _in_space(values) if values.ndim > 1 else values
                   for name, values in self._core.fields("gridpoint", []).items()}
         cells: dict[str, Any] = {"block": block, "material": self.block_material[block], **self._core.fields("zone", [])}
-        names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
+        dimension = self.position.shape[1]
+        names = {name: np.array([number, dimension]) for number, name in enumerate(self.material_names)}
         mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
-            _in_space(self.position), [("triangle", self.zones)], point_data=points,
+            _in_space(self.position), [("triangle" if dimension == 2 else "tetra", self.zones)], point_data=points,
             cell_data={name: [values] for name, values in cells.items()}, field_data=names)
         return mesh
 
@@ -777,7 +779,7 @@ def _of_item(core: _core.Session, item: str, components: int) -> dict[str, Array
 
 def _in_space(vectors: Array) -> Array:
     """(n, 3), as most formats of meshes want them."""
-    return np.column_stack([vectors, np.zeros(len(vectors))])
+    return np.column_stack([vectors, np.zeros(len(vectors))]) if vectors.shape[1] == 2 else vectors
 
 
 def _changes(changes: Mapping[str, Value] | None) -> list[str]:

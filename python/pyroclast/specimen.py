@@ -210,6 +210,11 @@ class Specimen:
         return self._core.area
 
     @property
+    def extent(self) -> float:
+        """The area, m²; of a `SolidSpecimen` the volume, m³."""
+        return self._core.area
+
+    @property
     def sides(self) -> list[str]:
         """What the sides are called: `bottom`, `right`, `top`, `left` of a rectangle along the axes; of another outline
         `side_1`, `side_2`, ... from its lowest corner on, counter-clockwise; then `hole_1`, ...
@@ -235,6 +240,87 @@ class Specimen:
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
         return f"<Specimen of {len(self._core.phase)} blocks: {shares}>"
+
+
+class SolidSpecimen:
+    """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them.
+
+    Arrays are copies, in m.
+    """
+
+    def __init__(self, core: _core.SolidSpecimen):
+        self._core = core
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(vertices, 3), m."""
+        return self._core.vertices
+
+    @property
+    def faces(self) -> list[NDArray[np.int32]]:
+        """For each face the numbers of its vertices, counter-clockwise seen from outside of its first neighbour."""
+        return self._core.faces
+
+    @property
+    def neighbours(self) -> NDArray[np.int32]:
+        """(faces, 2): the blocks on both sides of each face; the second is -1 on the outline."""
+        return self._core.neighbours
+
+    @property
+    def cells(self) -> list[NDArray[np.int32]]:
+        """For each block the numbers of its faces."""
+        return self._core.cells
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of what blocks can be made of."""
+        return self._core.phases
+
+    @property
+    def phase(self) -> NDArray[np.int32]:
+        """(blocks,): indices into `phases`."""
+        return self._core.phase
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of the volume that each phase takes [1]."""
+        return dict(zip(self._core.phases, self._core.shares))
+
+    @property
+    def volume(self) -> float:
+        """m³."""
+        return self._core.volume
+
+    @property
+    def extent(self) -> float:
+        """The volume, m³; of a `Specimen` the area, m²."""
+        return self._core.volume
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Of the box around it, along x, y and z, m."""
+        return self._core.size
+
+    @property
+    def balls(self) -> NDArray[np.float64]:
+        """(balls, 4): x, y, z and diameter of each aggregate as it was placed, m."""
+        return self._core.balls
+
+    @property
+    def sides(self) -> list[str]:
+        """What the sides are called: those of the section, then `front` and `back`; of a cylinder `rim`, `bottom`,
+        `top`.
+        """
+        return self._core.sides
+
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
+        return f"<SolidSpecimen of {len(self._core.phase)} blocks: {shares}>"
+
+
+def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpecimen:
+    """A specimen that was made, in the plane or in space."""
+    return SolidSpecimen(core) if isinstance(core, _core.SolidSpecimen) else Specimen(core)
 
 
 def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],

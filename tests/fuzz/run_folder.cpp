@@ -34,7 +34,7 @@ bool run_folder(std::string_view text) {
     const Folder folder;
     std::ofstream(folder.path / "manifest.json", std::ios::binary) << text;
     std::ofstream(folder.path / FrameSeries::file_name(MeshPart::blocks, 0), std::ios::binary) << text;
-    require(FrameSeries(folder.path, MeshPart::blocks, {0.0}).lost().size() <= 1,
+    require(FrameSeries(folder.path, MeshPart::blocks, 2, {0.0}).lost().size() <= 1,
             "one frame is lost or is not");
     RunFolder::require(folder.path);
     RunFolder::check(folder.path, /*overwrite=*/true);

@@ -28,6 +28,7 @@ from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
 from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
+from pyroclast.crack_styles import count_cracks  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
@@ -36,7 +37,7 @@ from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
 from pyroclast.results import Frame, Results, SpecimenFolder, Table  # noqa: E402
-from pyroclast.sections import count_cracks, fracture, morphology, select_frames, specimen_box  # noqa: E402
+from pyroclast.sections import fracture, morphology, select_frames, specimen_box  # noqa: E402
 
 
 # A fifth of what users get: what is drawn is the same, and half of the time goes into pictures' compression.
@@ -685,7 +686,7 @@ class HeatedReader(HeatedTest):
         run = Results(self.heated("run", Heating(spread=100.0)))
         self.assertFalse(run.uniform)
         blocks, temperature = run.mesh.blocks, run.gridpoint_temperature(run.heated_frames[-1])
-        platens = np.unique(blocks.triangles[blocks.material == 2])
+        platens = np.unique(blocks.zones[blocks.material == 2])
         np.testing.assert_array_equal(temperature[platens], 20.0)
         self.assertAlmostEqual(temperature.max(), 750.0, delta=1e-3)  # 700 in the mean; written as float32
 
@@ -974,7 +975,7 @@ class Reader(FolderTest):
         for outline, block in zip(outlines, range(22)):
             x, y = blocks.points[outline].T
             area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
-            a, b, c = (blocks.points[blocks.triangles[blocks.block == block, i]] for i in range(3))
+            a, b, c = (blocks.points[blocks.zones[blocks.block == block, i]] for i in range(3))
             zones = 0.5 * np.sum((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
             self.assertAlmostEqual(area / zones, 1.0, delta=1e-12)  # and positive: counter-clockwise
 

@@ -140,7 +140,8 @@ class Drives(Case):
                 ({"to": "left", "velocity": "1 mm", "direction": "x"}, "drives.0..velocity"),
                 ({"to": "left"}, "one of hold, release, velocity, force and pressure is needed"),
                 ({"to": "left", "velocity": 1e-3, "direction": "x"}, "a unit of velocity"),
-                ({"to": "specimen", "hold": ["z"]}, "list of .x. and .y.")):
+                ({"to": "specimen", "hold": ["z"]}, "in the plane has no z"),
+                ({"to": "specimen", "hold": ["w"]}, "list of .x., .y. and in a solid .z.")):
             with self.assertRaisesRegex(pyroclast.Error, told):
                 run.drive(keys.pop("to"), **keys)
         self.assertEqual(run.step, step)

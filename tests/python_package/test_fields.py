@@ -7,7 +7,7 @@ import unittest
 from pyroclast import _core
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-_MESH = {"block", "material", "bearing", "interface", "length [m]"}
+_MESH = {"block", "material", "bearing", "interface", "length [m]", "area [m2]"}
 
 
 class Docs(unittest.TestCase):

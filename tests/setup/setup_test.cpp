@@ -281,7 +281,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   ASSERT_EQ(phases_of(setup.solids),
             (std::vector<std::string>{"aggregate", "light", "pore", "steel", "mortar"}));
   const auto simulation = make_simulation(setup);
-  const auto& specimen = simulation->specimen();
+  const auto& specimen = std::get<specimen::Specimen>(simulation->specimen());
   double sum = 0.0;
   for (std::size_t i = 0; i < specimen.phases.size(); ++i) {
     EXPECT_GT(specimen.fraction[i], 0.0) << specimen.phases[i];

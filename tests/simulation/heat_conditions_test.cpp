@@ -23,7 +23,7 @@ constexpr double kDuration = 3600.0;
 struct HeatDeck {
   explicit HeatDeck(const std::string& text) : deck(Deck::parse(text, "deck.toml")) {
     CurveReader curves(".", time_axis(), {0.0, kDuration}, fire_curves());
-    heat = read_heat(deck.root(), curves);
+    heat = read_heat(deck.root(), curves, {});
   }
   Deck deck;
   std::optional<HeatConditions> heat;

@@ -59,15 +59,15 @@ TEST(Space, SupportsHinderSixMotions) {
   const ModelOf<3> model = column_in_space(2);
   Supports supports(model);
   const auto free = [&] { return supports.free_motion().value_or("none"); };
-  EXPECT_EQ(free(), "along x and y and z, and turning");
+  EXPECT_EQ(free(), "moving along x and y and z, and turning");
   supports.hold("bottom", 2, {}, "");  // against z, and turning about x and y
-  EXPECT_EQ(free(), "along x and y");
+  EXPECT_EQ(free(), "moving along x and y");
   supports.hold("corner", 0, {}, "");
-  EXPECT_EQ(free(), "along y");
+  EXPECT_EQ(free(), "moving along y");
   supports.hold("corner", 1, {}, "");
-  EXPECT_EQ(free(), "turning");
+  EXPECT_EQ(free(), "turning about an axis");
   supports.hold("next", 0, {}, "");  // along the line from the corner: no arm
-  EXPECT_EQ(free(), "turning");
+  EXPECT_EQ(free(), "turning about an axis");
   supports.hold("next", 1, {}, "");
   EXPECT_EQ(free(), "none");
 }

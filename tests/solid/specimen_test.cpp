@@ -7,6 +7,8 @@
 
 #include "bodies.hpp"
 #include "messages.hpp"
+#include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 
@@ -128,10 +130,17 @@ TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
     EXPECT_GE(on_sides, model.set("outline").size());
     for (const int g : model.set("outline")) EXPECT_NEAR(body.distance(model.position[g]), 0.0, 1e-12);
     if (!body.section().is_rectangle()) {
-      std::size_t of_quarters = 0;
-      for (const char* const quarter : {"rim_left", "rim_right", "rim_front", "rim_back"})
-        of_quarters += model.set(quarter).size();
-      EXPECT_EQ(of_quarters, model.set("rim").size());
+      std::vector<int> of_quarters;
+      double area = 0.0, rim = 0.0;
+      for (const Face& face : faces_in(model, model.set("rim"))) rim += face.area;
+      for (const char* const quarter : {"rim_left", "rim_right", "rim_front", "rim_back"}) {
+        const auto& its = model.set(quarter);
+        of_quarters.insert(of_quarters.end(), its.begin(), its.end());
+        for (const Face& face : faces_in(model, its)) area += face.area;
+      }
+      sort_unique(of_quarters);
+      EXPECT_EQ(of_quarters, model.set("rim"));
+      EXPECT_NEAR(area, rim, 1e-12 * rim);
     }
   }
 }

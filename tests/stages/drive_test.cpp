@@ -386,7 +386,7 @@ TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
   says(refused(does("right", "force = \"1 kN\"\ndirection = [1, 0]")), "moving along x and y, and turning");
   says(refused(does("left", "hold = [\"x\"]") + does("right", "pressure = \"1 MPa\"")), "moving along y");
   says(refused(does("corner", "hold = [\"x\", \"y\"]") + does("right", "pressure = \"1 MPa\"")),
-       "moving turning about one point");
+       "against turning about one point");
   says(refused(kHeld, "[[sets]]\nname = \"nothing\"\nnearest = [\"0 mm\", \"0 mm\"]\nwithin = \"no\"\n"),
        "there is no such set of gridpoints");
   says(refused(kHeld, "[[sets]]\nname = \"far\"\ncentre = [\"1 m\", \"1 m\"]\nradius = \"1 mm\"\n"),

@@ -371,7 +371,8 @@ TEST(DrivesBeside, WhatContradictsIsRefused) {
   EXPECT_EQ(refused(does("left", "hold = [\"x\"]") + does("bottom", "hold = [\"y\"]") +
                     does("right", "force = \"1 kN\"\ndirection = [1, 0]")),
             kNone);
-  expect_in("must be a list of \"x\" and \"y\"; got \"z\"", refused(does("left", "hold = [\"z\"]")));
+  expect_in("a body in the plane has no z", refused(does("left", "hold = [\"z\"]")));
+  expect_in("list of \"x\", \"y\" and in a solid \"z\"; got \"w\"", refused(does("left", "hold = [\"w\"]")));
   expect_in("not two in one table", refused(does("left", "hold = [\"x\"]\npressure = \"1 MPa\"")));
   expect_in("one of hold, release, velocity, force and pressure is needed", refused(does("left", "")));
   expect_in("has no length", refused(held + does("right", "force = \"1 kN\"\ndirection = [0, 0]")));

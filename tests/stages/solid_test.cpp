@@ -115,7 +115,6 @@ TEST(Solid, CracksOfAnAreaAreTold) {
   EXPECT_TRUE(solid.run.history().has("tension_mortar_mortar_area_m2"));
   EXPECT_FALSE(solid.run.history().has("tension_mortar_mortar_length_m"));
   const auto fields = fields_of(solid.simulation);
-  for (const Field& field : fields) EXPECT_NE(field.item, Item::contact_end) << field.name;
   const auto displacement = std::ranges::find(fields, "displacement", &Field::name);
   const auto values = values_of<double>({*displacement}, solid.simulation).front();
   EXPECT_EQ(values.size(), 3U * solid.simulation.model().gridpoint_count());
@@ -146,7 +145,7 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
   parameters.superposition = specimen::Superposition::fit;
   const auto specimen =
       solid::make_specimen(parameters, solid::Prism(section, solid::Prism::Axis::y, kHeight));
-  return make_body(specimen, {}, setup.motion);
+  return make_body(specimen, 1.0, {}, setup.motion);
 }
 
 // Promise: the stress of a cylinder of polyhedra is the force over the area of a circle, and its lateral
@@ -203,7 +202,43 @@ TEST(Solid, ABodyThatIsNoneIsRefused) {
   expect_in("axis", refusal([](auto& body) { body.between_platens->axis = 3; }));
 }
 
-TEST(Solid, ItsFramesShowBlocksAlone) {
+/// Corners of the cells by which files show the contacts of a body, before it moves.
+std::vector<Vec<3>> corners_of_contacts(const Model& model) {
+  std::vector<Vec<3>> corners;
+  for (int contact = 0; contact < model.contact_count(); ++contact)
+    for (int end = 0; end < ends_of_contact(model.dimension()); ++end)
+      corners.push_back(at_end(model, contact, end, [&](int c) { return model.place(model.joint(c).a); }));
+  return corners;
+}
+
+double area_of(const std::vector<Vec<3>>& x, std::size_t first) {
+  return 0.5 * norm(cross(x[first + 2] - x[first], x[first + 3] - x[first + 1]));
+}
+
+// Promise: the cells of a face's contacts fill the face, whatever its corners.
+TEST(Solid, ContactsAreShownByCellsThatFillTheirFaces) {
+  auto setup = read(deck(kUniform + kSettle));
+  const SpecimenBody body = cylinder_between_platens(setup);
+  const Model& model = *body.model;
+  const auto corners = corners_of_contacts(model);
+  ASSERT_EQ(corners.size(), 4U * model.contact_count());
+  double shown = 0.0, area = 0.0;
+  for (int contact = 0; contact < model.contact_count(); ++contact) {
+    shown += area_of(corners, 4U * contact);
+    area += model.joint(contact).area;
+  }
+  EXPECT_NEAR(shown, area, 1e-9 * area);
+  for (int face = 0; face < model.face_count(); ++face) {
+    double of_face = 0.0, of_contacts = 0.0;
+    for (int c = model.face_contacts[face]; c < model.face_contacts[face + 1]; ++c) {
+      of_face += area_of(corners, 4U * c);
+      of_contacts += model.joint(c).area;
+    }
+    ASSERT_NEAR(of_face, of_contacts, 1e-9 * area) << face;
+  }
+}
+
+TEST(Solid, ItsFramesShowBlocksAndContacts) {
   Solid solid(deck(kUniform + kSettle));
   solid.run.run();
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "solid_fields";
@@ -212,7 +247,7 @@ TEST(Solid, ItsFramesShowBlocksAlone) {
   files.write(solid.simulation, solid.run.history(), frames);
   EXPECT_TRUE(std::filesystem::exists(folder / "mesh.h5"));
   EXPECT_TRUE(std::filesystem::exists(folder / "blocks_0000.hdf"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "contacts_0000.hdf"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "contacts_0000.hdf"));
   std::filesystem::remove_all(folder);
 }
 

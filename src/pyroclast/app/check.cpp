@@ -32,11 +32,11 @@ constexpr auto kStudiedStrengths = std::to_array<StudiedStrength>({
 });
 
 void print_strength(const Setup& setup) {
-  const specimen::SpecimenParameters& s = setup.specimen;
+  const AskedSpecimen& s = setup.specimen;
   const auto is_compress = [](const auto& stage) { return stage->kind() == std::string_view("compress"); };
-  if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || std::ranges::none_of(setup.stages, is_compress))
-    return;
-  const double size = std::sqrt(s.region.area() / s.blocks.count) / s.aggregates.d_max;
+  const bool is_like_studied = !s.prism && s.blocks.count > 0 && s.aggregates.fraction > 0.0;
+  if (!is_like_studied || std::ranges::none_of(setup.stages, is_compress)) return;
+  const double size = s.block_size() / s.aggregates.d_max;
   const auto& nearest = *std::ranges::min_element(kStudiedStrengths, {}, [&](const StudiedStrength& studied) {
     return std::abs(std::log(size / studied.size));
   });
@@ -110,8 +110,8 @@ int check(const RunOptions& options) {
   fmt::print("{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
-             simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),
-             model.contact_count());
+             setup.motion && !setup.motion->bearings.empty() ? " with the bearings" : "", model.zone_count(),
+             model.gridpoint_count(), model.contact_count());
   if (simulation->moves()) print_mechanics(*simulation, setup.motion->mechanics.mass);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));
@@ -121,11 +121,14 @@ int check(const RunOptions& options) {
   print_strength(setup);
   const std::size_t stages = setup.stages.size();
   if (setup.has_fields) rehearse_mesh(model);
-  const auto [expected, seconds] = rehearse(std::move(setup), *simulation);
+  const auto [expected, seconds, evaluations] = rehearse(std::move(setup), *simulation);
   fmt::print("run             {} stages", stages);
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
   fmt::print("; about {}\n", duration(seconds));
+  if (expected.heating_duration > 0.0)
+    fmt::print("                a minute of heat takes about {:.0f} stages of the heat solver\n",
+               60.0 * evaluations / expected.heating_duration);
   fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
              name(opened.instructions), peak_memory() * 1e-6);
   return 0;

@@ -31,8 +31,8 @@ int draw(
 int figures(const std::vector<std::string>& words) {
   std::optional<FolderLock> lock;  // for a run whose own figures are drawn; others are only read
   const auto is_out = [](const std::string& word) { return word == "--out" || word.starts_with("--out="); };
-  if (words.size() >= 2 && words[0] == "run" && std::ranges::none_of(words, is_out) &&
-      std::filesystem::is_directory(words[1]))
+  if (words.size() >= 2 && (words[0] == "run" || words[0] == "plane") &&
+      std::ranges::none_of(words, is_out) && std::filesystem::is_directory(words[1]))
     lock.emplace(words[1]);
   const int code = draw(words);
   if (code < 0) throw Error(fmt::format("{} cannot be run, which draws the figures", PYROCLAST_PYTHON));

@@ -19,6 +19,55 @@ constexpr double kMilli = 1e3;
 /// Number of blocks that take some seconds to be made.
 constexpr int kManyBlocks = 20'000;
 
+std::string describe_specimen(const specimen::Specimen& s) {
+  const auto& m = s.metrics;
+  std::string text = fmt::format("specimen        {} blocks", s.tessellation.cells.size());
+  if (!s.aggregates.empty() || s.fraction_asked > 0.0)
+    text += fmt::format(
+        ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
+        "superposition",
+        s.aggregates.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  text += '\n';
+  for (std::size_t i = 0; i < s.phases.size(); ++i)
+    text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
+  if (const std::string skeleton = specimen::skeleton(s); !skeleton.empty())
+    text += fmt::format("                {}\n", skeleton);
+  text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
+                      kMilli * m.mean_edge);
+  text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",
+                      kMilli * m.shortest_edge, m.shortest_edge_cell, kMilli * m.shortest_edge_at[0],
+                      kMilli * m.shortest_edge_at[1]);
+  text += fmt::format("                smallest zone angle {:.1f} deg, block {}\n", m.smallest_angle,
+                      m.smallest_angle_cell);
+  text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n", m.edges_removed,
+                      m.edges_left_short, m.seeds_redrawn);
+  return text;
+}
+
+std::string describe_specimen(const solid::SolidSpecimen& s) {
+  const auto& m = s.metrics;
+  std::string text = fmt::format("specimen        {} blocks in space", s.complex.cells.size());
+  if (!s.balls.empty() || s.fraction_asked > 0.0)
+    text += fmt::format(
+        ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
+        "superposition",
+        s.balls.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  text += '\n';
+  for (std::size_t i = 0; i < s.phases.size(); ++i)
+    text += fmt::format("                {:<12} {:.3f} of the volume\n", s.phases[i], s.fraction[i]);
+  for (const auto& c : s.classes)
+    text += fmt::format(
+        "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "
+        "without a block\n",
+        kMilli * c.from, kMilli * c.to, c.asked, c.placed, c.stones, c.superposed, c.without_a_block);
+  text += fmt::format("blocks          mean size {:.3f} mm, {:.1f} zones, faces of up to {} corners\n",
+                      kMilli * m.mean_size, m.zones_per_block, m.most_corners);
+  text += fmt::format(
+      "                shortest edge {:.3g} mm, lowest zone {:.3g} mm, of block {}; {} seeds redrawn\n",
+      kMilli * m.shortest_edge, kMilli * m.lowest_zone, m.lowest_zone_cell, m.seeds_redrawn);
+  return text;
+}
+
 }  // namespace
 
 Opened open_deck(const RunOptions& options, bool needs_code) {
@@ -85,29 +134,9 @@ void print_kept(const std::filesystem::path& folder, const std::vector<std::file
     fmt::print("kept            {}, which no run writes\n", (folder / file).string());
 }
 
-std::string describe(const specimen::Specimen& s) {
-  const auto& m = s.metrics;
-  std::string text = fmt::format("specimen        {} blocks", s.tessellation.cells.size());
-  if (!s.aggregates.empty() || s.fraction_asked > 0.0)
-    text += fmt::format(
-        ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
-        "superposition",
-        s.aggregates.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
-  text += '\n';
-  for (std::size_t i = 0; i < s.phases.size(); ++i)
-    text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
-  if (const std::string skeleton = specimen::skeleton(s); !skeleton.empty())
-    text += fmt::format("                {}\n", skeleton);
-  text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
-                      kMilli * m.mean_edge);
-  text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",
-                      kMilli * m.shortest_edge, m.shortest_edge_cell, kMilli * m.shortest_edge_at[0],
-                      kMilli * m.shortest_edge_at[1]);
-  text += fmt::format("                smallest zone angle {:.1f} deg, block {}\n", m.smallest_angle,
-                      m.smallest_angle_cell);
-  text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n", m.edges_removed,
-                      m.edges_left_short, m.seeds_redrawn);
-  return text + describe_warnings(specimen::warnings(s));
+std::string describe(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) { return describe_specimen(s); }, specimen) +
+         describe_warnings(warnings(specimen));
 }
 
 std::string describe(const Team& team) {
@@ -138,10 +167,11 @@ std::string describe(const HeatSolver& conduction, const Model& model, const Int
                                  place_text(kMilli * at, model.dimension(), "{:.2f}"));
   if (const GapHeat* gaps = conduction.gap_law())
     text += fmt::format(
-        "                cracks hinder heat: it meets {:.3g} mm of gaps at first; contacts part "
+        "                cracks hinder heat: it meets {:.3g} {} of gaps at first; contacts part "
         "temperatures\n"
         "                below h_m = {:.3g} W/(m2 K)\n",
-        kMilli * conduction.gap_area() / model.thickness, gaps->split_below);
+        conduction.gap_area() * (model.dimension() == 2 ? kMilli / model.thickness : kMilli * kMilli),
+        model.dimension() == 2 ? "mm" : "mm2", gaps->split_below);
   return text;
 }
 

@@ -27,7 +27,7 @@ LawSources sources_of(const OwnLawOptions& options);
 std::string describe_own_laws();
 
 /// Describes, for the screen, the specimen as it was made.
-std::string describe(const specimen::Specimen& specimen);
+std::string describe(const MadeSpecimen& specimen);
 
 /// Describes, for the screen, how many threads a run takes at most.
 std::string describe(const Team& team);

@@ -14,11 +14,8 @@ int make_specimen(const RunOptions& asked) {
   const Setup& setup = opened.setup;
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
-  const specimen::Specimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
-  const auto model = setup.motion
-                         ? make_concrete_model(specimen, setup.thickness, setup.motion->contacts.interfaces,
-                                               setup.motion->bearings)
-                         : make_concrete_model(specimen, setup.thickness);
+  const MadeSpecimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
+  const auto model = make_model(specimen, setup.thickness, setup.motion);
   const RunFolder folder(output_folder(options), options.overwrite,
                          {opened.deck.name(),
                           inputs_of(opened.deck, setup),
@@ -30,7 +27,7 @@ int make_specimen(const RunOptions& asked) {
                           {}});
   print_kept(folder.path(), folder.foreign());
   std::filesystem::create_directories(folder.path() / "fields");
-  write_mesh(folder.path() / "fields", model);
+  write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
   fmt::print("{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
              folder.path().string());

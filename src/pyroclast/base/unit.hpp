@@ -19,6 +19,7 @@ namespace unit {
 inline constexpr Unit dimensionless{"1", "dimensionless number", "31 %"};
 inline constexpr Unit length{"m", "length", "150 mm"};
 inline constexpr Unit area{"m2", "area", "450 cm2"};
+inline constexpr Unit area_rate{"m2/s", "rate of an area", "5 cm2/s"};
 inline constexpr Unit angle{"rad", "angle", "34 deg"};
 inline constexpr Unit time{"s", "time", "90 min"};
 inline constexpr Unit frequency{"1/s", "frequency", "10 1/s"};
@@ -48,6 +49,7 @@ inline constexpr Unit expansion{"1/K", "thermal expansion coefficient", "1e-5 1/
 inline constexpr const Unit* all[] = {&dimensionless,
                                       &length,
                                       &area,
+                                      &area_rate,
                                       &angle,
                                       &time,
                                       &frequency,

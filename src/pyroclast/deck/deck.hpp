@@ -58,6 +58,19 @@ struct KeyForms {
   std::string name = {};
 };
 
+/// Place as a deck states it, in the unit of its reader.
+struct StatedPlace {
+  double x = 0.0, y = 0.0;
+  std::optional<double> z = std::nullopt;  ///< none for a pair
+};
+
+/// Coordinates that a place has in the body of a deck.
+struct Coordinates {
+  int count = 2;                 ///< 2: [x, y]; 3: [x, y, z]
+  bool pair_is_along_z = false;  ///< true where a pair stands for all z of a solid
+  double middle_z = 0.0;         ///< z that a message proposes where it is missing, m
+};
+
 /// File that a deck names.
 struct DeckFile {
   /// Full path of the key that names the file; empty for a file that must stand beside such a file.
@@ -121,11 +134,16 @@ class Section {
                                                 Meaning meaning) const;
 
   /// Reads a place `[x, y]`, or a list of at least `least` places; empty after an error, which names the
-  /// element.
+  /// element. With `coordinates` a place may have a third number, as the body of the deck asks for.
   std::optional<std::pair<double, double>> place(std::string_view key, const Unit& unit,
                                                  Meaning meaning) const;
   std::vector<std::pair<double, double>> places(std::string_view key, const Unit& unit, std::size_t least,
                                                 Meaning meaning) const;
+
+  std::optional<StatedPlace> place(std::string_view key, const Unit& unit, const Coordinates& coordinates,
+                                   Meaning meaning) const;
+  std::vector<StatedPlace> places(std::string_view key, const Unit& unit, std::size_t least,
+                                  const Coordinates& coordinates, Meaning meaning) const;
 
   long long integer(std::string_view key, const Range& range, Meaning meaning) const;
   long long integer(std::string_view key, const Range& range, long long fallback, Meaning meaning) const;

@@ -1,9 +1,11 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -178,17 +180,61 @@ std::vector<Point> read_points(const Entry& entry, const Unit& x_unit, const Uni
   return complete ? points : std::vector<Point>{};
 }
 
-std::vector<Point> read_places(const Entry& entry, const Unit& unit, std::size_t least,
-                               const std::string& needed) {
+std::string list_of_places(std::size_t least, const Unit& unit) {
+  return fmt::format("a list of {} or more places, [[\"{}\", \"{}\"], ...],", least, unit.example,
+                     unit.example);
+}
+
+/// Reads a list of at least `least` places; returns none after an error.
+/// \param read_one  function that reads a place of the list
+template <class ReadOne>
+auto read_places(const Entry& entry, const Unit& unit, std::size_t least, ReadOne read_one) {
+  std::vector<typename std::invoke_result_t<ReadOne, Entry>::value_type> places;
   const toml::array* list = entry.node.as_array();
   if (!list || list->size() < least) {
+    const std::string needed = list_of_places(least, unit);
     list ? entry.error(needed + " is needed") : wrong_type(entry, needed);
-    return {};
+    return places;
   }
-  std::vector<Point> places;
   for (std::size_t i = 0; i < list->size(); ++i)
-    if (const auto place = read_point(element_of(entry, i), unit, unit)) places.push_back(*place);
-  return places.size() == list->size() ? places : std::vector<Point>{};
+    if (auto place = read_one(element_of(entry, i))) places.push_back(*std::move(place));
+  if (places.size() < list->size()) places.clear();
+  return places;
+}
+
+/// Reads a place; returns none after an error, which shows the line to write where a coordinate is missing.
+/// \param key  key that states the place, or a list of places
+std::optional<StatedPlace> read_stated_place(const Entry& entry, std::string_view key, const Unit& unit,
+                                             const Coordinates& coordinates) {
+  const toml::array* list = entry.node.as_array();
+  const bool is_in_space = coordinates.count == 3;
+  const std::string needed = fmt::format("a place [\"{0}\", \"{0}\"{1}] is needed", unit.example,
+                                         is_in_space ? fmt::format(", \"{}\"", unit.example) : "");
+  if (!list) {
+    entry.error(fmt::format("{}, not {}", needed, type_name(entry.node)));
+    return std::nullopt;
+  }
+  const bool is_pair = list->size() == 2, is_triple = list->size() == 3;
+  if (is_triple && !is_in_space) {
+    entry.error(needed + ": a body in the plane has no z; with [specimen] depth it is a solid");
+    return std::nullopt;
+  }
+  if (!is_pair && !is_triple) {
+    entry.error(fmt::format("{}, not a list of {}", needed, list->size()));
+    return std::nullopt;
+  }
+  std::array<std::optional<double>, 3> at;
+  for (std::size_t i = 0; i < list->size(); ++i)
+    at[i] = read_quantity(element_of(entry, i), unit, Range::any());
+  if (!at[0] || !at[1] || (is_triple && !at[2])) return std::nullopt;
+  if (is_pair && is_in_space && !coordinates.pair_is_along_z) {
+    entry.error(
+        fmt::format("a point of a solid needs its z too; in the middle it is {} = [\"{:g} {}\", \"{:g} "
+                    "{}\", \"{:g} {}\"]",
+                    key, *at[0], unit.si, *at[1], unit.si, coordinates.middle_z, unit.si));
+    return std::nullopt;
+  }
+  return StatedPlace{*at[0], *at[1], at[2]};
 }
 
 std::optional<long long> read_integer(const Entry& entry, const Range& range) {
@@ -441,10 +487,26 @@ std::optional<std::pair<double, double>> Section::place(std::string_view key, co
 std::vector<std::pair<double, double>> Section::places(std::string_view key, const Unit& unit,
                                                        std::size_t least, Meaning meaning) const {
   note(key_of(key, fmt::format("list of places [x, y], {}", unit.name)), meaning);
-  const std::string needed =
-      fmt::format("a list of {} or more places, [[\"{}\", \"{}\"], ...],", least, unit.example, unit.example);
-  const auto entry = require(*deck_, table_, key, needed + " is needed");
-  return entry ? read_places(*entry, unit, least, needed) : std::vector<Point>{};
+  const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
+  if (!entry) return {};
+  return read_places(*entry, unit, least, [&](const Entry& one) { return read_point(one, unit, unit); });
+}
+
+std::optional<StatedPlace> Section::place(std::string_view key, const Unit& unit,
+                                          const Coordinates& coordinates, Meaning meaning) const {
+  note(key_of(key, fmt::format("place [x, y], in a solid [x, y, z], {}", unit.name)), meaning);
+  const auto entry = require(*deck_, table_, key,
+                             fmt::format("a place [\"{}\", \"{}\"] is needed", unit.example, unit.example));
+  return entry ? read_stated_place(*entry, key, unit, coordinates) : std::nullopt;
+}
+
+std::vector<StatedPlace> Section::places(std::string_view key, const Unit& unit, std::size_t least,
+                                         const Coordinates& coordinates, Meaning meaning) const {
+  note(key_of(key, fmt::format("list of places [x, y], in a solid [x, y, z], {}", unit.name)), meaning);
+  const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
+  if (!entry) return {};
+  return read_places(*entry, unit, least,
+                     [&](const Entry& one) { return read_stated_place(one, key, unit, coordinates); });
 }
 
 long long Section::integer(std::string_view key, const Range& range, Meaning meaning) const {

@@ -1,6 +1,7 @@
 #include "pyroclast/mechanics/body.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -83,6 +84,7 @@ void Body<Dim>::place_model() {
   state.damping_form = parameters.damping_form;
   state.kinematics = parameters.kinematics;
   state.thickness = model.thickness;
+  state.block_size = block_size();
   auto& s = arrays;
   const auto packs = static_cast<std::size_t>(layout.gridpoint_packs);
   s.velocity = made<VectorPack<Dim>>(packs);
@@ -107,6 +109,24 @@ void Body<Dim>::place_model() {
 
   place_positions();
   refresh_views();
+}
+
+/// Returns the root of the mean area or volume of the blocks that are of no bearing, m; of all blocks where
+/// there are no others.
+template <int Dim>
+double Body<Dim>::block_size() const {
+  double volume = 0.0, whole = 0.0;
+  int blocks = 0;
+  for (int b = 0; b < model.block_count(); ++b) {
+    double of_block = 0.0;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) of_block += geometry.volume[z];
+    whole += of_block;
+    if (model.is_of_bearing(b)) continue;
+    volume += of_block;
+    ++blocks;
+  }
+  const double mean = blocks > 0 ? volume / blocks : whole / model.block_count();
+  return Dim == 2 ? std::sqrt(mean / model.thickness) : std::cbrt(mean);
 }
 
 /// Places the positions of gridpoints in the form from which the zones of this dimension read.

@@ -160,6 +160,7 @@ struct Body {
   void list_laws();
   /// Names the energies that the laws lose, and creep where zones creep.
   void name_dissipations();
+  double block_size() const;
   void place_model();
   void place_positions();
   void place_internals();

@@ -198,8 +198,9 @@ struct StepParameters {
   double time_step = 0.0, local_damping = 0.0, viscous_damping = 0.0;
   DampingForm damping_form = DampingForm::local;
   Kinematics kinematics = Kinematics::small;
-  double thickness = 1.0;  ///< m
-  bool by_bundle = false;  ///< true where all zones of a block have the same properties
+  double thickness = 1.0;   ///< m
+  double block_size = 0.0;  ///< root of the mean area or volume of a block that is of no bearing, m
+  bool by_bundle = false;   ///< true where all zones of a block have the same properties
 };
 
 template <int Dim>

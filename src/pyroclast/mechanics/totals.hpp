@@ -30,8 +30,8 @@ class Totals {
   /// load is at rest too.
   double unbalanced_ratio() const;
   double mean_unbalanced_force() const;  ///< Returns the mean over the gridpoints, N.
-  /// Returns the largest jump over the length of its face. Contacts with small displacements are exact while
-  /// this ratio is small.
+  /// Returns the largest jump over the length of its edge, in 3D over the mean size of a block. Contacts with
+  /// small displacements are exact while this ratio is small.
   double largest_relative_jump() const;
 
  private:

@@ -100,18 +100,24 @@ double block_size(const Model& model) {
   return largest;
 }
 
-Items items_of(const Model& model, SetOf of) {
+/// Returns a point without the coordinate that a set does not read.
+Vec<3> seen_by(const SetParameters& set, const Vec<3>& point) {
+  return set.is_along_z ? Vec<3>{{point[0], point[1]}} : point;
+}
+
+Items items_of(const Model& model, const SetParameters& set) {
   Items items;
-  const auto add_point = [&](int member, int g) { items.add({member}, {model.place(g)}, model.place(g)); };
-  switch (of) {
+  const auto place = [&](int g) { return seen_by(set, model.place(g)); };
+  const auto add_point = [&](int member, int g) { items.add({member}, {place(g)}, place(g)); };
+  switch (set.of) {
     case SetOf::gridpoints:
       for (int g = 0; g < model.gridpoint_count(); ++g) add_point(g, g);
       break;
     case SetOf::faces:
       for (const Face& face : faces_of(model)) {
         std::vector<Vec<3>> corners;
-        for (int g : face.gridpoints()) corners.push_back(model.place(g));
-        items.add({face.gridpoints().begin(), face.gridpoints().end()}, corners, face.centre);
+        for (int g : face.gridpoints()) corners.push_back(place(g));
+        items.add({face.gridpoints().begin(), face.gridpoints().end()}, corners, seen_by(set, face.centre));
       }
       break;
     case SetOf::blocks: {
@@ -119,7 +125,8 @@ Items items_of(const Model& model, SetOf of) {
       for (int block = 0; block < model.block_count(); ++block) {
         std::vector<int> members(model.block_gridpoints[block + 1] - model.block_gridpoints[block]);
         std::iota(members.begin(), members.end(), model.block_gridpoints[block]);
-        items.add(std::move(members), {middle[block]}, middle[block]);
+        const Vec<3> at = seen_by(set, middle[block]);
+        items.add(std::move(members), {at}, at);
       }
       break;
     }
@@ -177,7 +184,7 @@ void add_sets(Model& model, const std::vector<SetParameters>& sets) {
                          is_of_contacts ? "contacts" : "gridpoints", names_of(all)));
       within = &found->second;
     }
-    const auto items = items_of(model, asked.of);
+    const auto items = items_of(model, asked);
     if (const auto* nearest = std::get_if<NearestTo>(&asked.place))
       if (const double away = distance_of(model, nearest->point); away > kNear * block_size(model))
         fail(fmt::format(

@@ -43,6 +43,9 @@ struct SetParameters {
   SetOf of = SetOf::gridpoints;
   std::string within = "";  ///< set of contacts for contacts, else set of gridpoints; empty: all of the model
   Place place;
+  /// True for a place that is meant for all z: the third coordinates of the place and of the body are not
+  /// read.
+  bool is_along_z = false;
   std::string deck_place = "";  ///< place in the deck that asks for the set, for messages
 };
 

@@ -48,6 +48,9 @@ void add_prism(const std::array<int, 3>& columns, int inner, int outer, const st
   }
 }
 
+/// Share of its area by which a side may lack in area vectors by rounding, and be plane.
+constexpr double kPlane = 1e-9;
+
 /// Adds a bearing over a side of the specimen.
 SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen, const Bearing& bearing,
                          int side, int material) {
@@ -70,6 +73,11 @@ SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen
   if (block.faces.empty() || !(bearing.thickness > 0.0))
     throw Error(fmt::format("bearing \"{}\": {}", bearing.name,
                             block.faces.empty() ? "no block lies on its side" : "it has no thickness"));
+  if (norm(outward) < (1.0 - kPlane) * area)
+    throw Error(
+        fmt::format("bearing \"{}\": its side \"{}\" is not plane, and no bearing can lie on it in a "
+                    "solid yet",
+                    bearing.name, bearing.side));
   outward *= 1.0 / norm(outward);
   block.columns = static_cast<int>(inner.size());
   const auto heights = bearing_rows(bearing.thickness, std::sqrt(area / static_cast<double>(block.columns)));
@@ -105,15 +113,15 @@ SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen
   return block;
 }
 
-/// Adds the quarters of the rim of a cylinder.
-void add_quarters(ModelOf<3>& model, const std::vector<int>& rim, const solid::Prism& body) {
-  const Vec<3> middle = 0.5 * (body.low() + body.high());
-  for (const int g : rim) {
-    const double x = model.position[g][0] - middle[0], z = model.position[g][2] - middle[2];
-    const char* const quarter = std::abs(x) >= std::abs(z) ? (x < 0.0 ? "rim_left" : "rim_right")
-                                                           : (z < 0.0 ? "rim_front" : "rim_back");
-    model.sets[quarter].push_back(g);
-  }
+/// Sine of the angle by which a side at 45 degrees may seem to face another way by rounding.
+constexpr double kDiagonal = 1e-9;
+
+/// Returns the name of the quarter of a cylinder's rim to which a face with this normal belongs. All faces of
+/// a side of the polygon belong to one.
+const char* quarter_of(const Vec<3>& normal) {
+  if (std::abs(normal[0]) >= std::abs(normal[2]) - kDiagonal * norm(normal))
+    return normal[0] < 0.0 ? "rim_left" : "rim_right";
+  return normal[2] < 0.0 ? "rim_front" : "rim_back";
 }
 
 }  // namespace
@@ -175,14 +183,21 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
   add_bearings(false);
 
   for (const std::string& side : sides) model.sets[side];
+  const bool has_quarters = specimen.body.axis() == solid::Prism::Axis::y;
+  std::vector<std::string> of_sides;
   for (std::size_t f = 0; f < complex.faces.size(); ++f) {
     const auto& [corners, inner, outer, side] = complex.faces[f];
     if (side < 0) continue;
     std::vector<int> its;
     for (const int v : corners)
       its.push_back(model.block_gridpoints[first_block + inner] + place_in(vertices[inner], v));
-    for (const std::string& name : {std::string("outline"), sides[side]})
+    std::vector<std::string> names{"outline", sides[side]};
+    if (has_quarters && sides[side] == "rim")
+      names.emplace_back(quarter_of(solid::area_vector(complex, complex.faces[f])));
+    for (const std::string& name : names) {
       model.sets[name].insert(model.sets[name].end(), its.begin(), its.end());
+      if (std::ranges::find(of_sides, name) == of_sides.end()) of_sides.push_back(name);
+    }
     for (std::size_t i = 0; i < bearings.size(); ++i) {
       if (!std::ranges::binary_search(blocks[i].faces, static_cast<int>(f))) continue;
       std::vector<int> opposite;
@@ -193,11 +208,7 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
     }
   }
   // a corner of a block may belong to several faces
-  for (const std::string& name : sides) sort_unique(model.sets[name]);
-  sort_unique(model.sets["outline"]);
-  if (const auto rim = model.sets.find("rim");
-      rim != model.sets.end() && specimen.body.axis() == solid::Prism::Axis::y)
-    add_quarters(model, rim->second, specimen.body);
+  for (const std::string& name : of_sides) sort_unique(model.sets[name]);
   return model;
 }
 

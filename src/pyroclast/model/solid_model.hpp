@@ -20,7 +20,7 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
 /// same sets. A bearing is a prism over the polygons of the blocks on its side; its sets are in the order of
 /// their gridpoints. An upright cylinder has four quarters of its rim as sets too: `rim_left`, `rim_right`,
 /// towards -x and x, `rim_front` and `rim_back`, towards -z and z. Throws Error, naming the bearing, when it
-/// has no side to lie on, or no thickness.
+/// has no plane side to lie on, or no thickness.
 ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
                             const std::vector<InterfaceParameters>& interfaces = {},
                             const std::vector<Bearing>& bearings = {});

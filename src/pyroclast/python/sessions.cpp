@@ -385,9 +385,7 @@ void bind_sessions(py::module_& m) {
             return members(h.get().simulation(), set, of_contacts);
           },
           arg("set"), arg("of_contacts"))
-      .def_property_readonly(
-          "specimen",
-          [](const Held& h) { return std::make_shared<specimen::Specimen>(h.get().simulation().specimen()); })
+      .def_property_readonly("specimen", [](const Held& h) { return h.get().simulation().specimen(); })
       .def_property_readonly("deck_folder", read([](const Session& s) { return s.opened().folder.string(); }))
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ namespace pyroclast::python {
 
 namespace {
 
+using solid::SolidSpecimen;
 using specimen::Specimen;
 using Reals = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
@@ -54,7 +56,7 @@ Specimen read(const std::string& file, double join) {
 /// Makes a rectangle of blocks, all of one phase.
 Specimen rectangle(double width, double height, int count, double shortest_edge, int relaxation,
                    double radius_spread, std::uint64_t seed) {
-  specimen::SpecimenParameters p;
+  AskedSpecimen p;
   p.region = specimen::Region::rectangle(width, height);
   p.seed = seed;
   p.aggregates.phase = p.matrix;
@@ -64,15 +66,69 @@ Specimen rectangle(double width, double height, int count, double shortest_edge,
               .shortest_edge = shortest_edge,
               .tessellation = {}};
   const py::gil_scoped_release no_gil;
-  return make_checked_specimen(p);
+  return std::get<Specimen>(make_checked_specimen(p));
 }
 
-Specimen of_deck(const DeckText& text, const std::optional<std::uint64_t>& seed) {
+MadeSpecimen of_deck(const DeckText& text, const std::optional<std::uint64_t>& seed) {
   const Deck deck = parse(text);
   Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
   if (seed) setup.specimen.seed = *seed;
   const py::gil_scoped_release no_gil;
   return make_checked_specimen(setup.specimen);
+}
+
+py::list arrays_of(const std::vector<std::vector<int>>& lists) {
+  py::list arrays;
+  for (const auto& list : lists)
+    arrays.append(py::array_t<int>(static_cast<py::ssize_t>(list.size()), list.data()));
+  return arrays;
+}
+
+py::array_t<int> array_of(const std::vector<int>& list) {
+  return py::array_t<int>(static_cast<py::ssize_t>(list.size()), list.data());
+}
+
+/// Returns the balls, (balls, 4): x, y, z, diameter, m.
+py::array_t<double> balls(const SolidSpecimen& s) {
+  py::array_t<double> array({static_cast<py::ssize_t>(s.balls.size()), py::ssize_t{4}});
+  auto to = array.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    for (py::ssize_t axis = 0; axis < 3; ++axis) to(i, axis) = s.balls[i].centre[axis];
+    to(i, 3) = s.balls[i].diameter;
+  }
+  return array;
+}
+
+void bind_solid_specimens(py::module_& m) {
+  py::class_<SolidSpecimen, std::shared_ptr<SolidSpecimen>>(m, "SolidSpecimen",
+                                                            "Polyhedral blocks, and what each is made of.")
+      .def_property_readonly("vertices",
+                             [](const SolidSpecimen& s) { return vectors(s.complex.vertices, 3); })
+      .def_property_readonly("faces",
+                             [](const SolidSpecimen& s) {
+                               std::vector<std::vector<int>> corners;
+                               for (const auto& face : s.complex.faces) corners.push_back(face.corners);
+                               return arrays_of(corners);
+                             })
+      .def_property_readonly("neighbours",
+                             [](const SolidSpecimen& s) {
+                               std::vector<int> cells;
+                               for (const auto& face : s.complex.faces)
+                                 cells.insert(cells.end(), {face.inner, face.outer});
+                               return array_of(cells).reshape({-1, 2});
+                             })
+      .def_property_readonly("cells", [](const SolidSpecimen& s) { return arrays_of(s.complex.cells); })
+      .def_property_readonly("phase", [](const SolidSpecimen& s) { return array_of(s.phase); })
+      .def_property_readonly("phases", [](const SolidSpecimen& s) { return s.phases; })
+      .def_property_readonly("shares", [](const SolidSpecimen& s) { return s.fraction; })
+      .def_property_readonly("volume", [](const SolidSpecimen& s) { return s.body.volume(); })
+      .def_property_readonly("size",
+                             [](const SolidSpecimen& s) {
+                               const Vec<3> size = s.body.high() - s.body.low();
+                               return std::tuple(size[0], size[1], size[2]);
+                             })
+      .def_property_readonly("balls", &balls)
+      .def_property_readonly("sides", [](const SolidSpecimen& s) { return s.body.sides(); });
 }
 
 std::vector<std::string> side_names(const Specimen& s) {
@@ -85,6 +141,7 @@ std::vector<std::string> side_names(const Specimen& s) {
 
 void bind_specimens(py::module_& m) {
   using py::arg;
+  bind_solid_specimens(m);
   py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, and what each is made of.")
       .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
                   arg("phase"), arg("join"))
@@ -104,19 +161,8 @@ void bind_specimens(py::module_& m) {
                                for (const auto& v : s.tessellation.vertices) places.push_back(resized<3>(v));
                                return vectors(places, 2);
                              })
-      .def_property_readonly(
-          "cells",
-          [](const Specimen& s) {
-            py::list cells;
-            for (const auto& cell : s.tessellation.cells)
-              cells.append(py::array_t<int>(static_cast<py::ssize_t>(cell.size()), cell.data()));
-            return cells;
-          })
-      .def_property_readonly("phase",
-                             [](const Specimen& s) {
-                               return py::array_t<int>(static_cast<py::ssize_t>(s.phase.size()),
-                                                       s.phase.data());
-                             })
+      .def_property_readonly("cells", [](const Specimen& s) { return arrays_of(s.tessellation.cells); })
+      .def_property_readonly("phase", [](const Specimen& s) { return array_of(s.phase); })
       .def_property_readonly("phases", [](const Specimen& s) { return s.phases; })
       .def_property_readonly("shares", [](const Specimen& s) { return s.fraction; })
       .def_property_readonly("area", [](const Specimen& s) { return s.region.area(); })

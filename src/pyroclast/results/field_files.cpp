@@ -116,9 +116,10 @@ FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& si
                        const History& history, const FrameRows& frames)
     : columns_(frame_columns(history)),
       frames_(created(folder) / "frames.csv", text_of(history, columns_, frames)),
-      blocks_(folder, MeshPart::blocks, frame_times(history, frames)) {
-  if (simulation.moves() && shows_contacts(simulation.model()))
-    contacts_.emplace(folder, MeshPart::contacts, frame_times(history, frames));
+      blocks_(folder, MeshPart::blocks, simulation.model().dimension(), frame_times(history, frames)) {
+  if (simulation.moves())
+    contacts_.emplace(folder, MeshPart::contacts, simulation.model().dimension(),
+                      frame_times(history, frames));
   write_mesh(folder, simulation.model());
 }
 

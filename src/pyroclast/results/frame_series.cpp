@@ -10,13 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/simulation/fields.hpp"
 
 namespace pyroclast {
 
 namespace {
 
-constexpr std::uint8_t kVtkLine = 3;
-constexpr std::uint8_t kVtkTriangle = 5, kVtkTetrahedron = 10;
+constexpr std::uint8_t kVtkLine = 3, kVtkTriangle = 5, kVtkQuad = 9, kVtkTetrahedron = 10;
 
 const char* name(MeshPart part) {
   return part == MeshPart::blocks ? "blocks" : "contacts";
@@ -28,9 +28,11 @@ struct CellField {
   const char* shown;
 };
 
-std::vector<CellField> cell_fields(MeshPart part) {
+std::vector<CellField> cell_fields(MeshPart part, int dimension) {
   if (part == MeshPart::blocks) return {{"block", "block"}, {"material", "material"}, {"bearing", "bearing"}};
-  return {{"interface", "interface"}, {"bearing", "bearing"}, {"length", "length [m]"}};
+  const CellField extent =
+      dimension == 2 ? CellField{"length", "length [m]"} : CellField{"area", "area [m2]"};
+  return {{"interface", "interface"}, {"bearing", "bearing"}, extent};
 }
 
 /// Returns the name under which VTK shows the names of materials or interfaces, and the place of these names
@@ -57,7 +59,7 @@ void write_grid(Hdf5File& file, const std::string& group, const std::vector<doub
                std::vector<std::int64_t>{static_cast<std::int64_t>(connectivity.size())});
 }
 
-void link_mesh(Hdf5File& file, MeshPart part) {
+void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
   const std::string grid = name(part);
   file.group("/VTKHDF");
   file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
@@ -71,7 +73,7 @@ void link_mesh(Hdf5File& file, MeshPart part) {
   file.external_link(fmt::format("/VTKHDF/FieldData/{}", shown), "mesh.h5", stored);
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
-  for (const CellField& field : cell_fields(part))
+  for (const CellField& field : cell_fields(part, dimension))
     file.external_link(fmt::format("/VTKHDF/CellData/{}", field.shown), "mesh.h5",
                        fmt::format("/{}/{}", grid, field.name));
 }
@@ -107,47 +109,44 @@ void write_contacts(Hdf5File& file, const Model& model) {
   std::vector<double> points;
   std::vector<std::int64_t> connectivity;
   std::vector<std::uint8_t> interface, bearing;
-  std::vector<double> length;
+  std::vector<double> extent;
+  const int ends = ends_of_contact(model.dimension());
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);
-    const Joint& partner = model.joint(i ^ 1);  // the two contacts of an edge stand together
-    append(points, model.place(c.a));
-    append(points, 0.5 * (model.place(c.a) + model.place(partner.a)));
-    connectivity.insert(connectivity.end(),
-                        {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
+    for (int end = 0; end < ends; ++end) {
+      append(points, at_end(model, i, end, [&](int contact) { return model.place(model.joint(contact).a); }));
+      connectivity.push_back(static_cast<std::int64_t>(ends) * i + end);
+    }
     interface.push_back(static_cast<std::uint8_t>(c.interface));
     bearing.push_back(model.is_of_bearing(c) ? 1 : 0);
-    length.push_back(model.extent(i));
+    extent.push_back(model.extent(i));
   }
-  write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
+  write_grid(file, "/contacts", points, connectivity, ends, model.dimension() == 2 ? kVtkLine : kVtkQuad);
   file.dataset("/contacts/interface", interface);
   file.dataset(names_of(MeshPart::contacts).second, model.interface_names);
   file.dataset("/contacts/bearing", bearing);
-  file.dataset("/contacts/length", length);
+  file.dataset(model.dimension() == 2 ? "/contacts/length" : "/contacts/area", extent);
 }
 
 }  // namespace
 
-bool shows_contacts(const Model& model) {
-  return model.dimension() == 2;
-}
-
 void write_mesh(const std::filesystem::path& folder, const Model& model) {
   Hdf5File file(folder / "mesh.h5");
   write_blocks(file, model);
-  if (shows_contacts(model)) write_contacts(file, model);
+  write_contacts(file, model);
   file.close();
 }
 
 void rehearse_mesh(const Model& model) {
   Hdf5File file("");
   write_blocks(file, model);
-  if (shows_contacts(model)) write_contacts(file, model);
+  write_contacts(file, model);
   file.close();
 }
 
-FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times)
-    : folder_(std::move(folder)), part_(part), times_(std::move(times)) {
+FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part, int dimension,
+                         std::vector<double> times)
+    : folder_(std::move(folder)), part_(part), dimension_(dimension), times_(std::move(times)) {
   for (int later = count(); std::filesystem::remove(folder_ / file_name(part_, later)); ++later) continue;
   if (count() > 0) write_series();
 }
@@ -165,7 +164,7 @@ std::vector<std::string> FrameSeries::lost() const {
 
 void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
   Hdf5File file(folder_ / file_name(part_, count()));
-  link_mesh(file, part_);
+  link_mesh(file, part_, dimension_);
   fields(file);
   file.close();
   times_ = std::move(times);

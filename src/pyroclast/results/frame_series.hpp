@@ -14,10 +14,8 @@ namespace pyroclast {
 /// Part of a mesh that has fields of its own.
 enum class MeshPart : std::uint8_t { blocks, contacts };
 
-/// Tells whether frames show the contacts of a body; those of a solid are not shown yet.
-bool shows_contacts(const Model& model);
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles or tetrahedra
-/// with block and material, contact points as lines to the middle of their face with interface and length.
+/// with block and material, contact points as cells, see ends_of_contact, with interface and length or area.
 void write_mesh(const std::filesystem::path& folder, const Model& model);
 /// Takes the memory that writing the mesh takes, and writes nothing: a run needs most memory there.
 void rehearse_mesh(const Model& model);
@@ -27,9 +25,10 @@ void rehearse_mesh(const Model& model);
 /// `contacts.hdf.series` opens all of them as a time series.
 class FrameSeries {
  public:
-  /// \param times  times of the frames that are there, s; later frames left by a run that was broken off are
-  ///               removed
-  FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times = {});
+  /// \param dimension  dimension of the body, 2 or 3
+  /// \param times      times of the frames that are there, s; later frames left by a run that was broken off
+  ///                   are removed
+  FrameSeries(std::filesystem::path folder, MeshPart part, int dimension, std::vector<double> times = {});
 
   /// Writes a frame.
   /// \param times   times of all frames so far and of this one, s
@@ -47,6 +46,7 @@ class FrameSeries {
 
   std::filesystem::path folder_;
   MeshPart part_;
+  int dimension_;
   std::vector<double> times_;
 };
 

@@ -49,7 +49,7 @@ Summary ResultsWriter::summary(const Run& run) const {
   std::vector<std::string> warnings = warnings_;
   const Simulation& simulation = run.simulation();
   const auto of_specimen =
-      simulation.has_specimen() ? specimen::warnings(simulation.specimen()) : std::vector<std::string>();
+      simulation.has_specimen() ? pyroclast::warnings(simulation.specimen()) : std::vector<std::string>();
   for (const auto& list : {lost_frames_, of_specimen, std::exchange(summary.warnings, {})})
     warnings.insert(warnings.end(), list.begin(), list.end());
   summary.warnings = std::move(warnings);

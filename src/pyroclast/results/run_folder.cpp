@@ -61,6 +61,7 @@ constexpr auto kGrowing = std::to_array<std::string_view>({"history.csv", "run.l
 constexpr auto kFigures = std::to_array<const char*>({
     "convergence",
     "cracks",
+    "cracks_inside",
     "energy",
     "fracture",
     "gradation",
@@ -69,6 +70,7 @@ constexpr auto kFigures = std::to_array<const char*>({
     "heating_fracture",
     "isotherm",
     "morphology",
+    "plane_*",
     "records",
     "stress_strain",
     "temperature",

@@ -17,10 +17,11 @@ namespace {
 
 constexpr int kGradationPoints = 60;
 
-/// Returns the rows of one kind of circles.
+/// Returns the rows of one kind of stones.
 /// \param kind    number of the kind, from 0
-/// \param placed  circles of the kind, at least one
-std::string gradation_rows(int kind, const std::vector<specimen::Aggregate>& placed,
+/// \param placed  stones of the kind, at least one
+template <int Dim>
+std::string gradation_rows(int kind, const std::vector<specimen::RoundStone<Dim>>& placed,
                            const specimen::AggregateParameters& asked) {
   std::vector<double> sizes;
   for (int i = 0; i <= kGradationPoints; ++i)
@@ -34,43 +35,60 @@ std::string gradation_rows(int kind, const std::vector<specimen::Aggregate>& pla
   return rows;
 }
 
-/// Returns the kinds of circles: the aggregates, and inclusions of that shape.
+/// Returns the kinds of round stones: the aggregates, and inclusions of that shape.
 std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::SpecimenParameters& asked) {
   std::vector<const specimen::AggregateParameters*> kinds{&asked.aggregates};
   for (const auto& inclusions : asked.inclusions)
-    if (const auto* circles = std::get_if<specimen::AggregateParameters>(&inclusions))
-      kinds.push_back(circles);
+    if (const auto* round = std::get_if<specimen::AggregateParameters>(&inclusions)) kinds.push_back(round);
   return kinds;
 }
 
-std::string gradation_csv(const specimen::Specimen& s, const specimen::SpecimenParameters& asked) {
+template <int Dim>
+std::string gradation_csv(const std::vector<specimen::RoundStone<Dim>>& stones,
+                          const specimen::SpecimenParameters& asked) {
   std::string csv = "kind,d_m,asked_percent,placed_percent\n";
   const auto kinds = kinds_of(asked);
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
-    std::vector<specimen::Aggregate> placed;
-    std::ranges::copy_if(s.aggregates, std::back_inserter(placed),
-                         [&](const specimen::Aggregate& a) { return a.kind == kind; });
+    std::vector<specimen::RoundStone<Dim>> placed;
+    std::ranges::copy_if(stones, std::back_inserter(placed),
+                         [&](const auto& stone) { return stone.kind == kind; });
     if (!placed.empty()) csv += gradation_rows(kind, placed, *kinds[kind]);
   }
   return csv;
 }
 
-}  // namespace
+/// Writes the stones as they were placed, and their gradation.
+template <int Dim>
+void write_stones(const std::filesystem::path& folder, const std::vector<specimen::RoundStone<Dim>>& stones,
+                  const specimen::SpecimenParameters& asked) {
+  std::string csv = Dim == 2 ? "x_m,y_m,diameter_m,phase\n" : "x_m,y_m,z_m,diameter_m,phase\n";
+  for (const auto& stone : stones) {
+    for (const double x : stone.centre.c) csv += fmt::format("{:.9g},", x);
+    csv += fmt::format("{:.9g},{}\n", stone.diameter, stone.phase);
+  }
+  write_text_file(folder / "aggregates.csv", csv);
+  if (!stones.empty()) write_text_file(folder / "gradation.csv", gradation_csv(stones, asked));
+}
 
-void write_specimen_files(const std::filesystem::path& folder, const specimen::Specimen& s,
-                          const specimen::SpecimenParameters& asked) {
-  std::filesystem::create_directories(folder);
-  nlohmann::ordered_json json;
-  json["width_m"] = s.region.box().width();
-  json["height_m"] = s.region.box().height();
-  json["blocks"] = s.tessellation.cells.size();
-  json["aggregates"] = s.aggregates.size();
+/// Adds the numbers that specimens of the plane and of space have.
+template <class Specimen>
+void add_common(nlohmann::ordered_json& json, const Specimen& s, std::size_t blocks, std::size_t stones) {
+  json["blocks"] = blocks;
+  json["aggregates"] = stones;
   json["fraction_asked"] = s.fraction_asked;
   json["fraction_placed"] = s.fraction_placed;
   json["fraction_superposed"] = s.fraction_superposed;
   json["covered_fraction"] = s.covered_fraction;
   for (std::size_t i = 0; i < s.phases.size(); ++i) json["fraction"][s.phases[i]] = s.fraction[i];
   json["mean_block_size_m"] = s.metrics.mean_size;
+}
+
+void write_made(const std::filesystem::path& folder, const specimen::Specimen& s,
+                const specimen::SpecimenParameters& asked) {
+  nlohmann::ordered_json json;
+  json["width_m"] = s.region.box().width();
+  json["height_m"] = s.region.box().height();
+  add_common(json, s, s.tessellation.cells.size(), s.aggregates.size());
   json["mean_edge_m"] = s.metrics.mean_edge;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
   json["edges_removed"] = s.metrics.edges_removed;
@@ -78,12 +96,42 @@ void write_specimen_files(const std::filesystem::path& folder, const specimen::S
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
   json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
   write_text_file(folder / "specimen.json", json.dump(2) + "\n");
+  write_stones(folder, s.aggregates, asked);
+}
 
-  std::string csv = "x_m,y_m,diameter_m,phase\n";
-  for (const auto& a : s.aggregates)
-    csv += fmt::format("{:.9g},{:.9g},{:.9g},{}\n", a.centre[0], a.centre[1], a.diameter, a.phase);
-  write_text_file(folder / "aggregates.csv", csv);
-  if (!s.aggregates.empty()) write_text_file(folder / "gradation.csv", gradation_csv(s, asked));
+void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen& s,
+                const specimen::SpecimenParameters& asked) {
+  nlohmann::ordered_json json;
+  const Vec<3> size = s.body.high() - s.body.low();
+  json["width_m"] = size[0];
+  json["height_m"] = size[1];
+  json["depth_m"] = size[2];
+  json["volume_m3"] = s.body.volume();
+  add_common(json, s, s.complex.cells.size(), s.balls.size());
+  json["zones_per_block"] = s.metrics.zones_per_block;
+  json["most_corners_of_a_face"] = s.metrics.most_corners;
+  json["shortest_edge_m"] = s.metrics.shortest_edge;
+  json["lowest_zone_m"] = s.metrics.lowest_zone;
+  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
+  for (const solid::SizeClass& c : s.classes)
+    json["size_classes"].push_back({{"kind", c.kind},
+                                    {"from_m", c.from},
+                                    {"to_m", c.to},
+                                    {"asked", c.asked},
+                                    {"placed", c.placed},
+                                    {"superposed", c.superposed},
+                                    {"stones", c.stones},
+                                    {"without_a_block", c.without_a_block}});
+  write_text_file(folder / "specimen.json", json.dump(2) + "\n");
+  write_stones(folder, s.balls, asked);
+}
+
+}  // namespace
+
+void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
+                          const specimen::SpecimenParameters& asked) {
+  std::filesystem::create_directories(folder);
+  std::visit([&](const auto& s) { write_made(folder, s, asked); }, made);
 }
 
 }  // namespace pyroclast

@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
 
 namespace pyroclast {
 
 /// Writes `specimen.json`, `aggregates.csv` and `gradation.csv` of a specimen into a folder.
-void write_specimen_files(const std::filesystem::path& folder, const specimen::Specimen& specimen,
+void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
                           const specimen::SpecimenParameters& asked);
 
 }  // namespace pyroclast

@@ -263,8 +263,17 @@ OrderedJson json_of(const ReferenceDistances& of) {
           {"share_covered", json_of(d.covered)}};
 }
 
-OrderedJson json_of(const specimen::Specimen& specimen) {
-  OrderedJson json = {{"blocks", specimen.tessellation.cells.size()},
+std::size_t block_count(const specimen::Specimen& specimen) {
+  return specimen.tessellation.cells.size();
+}
+
+std::size_t block_count(const solid::SolidSpecimen& specimen) {
+  return specimen.complex.cells.size();
+}
+
+template <class Specimen>
+OrderedJson json_of_specimen(const Specimen& specimen) {
+  OrderedJson json = {{"blocks", block_count(specimen)},
                       {"mean_block_size_m", specimen.metrics.mean_size},
                       {"aggregate_fraction_asked", specimen.fraction_asked},
                       {"aggregate_fraction_placed", specimen.fraction_placed},
@@ -272,6 +281,10 @@ OrderedJson json_of(const specimen::Specimen& specimen) {
   for (std::size_t i = 0; i < specimen.phases.size(); ++i)
     json["fraction"][specimen.phases[i]] = specimen.fraction[i];
   return json;
+}
+
+OrderedJson json_of(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) { return json_of_specimen(s); }, specimen);
 }
 
 OrderedJson summary_json(const Summary& s, const Run& run) {

@@ -64,10 +64,11 @@ Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simul
   return sum;
 }
 
-/// Returns the wall time that the forecast takes, s. Moves and heats the simulation.
+/// Finds out what the forecast costs. Moves and heats the simulation.
 /// \param hottest  highest temperature to which the run may come, °C
-double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
-  double seconds = 0.0;
+Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
+  Rehearsal cost{forecast};
+  double& seconds = cost.seconds;
   if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.motion());
   const double row = seconds_of([&] { run.next(); });
   seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
@@ -76,11 +77,12 @@ double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simu
     TemperatureField& field = simulation.field();
     const HeatConditions& heat = simulation.heat();
     field.begin_exposure(temperature_range(heat, forecast.heating_duration));
-    const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
-                                                    hottest - field.mean(), forecast.heating_duration);
-    seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
+    cost.heat_evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
+                                                 hottest - field.mean(), forecast.heating_duration);
+    seconds +=
+        cost.heat_evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
   }
-  return seconds;
+  return cost;
 }
 
 }  // namespace
@@ -88,7 +90,7 @@ double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simu
 Rehearsal rehearse(Setup setup, Simulation& simulation) {
   const Forecast expected = forecast(setup.stages, simulation, setup.temperatures);
   Run run(simulation, std::move(setup.stages));
-  return {expected, seconds_of_run(expected, setup.temperatures.upper, simulation, run)};
+  return cost_of(expected, setup.temperatures.upper, simulation, run);
 }
 
 }  // namespace pyroclast

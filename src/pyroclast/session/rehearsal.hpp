@@ -8,7 +8,8 @@ namespace pyroclast {
 /// Probable cost of a run.
 struct Rehearsal {
   Forecast forecast;
-  double seconds = 0.0;  ///< wall time, s, from the speed of the first steps on this machine
+  double seconds = 0.0;           ///< wall time, s, from the speed of the first steps on this machine
+  double heat_evaluations = 0.0;  ///< evaluations of the heat solver: stages of its steps
 };
 
 /// Tries each action of a run for a moment. The simulation then no longer stands at the run's beginning.

@@ -16,8 +16,7 @@ namespace pyroclast {
 
 namespace {
 
-std::unique_ptr<Simulation> make_simulation_of(const Opened& opened,
-                                               std::optional<specimen::Specimen> specimen) {
+std::unique_ptr<Simulation> make_simulation_of(const Opened& opened, std::optional<MadeSpecimen> specimen) {
   if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team);
   opened.choices.before_making(opened);
   return make_simulation(opened.setup, opened.team);
@@ -56,7 +55,7 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
 }  // namespace
 
 Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
-                 std::optional<specimen::Specimen> specimen)
+                 std::optional<MadeSpecimen> specimen)
     : lock_(std::move(lock)),
       folder_(std::move(folder)),
       opened_(std::move(opened)),
@@ -240,6 +239,7 @@ void Session::drive(const std::string& drives) {
   Deck deck = Deck::parse("duration = \"1 s\"\n" + drives, "drive");
   StageTables tables;
   tables.folder = opened_.folder;
+  tables.dimension = simulation_->model().dimension();
   const auto stage = drive_kind().read(deck.root(), tables);
   deck.finish();
   const auto& drive = dynamic_cast<const Drive&>(*stage);

@@ -116,7 +116,7 @@ class Session {
 
  private:
   Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
-          std::optional<specimen::Specimen> specimen = std::nullopt);
+          std::optional<MadeSpecimen> specimen = std::nullopt);
 
   static std::unique_ptr<FolderLock> lock(const RunOutput& output);
   void make_folder(const RunOutput& output, std::optional<Parent> parent);

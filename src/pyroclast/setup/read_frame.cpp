@@ -13,8 +13,7 @@ namespace pyroclast {
 
 namespace {
 
-constexpr int kPlace = 3;    // components of a point in VTK files
-constexpr int kCorners = 3;  // corners of a zone
+constexpr int kPlace = 3;  // components of a point in VTK files
 
 /// Frame that is open for reading. Links from it lead into the mesh beside it.
 class Frame {
@@ -63,24 +62,30 @@ class Frame {
 
 }  // namespace
 
-StressFree read_frame_temperatures(const std::filesystem::path& path) {
+StressFree read_frame_temperatures(const std::filesystem::path& path, int dimension) {
   const Frame frame(path);
   const auto temperature = frame.numbers(kFrameTemperature);
   const auto points = frame.numbers("Points");
   const auto corners = frame.integers("Connectivity");
   const auto bearing = frame.integers("CellData/bearing");
-  if (points.size() != kPlace * temperature.size() || corners.size() != kCorners * bearing.size())
+  const std::size_t of_a_zone = bearing.empty() ? 0 : corners.size() / bearing.size();
+  if (of_a_zone == 3 + 4 - (dimension + 1U) && corners.size() == of_a_zone * bearing.size())
+    throw Error(fmt::format("{}: is of a body in {}, but this one is in {}", path.string(),
+                            dimension == 2 ? "space" : "the plane", dimension == 2 ? "the plane" : "space"));
+  if (points.size() != kPlace * temperature.size() || of_a_zone != dimension + 1U ||
+      corners.size() != of_a_zone * bearing.size())
     throw Error(fmt::format("{}: does not belong to the mesh.h5 beside it", path.string()));
   std::vector<bool> is_seen(temperature.size());
   StressFree field;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (bearing[i / kCorners] != 0) continue;
+    if (bearing[i / of_a_zone] != 0) continue;
     const auto point = static_cast<std::size_t>(corners[i]);
     if (point >= temperature.size())
       throw Error(fmt::format("{}: does not belong to the mesh.h5 beside it", path.string()));
     if (is_seen[point]) continue;
     is_seen[point] = true;
-    field.places.push_back({{points[kPlace * point], points[kPlace * point + 1]}});
+    const double* const at = &points[kPlace * point];
+    field.places.push_back({{at[0], at[1], at[2]}});
     field.temperatures.push_back(temperature[point]);
   }
   return field;

@@ -1,6 +1,8 @@
 #include "pyroclast/setup/read_heat.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,33 +29,38 @@ constexpr const char* kAir = "air_conductivity";
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
 
-std::optional<Vec<3>> read_point(const Section& s, std::string_view key, Meaning meaning) {
-  const auto x = s.quantities(key, unit::length, Range::any(), meaning);
-  if (x.size() == 2) return Vec<3>{{x[0], x[1]}};
-  if (!x.empty()) s.error(key, fmt::format("has {} coordinates; x and y are needed", x.size()));
-  return std::nullopt;
+/// Reads a corner of a box. In a solid a pair stands for all z.
+/// \param end  z of the box where it has no end
+Vec<3> read_corner(const Section& s, std::string_view key, const DeckSpace& space, double end,
+                   Meaning meaning) {
+  const StatedPlace at = s.place(key, unit::length, space.of_extrusion(), meaning).value_or(StatedPlace{});
+  Vec<3> corner = vec_of(at);
+  if (space.is_solid() && !at.z) corner[2] = end;
+  return corner;
 }
 
-HeatedFaces read_faces(const Section& s) {
+HeatedFaces read_faces(const Section& s, const DeckSpace& space) {
   s.know({"box_low", "box_high"});
   HeatedFaces faces;
   if (!s.has("faces")) s.error("faces", "is needed: where the boundary acts, such as faces = \"left\"");
-  faces.part =
-      s.word_or_text("faces",
-                     {{HeatedFaces::kOutline, 0, "all sides, those of holes and notches too"},
-                      {HeatedFaces::kBox, 1, "faces of the outline whose centres lie in a box"}},
-                     "the name of a side of the specimen, such as left, or of the patch under a bearing; "
-                     "also under a platen",
-                     "where the boundary acts");
+  faces.part = s.word_or_text(
+      "faces",
+      {{HeatedFaces::kOutline, 0, "all sides, those of holes and notches too"},
+       {HeatedFaces::kBox, 1, "faces of the outline whose centres lie in a box"}},
+      "the name of a side of the specimen, such as left, of the patch under a bearing, also under "
+      "a platen, or of a set",
+      "where the boundary acts");
   if (faces.part != HeatedFaces::kBox) return faces;
-  const auto low = read_point(s, "box_low",
-                              "lower left corner: x and y from the lower left corner of the specimen"),
-             high = read_point(s, "box_high", "upper right corner, likewise");
-  if (!low || !high) return faces;
-  if ((*low)[0] > (*high)[0] || (*low)[1] > (*high)[1])
-    s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
-  faces.box_low = *low;
-  faces.box_high = *high;
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  faces.box_low = read_corner(s, "box_low", space, -kEndless,
+                              "lower left corner: x and y from the lower left corner of a rectangle, the "
+                              "middle of a disc; in a solid z too, from its front, or all z");
+  faces.box_high = read_corner(s, "box_high", space, kEndless, "upper right corner, likewise");
+  if (s.ok() && std::isinf(faces.box_low[2]) != std::isinf(faces.box_high[2]))
+    s.error("box_high", "must be a pair, which stands for all z, like box_low, or both three numbers");
+  for (int i = 0; i < space.dimension() && s.ok(); ++i)
+    if (faces.box_low[i] > faces.box_high[i])
+      s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
   return faces;
 }
 
@@ -110,11 +117,12 @@ bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
   return a.part == b.part || a.part == HeatedFaces::kOutline || b.part == HeatedFaces::kOutline;
 }
 
-std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveReader& curves) {
+std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveReader& curves,
+                                                   const DeckSpace& space) {
   std::vector<HeatBoundaryCondition> boundaries;
   for (const Section& s :
        heat.sections("boundaries", "what acts on faces of the specimen; see [heat.md](heat.md)")) {
-    HeatBoundaryCondition boundary{read_faces(s), read_condition(s, curves),
+    HeatBoundaryCondition boundary{read_faces(s, space), read_condition(s, curves),
                                    fmt::format("{}: {}", s.where("faces"), s.path())};
     if (!s.ok()) continue;  // a value that stands in for an error contradicts nothing
     for (const auto& other : boundaries)
@@ -164,7 +172,8 @@ void require_heat_properties(const Section& root) {
   }
 }
 
-void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions& heat) {
+void read_conduction(const Section& s, CurveReader& time_curves, const DeckSpace& space,
+                     HeatConditions& heat) {
   heat.scheme = s.choice<HeatScheme>(
       "scheme",
       {{"rkl2", HeatScheme::super_time_stepping, "Runge-Kutta-Legendre super-time-stepping, second order"},
@@ -176,7 +185,7 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions&
                                    kLargestChange, "of any temperature in one step of the solver");
   heat.largest_step =
       s.quantity("largest_step", unit::time, Range::positive(), kLargestStep, "of the solver");
-  heat.boundaries = read_boundaries(s, time_curves);
+  heat.boundaries = read_boundaries(s, time_curves, space);
   heat.temperature_range = read_range(s, heat);
   // This range stands in, so that the deck's reader can go on and find every error.
   if (!s.ok()) heat.temperature_range = Interval{heat.initial, heat.initial + 1.0};
@@ -238,7 +247,8 @@ std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curve
   return cracks;
 }
 
-std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves) {
+std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves,
+                                        const DeckSpace& space) {
   const auto s =
       root.optional_section("heat", "how the specimen is heated; without it the specimen stays at 20 °C");
   if (!s) return std::nullopt;
@@ -253,7 +263,7 @@ std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_c
   heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature,
                              "temperature of the specimen at the start of heating");
   if (heat.uniform) return heat;
-  read_conduction(*s, time_curves, heat);
+  read_conduction(*s, time_curves, space, heat);
   require_heat_properties(root);
   return heat;
 }

@@ -4,13 +4,15 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/setup/read_space.hpp"
 #include "pyroclast/simulation/heat_conditions.hpp"
 
 namespace pyroclast {
 
 /// Reads [heat] (docs/heat.md); empty if the deck has none. Errors are recorded in the deck.
 /// \param time_curves  reader of curves of the time from the start of heating
-std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves);
+std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves,
+                                        const DeckSpace& space);
 
 /// Reads [heat.cracks]; empty if the deck has none. Errors are recorded in the deck.
 /// \param curves  reader of curves of the temperature

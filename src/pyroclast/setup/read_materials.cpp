@@ -626,8 +626,10 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
                                       {"fixed", false, "no, it holds for any block size"}},
                                      "whether t_b depends on the block size");
   if (scales)
-    c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive(),
-                                      "block size √(area / count) at which t_b and stated stiffnesses hold");
+    c.fracture_zone_size =
+        s.quantity("t_b_block_size", unit::length, Range::positive(),
+                   "block size √(area / count), of a solid ∛(volume / count), at which t_b and "
+                   "stated stiffnesses hold");
   if (has_platens)
     c.bearings.push_back({.name = "platen",
                           .friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),

@@ -17,12 +17,12 @@ constexpr double kOnOutline = 1e-9;
 
 }  // namespace
 
-std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region) {
+std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen) {
   std::vector<ProbePosition> probes;
-  // A region that stands in for an error refuses no probe.
+  // A specimen that stands in for an error refuses no probe.
   const bool known = root.section("specimen").ok();
   const auto within = [&](int axis) {
-    return known ? Range::between(region.box().low[axis], region.box().high[axis]) : Range::any();
+    return known ? Range::between(specimen.low()[axis], specimen.high()[axis]) : Range::any();
   };
   for (const Section& s :
        root.optional_sections("probes", "places whose temperature is recorded, any number")) {
@@ -33,10 +33,21 @@ std::vector<ProbePosition> read_probes(const Section& root, const specimen::Regi
     probe.position = {{s.quantity("x", unit::length, within(0),
                                   "from the lower left corner of a rectangle, the middle of a disc"),
                        s.quantity("y", unit::length, within(1), "likewise")}};
-    const specimen::Point at{{probe.position[0], probe.position[1]}};
-    if (known && s.ok() && region.distance(at) > kOnOutline)
-      s.error("x", fmt::format("with y is a point outside of the specimen, {:.4g} mm from it",
-                               1e3 * region.distance(at)));
+    if (specimen.dimension() == 2) {
+      if (s.has("z")) s.error("z", "a body in the plane has no z; with [specimen] depth it is a solid");
+    } else if (!s.has("z")) {
+      s.error("x", "with y is a point of a solid, whose z is needed too" +
+                       (known ? fmt::format("; in the middle it is z = \"{:g} m\"",
+                                            0.5 * (specimen.low()[2] + specimen.high()[2]))
+                              : ""));
+    } else {
+      probe.position[2] =
+          s.quantity("z", unit::length, within(2), "of a solid: from its front, of a cylinder from its axis");
+    }
+    if (known && s.ok() && specimen.distance(probe.position) > kOnOutline)
+      s.error("x", fmt::format("with y {}is a point outside of the specimen, {:.4g} mm from it",
+                               specimen.dimension() == 2 ? "" : "and z ",
+                               1e3 * specimen.distance(probe.position)));
     probes.push_back(std::move(probe));
   }
   return probes;

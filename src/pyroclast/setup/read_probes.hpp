@@ -4,12 +4,12 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/simulation/probe.hpp"
-#include "pyroclast/specimen/region.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
 
 namespace pyroclast {
 
 /// Reads [[probes]], which may be absent. Errors are recorded in the deck.
-/// \param region  the specimen; no probe may lie outside
-std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region);
+/// \param specimen  specimen outside of which no probe may lie
+std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen);
 
 }  // namespace pyroclast

@@ -12,58 +12,64 @@ namespace pyroclast {
 
 namespace {
 
-/// Returns a place of a deck as a vector, m.
-Vec<3> vec_of(const std::pair<double, double>& place) {
-  return {{place.first, place.second}};
-}
-
-/// Reads a list that must hold two places.
-std::array<Vec<3>, 2> read_two(const Section& s, const char* key, Meaning meaning) {
-  const auto places = s.places(key, unit::length, 2, meaning);
+/// Reads the two places by which a set is chosen. In a solid two pairs stand for all z between or along them.
+std::array<Vec<3>, 2> read_two(const Section& s, const char* key, const DeckSpace& space, SetParameters& set,
+                               Meaning meaning) {
+  const auto places = s.places(key, unit::length, 2, space.of_extrusion(), meaning);
   if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
   if (places.size() < 2) return {};
+  if (places[0].z.has_value() != places[1].z.has_value())
+    s.error(key, "must be two pairs, which stand for all z, or two places [x, y, z]");
+  set.is_along_z = space.is_solid() && !places[0].z;
   return {vec_of(places[0]), vec_of(places[1])};
 }
 
-Place read_place_of_set(const Section& s) {
+void read_place_of_set(const Section& s, const DeckSpace& space, SetParameters& set) {
   constexpr const char* kForms[] = {"box", "centre", "line", "nearest"};
   int stated = 0;
   for (const char* form : kForms) stated += s.has(form) ? 1 : 0;
   if (stated > 1) s.error("one of box, centre, line and nearest; not several");
   s.know({"box", "centre", "radius", "line", "nearest"});
   if (s.has("box")) {
-    const auto [low, high] = read_two(s, "box", "lower left and upper right corner, which belong to it");
-    if (s.ok() && (low[0] > high[0] || low[1] > high[1]))
+    const auto [low, high] = read_two(
+        s, "box", space, set,
+        "lower left and upper right corner, which belong to it; in a solid the lower one is in front, "
+        "and pairs stand for all z");
+    if (s.ok() && (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]))
       s.error("box", "is inside out: the lower left corner comes first");
-    return InBox{low, high};
+    set.place = InBox{low, high};
+  } else if (s.has("centre")) {
+    const auto centre = s.place("centre", unit::length, space.of_point(), "of a disc, in a solid of a ball");
+    set.place = InBall{vec_of(centre.value_or(StatedPlace{})),
+                       s.quantity("radius", unit::length, Range::positive(), "of a disc, or ball")};
+  } else if (s.has("line")) {
+    const auto [from, to] =
+        read_two(s, "line", space, set,
+                 "the ends of a straight line, which belong to it; in a solid pairs stand for the plane "
+                 "through it along z");
+    set.place = OnLine{from, to};
+  } else if (s.has("nearest")) {
+    const auto nearest = s.place("nearest", unit::length, space.of_point(), "what is nearest to this place");
+    set.place = NearestTo{vec_of(nearest.value_or(StatedPlace{}))};
   }
-  if (s.has("centre")) {
-    const auto centre = s.place("centre", unit::length, "of a disc");
-    return InBall{vec_of(centre.value_or(std::pair{0.0, 0.0})),
-                  s.quantity("radius", unit::length, Range::positive(), "of a disc")};
-  }
-  if (s.has("line")) {
-    const auto [from, to] = read_two(s, "line", "the ends of a straight line, which belong to it");
-    return OnLine{from, to};
-  }
-  if (s.has("nearest"))
-    return NearestTo{vec_of(
-        s.place("nearest", unit::length, "what is nearest to this place").value_or(std::pair{0.0, 0.0}))};
-  return Everywhere{};
 }
 
-Vec<3> read_direction(const Section& s) {
-  const std::string stated = s.word_or_text("direction", {{"x", 0, "to the right"}, {"y", 1, "upwards"}},
-                                            "x or y behind a minus", "along which it is measured");
+Vec<3> read_direction(const Section& s, const DeckSpace& space) {
+  const std::string stated = s.word_or_text(
+      "direction", {{"x", 0, "to the right"}, {"y", 1, "upwards"}, {"z", 2, "to the back of a solid"}},
+      "x, y or z behind a minus", "along which it is measured");
   const bool is_negative = stated.starts_with('-');
   const std::string axis = stated.substr(is_negative ? 1 : 0);
-  if (axis != "x" && axis != "y")
-    s.error("direction", fmt::format("must be \"x\", \"y\", \"-x\" or \"-y\"; got \"{}\"", stated));
-  const double sign = is_negative ? -1.0 : 1.0;
-  return axis == "y" ? Vec<3>{{0.0, sign}} : Vec<3>{{sign, 0.0}};
+  Vec<3> direction{};
+  if (axis == "x" || axis == "y" || (axis == "z" && space.is_solid()))
+    direction[axis[0] - 'x'] = is_negative ? -1.0 : 1.0;
+  else
+    s.error("direction", fmt::format("must be \"x\", \"y\", \"-x\" or \"-y\"{}; got \"{}\"",
+                                     space.is_solid() ? ", \"z\", \"-z\"" : "", stated));
+  return direction;
 }
 
-RecordParameters read_record(const Section& s) {
+RecordParameters read_record(const Section& s, const DeckSpace& space) {
   RecordParameters r;
   r.name = read_name(s, "letters, digits and _; the column in history.csv is this and the unit");
   r.place = fmt::format("{}: {}", s.where("name"), s.path());
@@ -76,19 +82,25 @@ RecordParameters read_record(const Section& s) {
        {"stress", RecordKind::stress, "mean over the zones of a set, tension positive"},
        {"temperature", RecordKind::temperature, "mean of a set"},
        {"crack_length", RecordKind::crack_length, "of the damaged contact points of a set of contacts"},
-       {"crack_opening", RecordKind::crack_opening, "mean over a set of contacts, by length"}},
+       {"crack_area", RecordKind::crack_area, "the same of a solid"},
+       {"crack_opening", RecordKind::crack_opening,
+        "mean over a set of contacts, by length, of a solid by area"}},
       "what is recorded");
+  if (r.kind == RecordKind::crack_length && space.is_solid())
+    s.error("kind", "cracks of a solid have an area: kind = \"crack_area\"");
+  if (r.kind == RecordKind::crack_area && !space.is_solid())
+    s.error("kind", "cracks in the plane have a length: kind = \"crack_length\"");
   r.set = s.text("set", "of which it is; see [bodies.md](bodies.md#sets)");
   s.know({"other", "direction", "over"});
   if (r.kind == RecordKind::displacement || r.kind == RecordKind::opening ||
       r.kind == RecordKind::temperature)
-    r.over =
-        s.choice<MeanOver, MeanOver>("over",
-                                     {{"size", MeanOver::size,
-                                       "the zones that lie wholly in the set, by area; where there is none "
-                                       "its faces, by length; else gridpoints"},
-                                      {"gridpoints", MeanOver::gridpoints, "its gridpoints, each alike"}},
-                                     MeanOver::size, "what the mean is taken over");
+    r.over = s.choice<MeanOver, MeanOver>(
+        "over",
+        {{"size", MeanOver::size,
+          "the zones that lie wholly in the set, by area; where there is none "
+          "its faces, by length; of a solid by volume and by area; else gridpoints"},
+         {"gridpoints", MeanOver::gridpoints, "its gridpoints, each alike"}},
+        MeanOver::size, "what the mean is taken over");
   if (r.kind == RecordKind::opening)
     r.other = s.text("other", "the set that moves away from `set`, or towards it");
   switch (r.kind) {
@@ -96,10 +108,11 @@ RecordParameters read_record(const Section& s) {
     case RecordKind::opening:
     case RecordKind::force:
     case RecordKind::stress:
-      r.direction = read_direction(s);
+      r.direction = read_direction(s, space);
       break;
     case RecordKind::temperature:
     case RecordKind::crack_length:
+    case RecordKind::crack_area:
     case RecordKind::crack_opening:
       break;
   }
@@ -108,7 +121,7 @@ RecordParameters read_record(const Section& s) {
 
 }  // namespace
 
-std::vector<SetParameters> read_sets(const Section& root) {
+std::vector<SetParameters> read_sets(const Section& root, const DeckSpace& space) {
   std::vector<SetParameters> sets;
   for (const Section& s : root.optional_sections(
            "sets",
@@ -125,7 +138,7 @@ std::vector<SetParameters> read_sets(const Section& root) {
          {"contacts", SetOf::contacts, "to watch cracks"}},
         SetOf::gridpoints, "what it is a set of");
     set.within = s.text("within", "", "a set that it is a part of; without one, all of the body");
-    set.place = read_place_of_set(s);
+    read_place_of_set(s, space, set);
     if (s.ok() && std::ranges::find(sets, set.name, &SetParameters::name) != sets.end())
       s.error("name", fmt::format("\"{}\" is the name of another set", set.name));
     sets.push_back(std::move(set));
@@ -133,12 +146,12 @@ std::vector<SetParameters> read_sets(const Section& root) {
   return sets;
 }
 
-std::vector<RecordParameters> read_records(const Section& root) {
+std::vector<RecordParameters> read_records(const Section& root, const DeckSpace& space) {
   std::vector<RecordParameters> records;
   for (const Section& s : root.optional_sections(
            "record",
            "quantities that are recorded: columns of history.csv and curves of the figures, any number")) {
-    RecordParameters record = read_record(s);
+    RecordParameters record = read_record(s, space);
     if (s.ok() && std::ranges::find(records, record.name, &RecordParameters::name) != records.end())
       s.error("name", fmt::format("\"{}\" is the name of another record", record.name));
     records.push_back(std::move(record));

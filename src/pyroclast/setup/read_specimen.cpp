@@ -123,7 +123,7 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
   return curve;
 }
 
-void read_measured_grading(const Section& s, const std::filesystem::path& folder,
+void read_measured_grading(const Section& s, const std::filesystem::path& folder, const DeckSpace& space,
                            specimen::AggregateParameters& a) {
   enum class By { area, volume };
   const auto curve = read_passing(s, folder);
@@ -132,8 +132,10 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
       {{"area", By::area, "shares are of the area of the circles"},
        {"volume", By::volume,
         "shares are of the volume of the stones, or their mass: circles are what a plane cuts from spheres, "
-        "see [method.md](method.md#specimen)"}},
+        "see [method.md](method.md#specimen); in a solid they are those of the balls"}},
       "what the shares of `passing` are of");
+  if (space.is_solid() && s.ok() && by == By::area)
+    s.error("passing_by", "shares of areas are those of a section; a solid takes passing_by = \"volume\"");
   const bool has_d_min = s.has("d_min");
   const double d_min =
       has_d_min ? s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter")
@@ -145,7 +147,8 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
     return;
   }
   try {
-    const auto cut = specimen::above(by == By::volume ? specimen::of_section(*curve) : *curve, least);
+    const auto cut =
+        specimen::above(by == By::volume && !space.is_solid() ? specimen::of_section(*curve) : *curve, least);
     a.sieves = cut.sizes;
     a.passing = cut.shares;
     a.d_min = cut.sizes.front();
@@ -235,21 +238,24 @@ void read_stones(const Section& s, const std::filesystem::path& folder, specimen
   set_gradation_of_stones(a);
 }
 
-specimen::AggregateParameters read_aggregates(const Section& s, const std::filesystem::path& folder) {
+specimen::AggregateParameters read_aggregates(const Section& s, const std::filesystem::path& folder,
+                                              const DeckSpace& space) {
   specimen::AggregateParameters a;
   a.phase = s.text("phase", "aggregate", kPhase);
   s.know({"stones", "fraction", "minimum_gap", "attempts", "passing", "passing_by", "d_min", "d_max",
           "fuller_exponent", "sieves"});
   if (s.has("stones")) {
+    if (space.is_solid())
+      s.error("stones", "are circles of a plane; a solid cannot take stones from a list yet");
     read_stones(s, folder, a);
     return a;
   }
   a.fraction =
       s.number("fraction", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.5),
-               "area of coarse aggregate over area of the specimen");
+               "area of coarse aggregate over area of the specimen, in a solid volume over volume");
   a.place = fmt::format("{}: {}", s.where("fraction"), s.path());
   if (s.has("passing"))
-    read_measured_grading(s, folder, a);
+    read_measured_grading(s, folder, space, a);
   else
     read_fuller_grading(s, a);
   a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
@@ -259,11 +265,11 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
 }
 
 /// Sets the fraction to the share of the specimen that known stones take.
-void set_fraction(const specimen::Region& region, specimen::AggregateParameters& a) {
+void set_fraction(double area_of_specimen, specimen::AggregateParameters& a) {
   if (a.stones.empty()) return;
   double area = 0.0;
   for (const specimen::Stone& stone : a.stones) area += specimen::circle_area(stone.diameter);
-  a.fraction = area / region.area();
+  a.fraction = area / area_of_specimen;
 }
 
 specimen::FibreParameters read_fibres(const Section& s) {
@@ -280,9 +286,11 @@ specimen::FibreParameters read_fibres(const Section& s) {
 
 /// Records an error where the largest aggregate has no place, and warns where the specimen is only a few of
 /// them wide.
-void check_size(const Section& s, const specimen::SpecimenParameters& p) {
-  const specimen::Box& box = p.region.box();
-  const double narrowest = std::min(box.width(), box.height()), largest = p.aggregates.d_max;
+void check_size(const Section& s, const AskedSpecimen& p) {
+  const Vec<3> size = p.high() - p.low();
+  double narrowest = size[0];
+  for (int i = 1; i < p.dimension(); ++i) narrowest = std::min(narrowest, size[i]);
+  const double largest = p.aggregates.d_max;
   if (p.aggregates.fraction == 0.0 || !p.aggregates.stones.empty()) return;
   if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
     s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
@@ -291,8 +299,6 @@ void check_size(const Section& s, const specimen::SpecimenParameters& p) {
     s.warn("d_max", fmt::format("the specimen is only {:.1f} times as wide, but usually at least {} times",
                                 narrowest / largest, kFewestAggregatesAcross));
 }
-
-enum class Shape { rectangle, disc, ring, polygon, tessellation, cells };
 
 /// Statements of a deck on the outline, before the size of the blocks is known.
 struct Outline {
@@ -356,20 +362,15 @@ double read_unit(const Section& s) {
   }
 }
 
-Outline read_outline(const Section& s, const std::filesystem::path& folder) {
+/// Records an error for each hole and notch of a solid.
+void refuse_cuts(const Section& s) {
+  for (const char* const cuts : {"holes", "notches"})
+    if (s.has(cuts)) s.error(cuts, "cannot be made in a solid yet: its section must be convex and whole");
+}
+
+Outline read_outline(const Section& s, const std::filesystem::path& folder, const DeckSpace& space) {
   Outline o;
-  o.shape = s.choice<Shape, Shape>(
-      "shape",
-      {{"rectangle", Shape::rectangle,
-        "with its lower left corner at [0, 0]; sides bottom, right, top, left"},
-       {"disc", Shape::disc, "around [0, 0]; its one side is called rim"},
-       {"ring", Shape::ring, "the same with a hole in the middle, called bore"},
-       {"polygon", Shape::polygon, "of any corners; its sides are called side_1 from the first corner on"},
-       {"tessellation", Shape::tessellation,
-        "that of the blocks in `blocks.file`; its sides are called side_1 from its lowest corner on, holes "
-        "hole_1"},
-       {"cells", Shape::cells, "of blocks that are made elsewhere, as the specimen is in all"}},
-      Shape::rectangle, "outline of the specimen");
+  o.shape = space.shape;
   if (o.shape == Shape::rectangle) {
     o.width = s.quantity("width", unit::length, kSize, "of the specimen");
     o.height = s.quantity("height", unit::length, kSize, "of the specimen");
@@ -386,6 +387,9 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
   } else if (o.shape == Shape::cells) {
     o.cells = read_cells(s, folder);
     s.know({"seed", "holes", "notches"});
+  } else if (o.shape == Shape::cylinder) {
+    o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");
+    o.height = s.quantity("height", unit::length, kSize, "of the specimen");
   } else {
     o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");
     if (o.shape == Shape::ring) {
@@ -395,6 +399,10 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
   }
   s.know({"width", "height", "corners", "diameter", "inner_diameter", "file", "join", "unit"});
   if (o.shape == Shape::cells || o.shape == Shape::tessellation) return o;
+  if (space.is_solid()) {
+    refuse_cuts(s);
+    return o;
+  }
   int number = 0;
   for (const Section& h : s.optional_sections("holes", "holes in the specimen, any number")) {
     Outline::Hole hole;
@@ -537,7 +545,46 @@ struct ReadBlocks {
   double size_in(double area) const {
     return size > 0.0 ? size : std::sqrt(area / std::max(1, parameters.count));
   }
+  /// Returns the size of a block in a solid of this volume, m.
+  double size_in_solid(double volume) const {
+    return size > 0.0 ? size : std::cbrt(volume / std::max(1, parameters.count));
+  }
 };
+
+/// Least number of sides of the polygon by which a solid has a circle.
+constexpr double kFewestSides = 24.0;
+
+/// Returns a polygon of a circle's area around [0, 0], with sides about a block long.
+specimen::Region round_section(double diameter, double length, const ReadBlocks& read) {
+  const double circle = 0.25 * std::numbers::pi * diameter * diameter;
+  const double side =
+      std::min(read.size_in_solid(circle * length), std::numbers::pi * diameter / kFewestSides);
+  return specimen::Region::polygon(specimen::circle_corners({}, diameter, side), {"rim"}, true);
+}
+
+std::vector<std::string> side_names(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::format("side_{}", i + 1));
+  return names;
+}
+
+/// Returns the solid of a deck; a cube stands in for an error.
+solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& space, const ReadBlocks& read) {
+  using enum solid::Prism::Axis;
+  const solid::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
+  if (!s.ok()) return stand_in;
+  try {
+    if (o.shape == Shape::cylinder) return {round_section(o.diameter, o.height, read), y, o.height};
+    const double depth = *space.depth;
+    if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
+    if (o.shape == Shape::polygon)
+      return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
+    return {round_section(o.diameter, depth, read), z, depth};
+  } catch (const Error& error) {
+    s.error(error.what());
+    return stand_in;
+  }
+}
 
 specimen::Region make_region(const Section& s, const Outline& o, const ReadBlocks& read,
                              std::span<const ReadBearing> bearings) {
@@ -563,9 +610,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
     if (o.shape == Shape::rectangle) {
       region = specimen::Region::rectangle(o.width, o.height);
     } else if (o.shape == Shape::polygon) {
-      std::vector<std::string> names;
-      for (std::size_t i = 0; i < o.corners.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
-      region = specimen::Region::polygon(o.corners, names);
+      region = specimen::Region::polygon(o.corners, side_names(o.corners.size()));
     } else {
       region = specimen::Region::polygon(round({{}, o.diameter}, size), {"rim"}, true);
       if (o.shape == Shape::ring)
@@ -595,27 +640,45 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
 }
 
 /// Records an error for each bearing on a side that the specimen does not have.
-void check_bearings(const specimen::Region& region, std::span<const ReadBearing> bearings) {
-  std::vector<std::string> names;
-  for (const specimen::Side& side : region.sides()) names.push_back(side.name);
+void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings) {
+  std::vector<std::string> names = specimen.sides();
+  if (specimen.prism)
+    for (const specimen::Side& side : specimen.prism->section().sides())
+      if (side.is_round) std::erase(names, side.name);  // no bearing of a solid lies on a bent side yet
+  for (const ReadBearing& b : bearings)
+    if (b.at && specimen.prism && b.section.ok())
+      b.section.error("at", fmt::format("a bearing on a part of a side cannot be made in a solid yet; side = "
+                                        "... lays one on all of {}",
+                                        fmt::join(names, ", ")));
+  for (std::size_t i = 0; i < bearings.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!bearings[i].at && !bearings[j].at && bearings[i].section.ok() &&
+          bearings[i].bearing.side == bearings[j].bearing.side)
+        bearings[i].section.error("side", fmt::format("the bearing \"{}\" lies on \"{}\" already",
+                                                      bearings[j].bearing.name, bearings[j].bearing.side));
   for (const ReadBearing& b : bearings)
     if (!b.at && b.section.ok() && std::ranges::find(names, b.bearing.side) == names.end())
-      b.section.error("side", fmt::format("must be a side of the specimen, one of {}; got \"{}\"",
-                                          fmt::join(names, ", "), b.bearing.side));
+      b.section.error("side",
+                      fmt::format("must be a{} side of the specimen, one of {}; got \"{}\"",
+                                  specimen.prism ? " plane" : "", fmt::join(names, ", "), b.bearing.side));
 }
 
-std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std::filesystem::path& folder) {
+std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std::filesystem::path& folder,
+                                                  const DeckSpace& space) {
   std::vector<specimen::Inclusions> list;
   for (const Section& s : root.optional_sections(
            "inclusions", "what stands in the matrix beside [aggregates]; placed after these, in turn")) {
     enum class Kind { circle, fibre };
     const auto kind = s.choice<Kind>(
         "shape",
-        {{"circle", Kind::circle, "circles with a gradation of their own: another aggregate, or pores"},
+        {{"circle", Kind::circle,
+          "circles, in a solid balls, with a gradation of their own: another aggregate, or pores"},
          {"fibre", Kind::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
         "shape of the inclusions");
+    if (kind == Kind::fibre && space.is_solid())
+      s.error("shape", "fibres cannot be placed in a solid yet; \"circle\" makes balls");
     if (kind == Kind::circle)
-      list.emplace_back(read_aggregates(s, folder));
+      list.emplace_back(read_aggregates(s, folder, space));
     else
       list.emplace_back(read_fibres(s));
   }
@@ -673,13 +736,25 @@ void read_groups(const Section& s, const specimen::NeperTess& tess, const std::v
   }
 }
 
+/// Reads the shortest edge. Cells of a solid keep their short edges.
+double read_shortest_edge(const Section& s, const DeckSpace& space) {
+  constexpr Meaning kMeaning =
+      "shorter edges are removed where the blocks allow it; as a fraction of the mean edge. Blocks of a "
+      "solid keep theirs, so that it may be left out there";
+  const Range range = Range::between(0.0, 0.5);
+  if (!space.is_solid()) return s.number("shortest_edge", range, kMeaning);
+  if (s.number("shortest_edge", range, 0.0, kMeaning) > 0.0)
+    s.warn("shortest_edge", "has no effect on a solid, whose blocks keep their short edges");
+  return 0.0;
+}
+
 ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, const Outline& outline,
-                       bool is_covered) {
+                       const DeckSpace& space, bool is_covered) {
   ReadBlocks read;
   specimen::BlockParameters& b = read.parameters;
-  b.shortest_edge =
-      s.number("shortest_edge", Range::between(0.0, 0.5),
-               "shorter edges are removed where the blocks allow it; as a fraction of the mean edge");
+  b.shortest_edge = read_shortest_edge(s, space);
+  if (s.has("file") && space.is_solid())
+    s.error("file", "holds cells of a plane; a solid makes its own blocks: count or size says how many");
   if (s.has("file")) {
     const std::filesystem::path file =
         folder /
@@ -704,14 +779,17 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
   if (s.has("size")) {
     if (s.has("count"))
       s.error("count", "has no meaning beside size, from which the number of blocks follows");
-    read.size = s.quantity("size", unit::length, Range::positive(),
-                           "mean size of a block, the root of its area, instead of `count`");
+    read.size = s.quantity(
+        "size", unit::length, Range::positive(),
+        "mean size of a block, the root of its area, in a solid of its volume, instead of `count`");
   } else {
     b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks"));
   }
   b.relaxation =
       static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,
                                  "iterations of Lloyd's relaxation; 0 leaves the seeds at random"));
+  if (b.relaxation > 0 && space.is_solid())
+    s.error("relaxation", "blocks of a solid cannot be relaxed yet: relaxation = 0");
   b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
                              "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
                              "spacing; 0 makes a Voronoi tessellation");
@@ -719,8 +797,8 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
 }
 
 /// Returns the number of blocks of a size. Records an error where it is out of range.
-int count_of(const Section& blocks, const specimen::Region& region, double size) {
-  const double count = std::round(region.area() / (size * size));
+int count_of(const Section& blocks, const AskedSpecimen& specimen, double size) {
+  const double count = std::round(specimen.extent() / std::pow(size, specimen.dimension()));
   if (kBlockCount.contains(count)) return static_cast<int>(count);
   blocks.error(
       "size", fmt::format("gives {:.6g} blocks, but their number must be {}", count, kBlockCount.describe()));
@@ -748,7 +826,7 @@ void check_matrix(const Section& s, std::string_view key, const std::vector<std:
 }
 
 /// Warns of an outline that is not as large as specimens usually are, unless a key has warned already.
-void check_outline(const Section& s, const Outline& outline, const specimen::Region& region) {
+void check_outline(const Section& s, const Outline& outline, const AskedSpecimen& specimen) {
   if (!s.ok()) return;
   const auto key = [&]() -> std::string_view {
     switch (outline.shape) {
@@ -762,7 +840,8 @@ void check_outline(const Section& s, const Outline& outline, const specimen::Reg
         return {};
     }
   }();
-  const double width = region.box().width(), height = region.box().height();
+  const Vec<3> size = specimen.high() - specimen.low();
+  const double width = size[0], height = size[1];
   const bool is_told =
       outline.shape == Shape::tessellation && !kSize.is_usual(outline.width) && outline.unit == 0.0;
   if (key.empty() || is_told || (kSize.is_usual(width) && kSize.is_usual(height))) return;
@@ -776,13 +855,13 @@ void check_outline(const Section& s, const Outline& outline, const specimen::Reg
 /// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
 /// effect.
 void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
-                       Outline outline, specimen::SpecimenParameters& p) {
+                       Outline outline, AskedSpecimen& p) {
   root.know({"aggregates", "inclusions", "blocks"});
   p.region = make_region(s, outline, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
   if (!outline.cells || !s.ok()) return;
   p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
-  check_outline(s, outline, p.region);
+  check_outline(s, outline, p);
   check_matrix(s, "file", outline.cells->phases, has_matrix, p);
   p.cells = std::move(outline.cells);
 }
@@ -805,14 +884,14 @@ std::string first_phase(const specimen::Inclusions& inclusions) {
 
 }  // namespace
 
-specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
-                                           std::span<const ReadBearing> bearings) {
-  specimen::SpecimenParameters p;
-  const Section s = root.section("specimen", "size of the specimen, and its seed");
-  Outline outline = read_outline(s, folder);
+AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& folder, const DeckSpace& space,
+                            std::span<const ReadBearing> bearings) {
+  AskedSpecimen p;
+  const Section s = root.section("specimen");
+  Outline outline = read_outline(s, folder, space);
   if (outline.shape == Shape::cells) {
     read_beside_cells(root, s, bearings, std::move(outline), p);
-    if (s.ok()) check_bearings(p.region, bearings);
+    if (s.ok()) check_bearings(p, bearings);
     check_phases(s, p, bearings);
     return p;
   }
@@ -821,20 +900,24 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
                 "of the random numbers; the same seed gives the same specimen"));
   const auto aggregates =
       root.optional_section("aggregates",
-                            "coarse aggregates, placed as circles with diameters after Fuller's curve "
-                            "P(d) = (d / d_max)^fuller_exponent, Eq. (16); without it there are none");
-  if (aggregates) p.aggregates = read_aggregates(*aggregates, folder);
-  p.inclusions = read_inclusions(root, folder);
+                            "coarse aggregates, placed as circles, in a solid as balls, with diameters after "
+                            "Fuller's curve P(d) = (d / d_max)^fuller_exponent, Eq. (16); without it there "
+                            "are none");
+  if (aggregates) p.aggregates = read_aggregates(*aggregates, folder, space);
+  p.inclusions = read_inclusions(root, folder, space);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
-  ReadBlocks read = read_blocks(blocks, folder, outline, aggregates || !p.inclusions.empty());
-  p.region = make_region(s, outline, read, bearings);
+  ReadBlocks read = read_blocks(blocks, folder, outline, space, aggregates || !p.inclusions.empty());
+  if (space.is_solid())
+    p.prism = make_prism(s, outline, space, read);
+  else
+    p.region = make_region(s, outline, read, bearings);
   p.blocks = std::move(read.parameters);
-  if (read.size > 0.0 && s.ok() && blocks.ok()) p.blocks.count = count_of(blocks, p.region, read.size);
-  check_outline(s, outline, p.region);
-  set_fraction(p.region, p.aggregates);
+  if (read.size > 0.0 && s.ok() && blocks.ok()) p.blocks.count = count_of(blocks, p, read.size);
+  check_outline(s, outline, p);
+  set_fraction(p.extent(), p.aggregates);
   for (specimen::Inclusions& kind : p.inclusions)
-    if (auto* circles = std::get_if<specimen::AggregateParameters>(&kind)) set_fraction(p.region, *circles);
-  if (s.ok()) check_bearings(p.region, bearings);
+    if (auto* circles = std::get_if<specimen::AggregateParameters>(&kind)) set_fraction(p.extent(), *circles);
+  if (s.ok()) check_bearings(p, bearings);
   if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
   if (!aggregates && p.inclusions.empty()) {
     const bool has_matrix = read_matrix_alone(root, p);
@@ -849,9 +932,11 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   check_phases(superposition, p, bearings);
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule",
-      {{"area", specimen::Superposition::area, "circles cover more than covered_fraction of the block"},
+      {{"area", specimen::Superposition::area,
+        "circles, or balls, cover more than covered_fraction of the block"},
        {"fit", specimen::Superposition::fit,
-        "the same with the fraction by which the blocks take the area of the circles"},
+        "the same with the fraction by which the blocks take the area of the circles; in a solid each ball "
+        "has a block first"},
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"}},
       "when a block is aggregate");
   if (p.superposition == specimen::Superposition::area)

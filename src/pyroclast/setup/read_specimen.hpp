@@ -5,7 +5,8 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
-#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/setup/read_space.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
 
 namespace pyroclast {
 
@@ -13,7 +14,8 @@ namespace pyroclast {
 /// in the deck.
 /// \param folder    folder to which the name of a tessellation's file is relative
 /// \param bearings  bearings on the specimen
-specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
-                                           std::span<const ReadBearing> bearings = {});
+/// \param space     space in which the deck describes it
+AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& folder, const DeckSpace& space,
+                            std::span<const ReadBearing> bearings = {});
 
 }  // namespace pyroclast

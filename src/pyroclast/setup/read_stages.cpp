@@ -40,7 +40,8 @@ OutputIntervals read_output(const Section& s, bool moves, bool has_platens, Fram
 }
 
 /// Reads the temperature without stress; returns none after an error.
-std::optional<StressFree> read_stress_free(const Section& s, const std::filesystem::path& folder) {
+std::optional<StressFree> read_stress_free(const Section& s, const std::filesystem::path& folder,
+                                           int dimension) {
   const Range range = Range::at_least(absolute_zero).usually(-30.0, 80.0);
   s.describe("stress_free",
              {.value = "temperature, or { frame = file }",
@@ -61,7 +62,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
   frame.names_file("frame", file);
   frame.needs_file(file.parent_path() / "mesh.h5");
   try {
-    StressFree field = read_frame_temperatures(file);
+    StressFree field = read_frame_temperatures(file, dimension);
     field.place = fmt::format("{}: coupling.stress_free.frame", frame.where("frame"));
     return field;
   } catch (const Error& error) {
@@ -73,7 +74,8 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
 }  // namespace
 
 ReadStages read_stages(const Section& root, const StageRegistry& kinds,
-                       const std::vector<RecordParameters>& records, const std::filesystem::path& folder) {
+                       const std::vector<RecordParameters>& records, const DeckSpace& space,
+                       const std::filesystem::path& folder) {
   std::vector<Choice<const StageKind*>> options;
   for (const StageKind& kind : kinds.kinds()) options.push_back({kind.name, &kind, Meaning(kind.meaning)});
   const auto sections =
@@ -91,6 +93,8 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   tables.has_platens = root.has("platens");
   tables.records = records;
   tables.folder = folder;
+  tables.dimension = space.dimension();
+  tables.has_thickness = space.shape != Shape::cylinder;
   constexpr Meaning kOutput =
       "how often rows and frames are written, both at the end of each stage too; may be left out where no "
       "key of it is needed";
@@ -109,7 +113,7 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   const bool exchanges = any([](const StageNeeds& n) { return n.exchanges; });
   ReadStages read;
   if (tables.coupling_table && tables.coupling_table->has("stress_free"))
-    read.stress_free = read_stress_free(*tables.coupling_table, folder);
+    read.stress_free = read_stress_free(*tables.coupling_table, folder, space.dimension());
   if (tables.coupling_table && !exchanges) {
     if (tables.coupling_table->keys() == std::vector<std::string>{"stress_free"})
       tables.coupling_table.reset();

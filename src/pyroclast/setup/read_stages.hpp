@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/setup/read_space.hpp"
 #include "pyroclast/simulation/stress_free.hpp"
 #include "pyroclast/stages/registry.hpp"
 
@@ -21,6 +22,7 @@ struct ReadStages {
 /// \param records  records that stages may name
 /// \param folder   folder of the deck
 ReadStages read_stages(const Section& root, const StageRegistry& kinds,
-                       const std::vector<RecordParameters>& records, const std::filesystem::path& folder);
+                       const std::vector<RecordParameters>& records, const DeckSpace& space,
+                       const std::filesystem::path& folder);
 
 }  // namespace pyroclast

@@ -17,6 +17,7 @@
 #include "pyroclast/setup/read_probes.hpp"
 #include "pyroclast/setup/read_references.hpp"
 #include "pyroclast/setup/read_sets.hpp"
+#include "pyroclast/setup/read_space.hpp"
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
@@ -34,7 +35,7 @@ constexpr double kGravity = 9.80665;  // m/s², standard
 /// Number of temperatures, evenly over the run's, at which the contact law must be possible.
 constexpr int kCheckedTemperatures = 33;
 
-MechanicsParameters read_mechanics(const Section& s) {
+MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
   MechanicsParameters m;
   m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative().usually(0.0, 10.0),
                                  kGravity, "acceleration downwards")}};
@@ -63,6 +64,8 @@ MechanicsParameters read_mechanics(const Section& s) {
                            {{"small", Kinematics::small, "zones and contact frames keep their orientation"},
                             {"finite", Kinematics::finite, "they turn with the body; strains stay small"}},
                            Kinematics::small, "whether the body may turn");
+  if (m.kinematics == Kinematics::finite && space.is_solid())
+    s.error("kinematics", "blocks of a solid cannot turn yet: kinematics = \"small\"");
   m.safety =
       s.number("safety", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.3, 0.95),
                "fraction of the stable step that is taken");
@@ -121,7 +124,9 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
 /// Records an error for each boundary on a side or set that the specimen does not have.
 void check_heated_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
-  for (const specimen::Side& side : setup.specimen.region.sides()) names.push_back(side.name);
+  for (const std::string& side : setup.specimen.sides()) names.push_back(side);
+  if (setup.specimen.prism && setup.specimen.prism->axis() == solid::Prism::Axis::y)
+    names.insert(names.end(), {"rim_left", "rim_right", "rim_front", "rim_back"});
   for (const auto& set : setup.sets)
     if (set.of != SetOf::contacts) names.push_back(set.name);
   const auto heat = root.optional_section("heat");
@@ -137,9 +142,9 @@ void check_heated_sides(const Section& root, const Setup& setup) {
 /// Warns of blocks that are coarser than any that were studied, or than a test heated under load allows
 /// (validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
-  const specimen::SpecimenParameters& s = setup.specimen;
+  const AskedSpecimen& s = setup.specimen;
   if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.motion) return;
-  const double size = std::sqrt(s.region.area() / s.blocks.count), share = size / s.aggregates.d_max;
+  const double size = s.block_size(), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
   const bool is_heated_under_load =
       any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
@@ -148,15 +153,13 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const char* const key = blocks.has("size") ? "size" : "count";
   if (share > kCoarsestStudied)
     blocks.warn(
-        key,
-        fmt::format("blocks of {:.3g} mm are {:.2f} of d_max, coarser than any that were studied ({})",
-                    1e3 * size, share, kCoarsestStudied));
+        key, fmt::format("blocks of {:.3g} mm are {:.2f} of d_max, coarser than any that were studied ({})",
+                         1e3 * size, share, kCoarsestStudied));
   else if (is_heated_under_load && share > kCoarsestHeated)
     blocks.warn(
-        key,
-        fmt::format("blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
-                    "100 K and more from seed to seed",
-                    1e3 * size, share, kCoarsestHeated));
+        key, fmt::format("blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
+                         "100 K and more from seed to seed",
+                         1e3 * size, share, kCoarsestHeated));
 }
 
 /// Tells whether a curve is a property other than expansion and creep that follows the temperature.
@@ -255,12 +258,14 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
     return false;
   }
   const double thickness = s->quantity("thickness", unit::length, Range::positive(), "of each platen");
-  const auto& sides = setup.specimen.region.sides();
+  const auto sides = setup.specimen.sides();
+  const auto lacks = [&](const char* name) { return std::ranges::find(sides, name) == sides.end(); };
+  const bool is_cylinder = setup.specimen.prism && setup.specimen.prism->axis() == solid::Prism::Axis::y;
   for (const char* name : {"bottom", "top", "left", "right"})
-    if (std::ranges::find(sides, name, &specimen::Side::name) == sides.end()) {
+    if (!is_cylinder && lacks(name)) {
       s->error(
-          fmt::format("platens need a specimen with the sides bottom, top, left, right, such as a rectangle; "
-                      "it has no side \"{}\"",
+          fmt::format("platens need a specimen with the sides bottom, top, left, right, such as a rectangle, "
+                      "or a cylinder; it has no side \"{}\"",
                       name));
       break;
     }
@@ -275,16 +280,31 @@ std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
   return names;
 }
 
+double read_thickness(const Section& s, const DeckSpace& space) {
+  if (space.is_solid() && s.has("thickness"))
+    s.error("thickness", space.depth
+                             ? "has no meaning beside depth, which makes the specimen a solid: leave one out"
+                             : "has no meaning here: a cylinder is a solid");
+  return s.quantity("thickness", unit::length, Range::positive(), 1.0,
+                    "out of plane; forces, energies and heats are those of this thickness");
+}
+
 /// Reads the materials and all that moves, where a stage moves the body.
-void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
-                 const LawFinder& find_law, Setup& setup) {
+void read_moving(const Section& root, const DeckSpace& space, const std::vector<ReadBearing>& bearings,
+                 CurveReader& curves, const LawFinder& find_law, Setup& setup) {
   const MaterialRules rules = read_material_rules(root);
   setup.expansion_reading = rules.expansion_reading;
   const auto phases = specimen::phases(setup.specimen);
   setup.motion.emplace();
   MotionParameters& motion = *setup.motion;
   const bool has_platens = read_platens(root, setup, motion.bearings);
-  for (const ReadBearing& read : bearings) motion.bearings.push_back(read.bearing);
+  for (const ReadBearing& read : bearings) {
+    const auto lies_there = [&](const Bearing& b) { return b.side == read.bearing.side; };
+    if (has_platens && read.section.ok() && std::ranges::any_of(motion.bearings, lies_there))
+      read.section.error(
+          "side", fmt::format("a platen or another bearing lies on \"{}\" already", read.bearing.side));
+    motion.bearings.push_back(read.bearing);
+  }
   motion.on_cooling = rules.on_cooling;
   const ReadConcrete concrete = read_concrete(root, phases, rules, curves);
   motion.strain_of_concrete = concrete.of_phases;
@@ -292,8 +312,8 @@ void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, 
   motion.contacts =
       read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
-  setup.motion->mechanics =
-      read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
+  setup.motion->mechanics = read_mechanics(
+      root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"), space);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 
@@ -310,33 +330,32 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   const Section root = deck.root();
   Setup setup;
   setup.title = root.text("title", "name of the run, for figures and summary");
-  const std::vector<RecordParameters> records = read_records(root);
-  auto read = read_stages(root, kinds, records, folder);
+  const DeckSpace space = read_space(root);
+  const std::vector<RecordParameters> records = read_records(root, space);
+  auto read = read_stages(root, kinds, records, space, folder);
   setup.stages = std::move(read.stages);
   setup.stage_names = std::move(read.names);
   setup.exposure = exposure(setup.stages);
   CurveReader time_curves(folder, time_axis(), {0.0, setup.exposure}, fire_curves());
-  if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
+  if (auto heat = read_heat(root, time_curves, space)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
   check_hand_over(root, setup.stages);
   if (root.ok()) check_flow(root, setup);
   setup.temperatures = run_temperatures(root, setup.heat, read.stress_free, setup.stages);
   const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
-  setup.specimen = read_specimen(root, folder, bearings);
-  setup.sets = read_sets(root);
+  setup.specimen = read_specimen(root, folder, space, bearings);
+  setup.sets = read_sets(root, space);
   if (root.ok()) check_heated_sides(root, setup);
-  setup.thickness = root.section("specimen")
-                        .quantity("thickness", unit::length, Range::positive(), 1.0,
-                                  "out of plane; forces, energies and heats are those of this thickness");
+  setup.thickness = read_thickness(root.section("specimen"), space);
   if (setup.heat.uniform)
     root.know({"probes"});
   else
-    setup.probes = read_probes(root, setup.specimen.region);
+    setup.probes = read_probes(root, setup.specimen);
   CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
   if (!setup.heat.uniform) setup.heat.cracks = read_crack_heat(root, curves);
   if (read.any_moves)
     read_moving(
-        root, bearings, curves,
+        root, space, bearings, curves,
         [&](const std::string& name, bool named) -> const LawTable& {
           try {
             return find_law(name, folder, laws, laws.deck_names || (named && laws.changes_name));
@@ -384,24 +403,24 @@ DeckSchema deck_schema(const StageRegistry& kinds) {
 
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
-  specimen::Specimen specimen = make_checked_specimen(setup.specimen, team.get());
+  MadeSpecimen specimen = make_checked_specimen(setup.specimen, team.get());
   return make_simulation(setup, std::move(specimen), std::move(team));
 }
 
-std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen specimen,
                                             std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
-  if (specimen.phases != specimen::phases(setup.specimen))
+  if (phases(specimen) != specimen::phases(setup.specimen))
     throw Error(fmt::format("the specimen's phases are {}, but those of the deck {}",
-                            fmt::join(specimen.phases, ", "),
+                            fmt::join(phases(specimen), ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.sets,
                                       setup.heat, setup.probes, setup.records, setup.motion, std::move(team));
 }
 
-double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {
+double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts) {
   if (specimen.blocks.count == 0) return contacts.fracture_zone_size.value_or(1.0);
-  return std::sqrt(specimen.region.area() / specimen.blocks.count);
+  return specimen.block_size();
 }
 
 }  // namespace pyroclast

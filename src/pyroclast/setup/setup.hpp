@@ -26,8 +26,8 @@ struct CheckpointChoice {
 /// Content of a deck, in its parts and in SI.
 struct Setup {
   std::string title;
-  specimen::SpecimenParameters specimen;
-  double thickness = 0.0;             ///< thickness out of plane, m
+  AskedSpecimen specimen;
+  double thickness = 1.0;             ///< thickness out of plane, m; of a solid 1
   std::vector<SolidMaterial> solids;  ///< solids by phase of the specimen, then those of bearings
   ExpansionReading expansion_reading = ExpansionReading::secant;
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
@@ -73,11 +73,11 @@ DeckSchema deck_schema(const StageRegistry& kinds = {});
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr);
 /// Makes model, field and mechanics of a specimen that is made already. It has the phases of the deck, and
 /// the sides that the deck names.
-std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen specimen,
                                             std::shared_ptr<Team> team = nullptr);
 
 /// Returns the block size that a deck foresees, m; where the tessellation is read from a file, the size at
 /// which t_b holds.
-double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts);
+double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts);
 
 }  // namespace pyroclast

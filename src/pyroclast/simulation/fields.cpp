@@ -25,10 +25,6 @@ bool always(const S&) {
 bool moves(const S& s) {
   return s.moves();
 }
-/// Tells whether contacts are shown as lines; those of a solid are not shown yet.
-bool moves_in_plane(const S& s) {
-  return s.moves() && s.model().dimension() == 2;
-}
 bool creeps(const S& s) {
   return s.moves() && s.motion().creeps();
 }
@@ -109,17 +105,13 @@ double temperature_jump(const R& r, int contact) {
   return r.model().is_of_bearing(c) ? 0.0 : temperature[c.b] - temperature[c.a];
 }
 
-/// Writes the displacement at an end of a contact's line: the mean of both sides. The second end is half way
-/// to the other contact of the edge.
+/// Writes the displacement at an end of a contact's cell: the mean of both sides.
 void put_end(R& r, int end, double* to) {
-  const auto mean = [&](int contact) {
-    const Joint& c = r.model().joint(contact);
-    return 0.5 * (r.motion().read().displacement(c.a) + r.motion().read().displacement(c.b));
-  };
-  const int contact = end / 2;
-  const Vec<3> here = mean(contact);
-  put(to,
-      end % 2 == 0 ? here : 0.5 * (here + mean(contact ^ 1)));  // the two contacts of an edge stand together
+  const int ends = ends_of_contact(r.model().dimension());
+  put(to, at_end(r.model(), end / ends, end % ends, [&](int contact) {
+        const Joint& c = r.model().joint(contact);
+        return 0.5 * (r.motion().read().displacement(c.a) + r.motion().read().displacement(c.b));
+      }));
 }
 
 /// Field that does not come from a law.
@@ -157,8 +149,8 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "platens stay at 20 °C"},
 });
 
-constexpr KnownField kOfEnds{"displacement", unit::length,   Item::contact_end, ValueKind::vector,
-                             true,           moves_in_plane, put_end,           "mean of both sides"};
+constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, ValueKind::vector,
+                             true,           moves,        put_end,           "mean of both sides"};
 
 constexpr auto kOfContacts = std::to_array<KnownField>({
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
@@ -269,7 +261,7 @@ int count_of(Item item, const Model& model) {
     case Item::contact_end:
       break;
   }
-  return 2 * model.contact_count();
+  return ends_of_contact(model.dimension()) * model.contact_count();
 }
 
 int components_of(ValueKind kind, int dimension) {

@@ -17,7 +17,8 @@ namespace pyroclast {
 namespace {
 
 bool is_of_cracks(RecordKind kind) {
-  return kind == RecordKind::crack_length || kind == RecordKind::crack_opening;
+  return kind == RecordKind::crack_length || kind == RecordKind::crack_area ||
+         kind == RecordKind::crack_opening;
 }
 
 bool is_damaged(const Motion& motion, int contact) {
@@ -45,6 +46,8 @@ const Unit& unit_of(RecordKind kind) {
       return unit::stress;
     case RecordKind::temperature:
       return unit::temperature;
+    case RecordKind::crack_area:
+      return unit::area;
     default:
       return unit::length;
   }
@@ -58,6 +61,8 @@ const Unit& rate_unit_of(RecordKind kind) {
       return unit::stress_rate;
     case RecordKind::temperature:
       return unit::heating_rate;
+    case RecordKind::crack_area:
+      return unit::area_rate;
     default:
       return unit::velocity;
   }
@@ -90,6 +95,8 @@ Record::Record(const Model& model, bool moves, RecordParameters parameters)
         "effect");
   if (parameters_.kind == RecordKind::crack_length && model.dimension() != 2)
     fail("is of a length, but cracks of a solid have an area");
+  if (parameters_.kind == RecordKind::crack_area && model.dimension() != 3)
+    fail("is of an area, but cracks in the plane have a length");
   if (is_of_cracks(parameters_.kind)) {
     auto contacts = contacts_by_chunk(contacts_by_chunk(model), find(model.contact_sets, parameters_.set));
     items_ = std::move(contacts.contacts);
@@ -185,6 +192,7 @@ double Record::measure(const Simulation& simulation) const {
                          }) /
              whole_;
     case RecordKind::crack_length:
+    case RecordKind::crack_area:
       return chunked_sum(chunks_, [&](int i) { return is_damaged(motion, items_[i]) ? size_[i] : 0.0; });
     case RecordKind::crack_opening:
       return chunked_sum(chunks_, [&](int i) { return size_[i] * motion.read().opening(items_[i]); }) /

@@ -22,6 +22,7 @@ enum class RecordKind : std::uint8_t {
   stress,
   temperature,    ///< mean temperature of a set, °C
   crack_length,   ///< length of the damaged contact points of a set, m; 2D only
+  crack_area,     ///< their area, m²; 3D only
   crack_opening,  ///< mean opening over the contact points of a set, by extent, m
 };
 

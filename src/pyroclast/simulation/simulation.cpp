@@ -2,44 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/model/solid_model.hpp"
-#include "pyroclast/simulation/sums.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-/// Measured peak of the memory over the number of blocks, bytes, from 5,000 to 1,000,000 blocks
-/// (docs/performance.md), rounded up: heat conduction takes half as much again.
-constexpr double kBytesPerBlock = 6000.0;
-constexpr double kBytesFixed = 40e6;
-
-/// Returns the memory that this process may still take, bytes: the free memory of the machine, or the process
-/// limit if smaller.
-double available_memory() {
-  double available = std::numeric_limits<double>::infinity();
-  std::ifstream file("/proc/meminfo");
-  for (std::string name; file >> name;) {
-    double kilobytes = 0.0;
-    if (name == "MemAvailable:" && file >> kilobytes) {
-      available = 1024.0 * kilobytes;
-      break;
-    }
-    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    available = std::min(available, static_cast<double>(limit.rlim_cur));
-  return available;
-}
 
 TemperatureField make_field(const Model& model, const std::vector<SolidMaterial>& solids,
                             const HeatConditions& heat, const std::shared_ptr<Team>& team) {
@@ -66,8 +37,6 @@ std::unique_ptr<Motion> make_motion_at(const Model& model, const ConcreteMateria
   return make_motion(model, densities, properties_at(model, materials, field, hottest), parameters, team);
 }
 
-constexpr const char* kUpperPlaten = "top_platen";
-
 std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
   if (!model || model->block_count() == 0) throw Error("a body without blocks cannot be simulated");
   if (model->dimension() != 2 && model->thickness != 1.0)
@@ -84,59 +53,7 @@ SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<SolidMateria
   return numbers;
 }
 
-bool has_platens(const std::optional<MotionParameters>& motion) {
-  const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
-  return motion && std::ranges::any_of(motion->bearings, is_upper);
-}
-
-SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
-                       const std::vector<SetParameters>& sets,
-                       const std::optional<MotionParameters>& motion) {
-  auto model = std::make_unique<ModelOf<2>>(
-      motion ? make_concrete_model(specimen, thickness, motion->contacts.interfaces, motion->bearings)
-             : make_concrete_model(specimen, thickness));
-  if (motion) model->cut_into_chunks(motion->chunk_blocks);
-  add_sets(*model, sets);
-  SpecimenBody body{std::move(model), numbers_of(specimen), specimen.region.notches(), {}};
-  if (has_platens(motion)) {
-    const specimen::Box& box = specimen.region.box();
-    body.between_platens = {kVertical, box.height(), thickness * box.width(), {box.width()}};
-  }
-  return body;
-}
-
 }  // namespace
-
-SpecimenBody make_body(const solid::SolidSpecimen& specimen, const std::vector<SetParameters>& sets,
-                       const std::optional<MotionParameters>& motion) {
-  auto model = std::make_unique<ModelOf<3>>(
-      motion ? make_solid_model(specimen, motion->contacts.interfaces, motion->bearings)
-             : make_solid_model(specimen));
-  if (motion) model->cut_into_chunks(motion->chunk_blocks);
-  add_sets(*model, sets);
-  SpecimenBody body{nullptr, numbers_of(specimen), {}, {}};
-  if (has_platens(motion)) {
-    const solid::Prism& of = specimen.body;
-    Press::Specimen between;
-    between.axis = kVertical;
-    between.height = of.high()[kVertical] - of.low()[kVertical];
-    const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
-    for (const solid::CellFace& face : specimen.complex.faces)
-      if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
-    if (!model->sets.contains("left")) between.sides = {{"rim_left", "rim_right"}, {"rim_front", "rim_back"}};
-    const auto mean = [&](const std::string& set, int component) {
-      return mean_position(*model, gridpoint_set(*model, model->set(set)), component);
-    };
-    for (const int d : {0, 1}) {
-      const int across = d == 0 ? 0 : 2;
-      const auto& [lower, upper] = between.sides[d];
-      between.widths.push_back(mean(upper, across) - mean(lower, across));
-    }
-    body.between_platens = std::move(between);
-  }
-  body.model = std::move(model);
-  return body;
-}
 
 bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion) {
   return motion.strain_of_concrete || any_creeps(solids);
@@ -154,20 +71,9 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
   return materials;
 }
 
-SpecimenNumbers numbers_of(const specimen::Specimen& specimen) {
-  return {specimen.fraction, specimen.metrics.mean_size, specimen::block_size(specimen),
-          std::sqrt(specimen.region.area())};
-}
-
-SpecimenNumbers numbers_of(const solid::SolidSpecimen& specimen) {
-  const double size = specimen.metrics.mean_size;
-  return {specimen.fraction, size, size, std::cbrt(specimen.body.volume())};
-}
-
-Simulation::Simulation(specimen::Specimen specimen, double thickness,
-                       const std::vector<SolidMaterial>& solids, const std::vector<SetParameters>& sets,
-                       const HeatConditions& heat, const std::vector<ProbePosition>& probes,
-                       const std::vector<RecordParameters>& records,
+Simulation::Simulation(MadeSpecimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
+                       const std::vector<SetParameters>& sets, const HeatConditions& heat,
+                       const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : Simulation(make_body(specimen, thickness, sets, motion), solids, heat, probes, records, motion,
                  std::move(team)) {
@@ -293,19 +199,6 @@ void Simulation::visit_state(StateVisitor& visitor) {
   if (!press_) return;
   const StateVisitor::Scope scope(visitor, "press");
   press_->visit_state(visitor);
-}
-
-double estimate_memory(std::int64_t blocks) {
-  return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks);
-}
-
-specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters, Team* team) {
-  const double needed = estimate_memory(parameters.blocks.count);
-  const double available = available_memory();
-  if (needed > available)
-    throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
-                            parameters.blocks.count, needed * 1e-9, available * 1e-9));
-  return specimen::make_specimen(parameters, team);
 }
 
 double estimate_modulus(const Model& model, const ConcreteMaterials& materials, double temperature,

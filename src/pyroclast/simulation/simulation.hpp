@@ -10,7 +10,7 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/motion.hpp"
-#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/model.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/heat_conditions.hpp"
@@ -18,51 +18,11 @@
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/probe.hpp"
 #include "pyroclast/simulation/records.hpp"
-#include "pyroclast/simulation/stress_free.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
 #include "pyroclast/simulation/supports.hpp"
-#include "pyroclast/solid/specimen.hpp"
-#include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 namespace pyroclast {
-
-/// Parameters of a simulation that moves the body, beside those of every simulation.
-struct MotionParameters {
-  std::vector<Bearing> bearings;
-  ContactParameters contacts;
-  std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it
-  OnCooling on_cooling = OnCooling::irreversible;
-  std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
-  MechanicsParameters mechanics;
-  int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
-};
-
-/// Numbers of a specimen that materials, heat and exchanges ask for.
-struct SpecimenNumbers {
-  std::vector<double> fraction;  ///< share of each phase, in the order of the solids
-  double mean_size = 0.0;        ///< mean size of its blocks, m, see specimen::Metrics
-  double block_size = 0.0;  ///< size of a block that counts for fracture zones, m, see specimen::block_size
-  /// Side of the square of its area, m, against which lengths of the body are measured; of a solid the edge
-  /// of the cube of its volume.
-  double size = 0.0;
-};
-
-SpecimenNumbers numbers_of(const specimen::Specimen& specimen);
-SpecimenNumbers numbers_of(const solid::SolidSpecimen& specimen);
-
-/// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
-/// gridpoints have a set "specimen"; between platens they have the sets of Press.
-struct SpecimenBody {
-  std::unique_ptr<Model> model;
-  SpecimenNumbers numbers;
-  std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
-  std::optional<Press::Specimen> between_platens;
-};
-
-/// Makes a solid specimen into a body with the bearings and interfaces of `motion`, and with sets beside
-/// those that every model has.
-SpecimenBody make_body(const solid::SolidSpecimen& specimen, const std::vector<SetParameters>& sets,
-                       const std::optional<MotionParameters>& motion);
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.
 bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion);
@@ -76,7 +36,7 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
 /// beside them.
 class Simulation {
  public:
-  /// \param thickness     thickness of the specimen, out of plane, m
+  /// \param thickness     thickness of a specimen in the plane, m; of a solid not used
   /// \param solids        solids by phase of the specimen, then those of bearings
   /// \param sets          sets beside those that every model has
   /// \param probes        probes of temperature
@@ -86,7 +46,7 @@ class Simulation {
   ///
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
   /// probe lies outside.
-  Simulation(specimen::Specimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
+  Simulation(MadeSpecimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
              const std::vector<SetParameters>& sets, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
              const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
@@ -102,7 +62,7 @@ class Simulation {
   Team& team() { return *team_; }
   /// Tells whether the body was made of a specimen here, not elsewhere.
   bool has_specimen() const { return specimen_.has_value(); }
-  const specimen::Specimen& specimen() const { return *specimen_; }
+  const MadeSpecimen& specimen() const { return *specimen_; }
   const SpecimenNumbers& numbers() const { return numbers_; }
   double body_size() const { return numbers_.size; }
   /// Returns the area across a square or a cube of this side, m².
@@ -173,7 +133,7 @@ class Simulation {
 
  private:
   std::shared_ptr<Team> team_;
-  std::optional<specimen::Specimen> specimen_;
+  std::optional<MadeSpecimen> specimen_;
   std::unique_ptr<Model> model_;
   SpecimenNumbers numbers_;
   ConcreteMaterials materials_;
@@ -190,18 +150,6 @@ class Simulation {
   double heating_time_ = 0.0;
   std::int64_t exchanges_ = 0;
 };
-
-/// Returns an upper estimate of the memory that a run with so many blocks needs, bytes.
-double estimate_memory(std::int64_t blocks);
-
-/// Makes a specimen. Throws Error when the specimen cannot be made, or a run of it would not fit into the
-/// free memory.
-/// \param team  threads that make it; without a team the calling thread works alone
-specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters,
-                                         Team* team = nullptr);
-
-/// Component of a position along which the press of a deck stands.
-inline constexpr int kVertical = 1;
 
 /// Returns a lower estimate of Young's modulus of the model along an axis, Pa: the same stress along it
 /// everywhere, compliances of zones and contacts added up (Reuss), without platens.

@@ -71,10 +71,10 @@ std::optional<std::string> Supports::free_motion() const {
   std::vector<std::string> along;
   for (int c = 0; c < dimension; ++c)
     if (!any[c]) along.push_back(std::string(1, "xyz"[c]));
-  std::string free = along.empty() ? "" : fmt::format("along {}", fmt::join(along, " and "));
+  std::string free = along.empty() ? "" : fmt::format("moving along {}", fmt::join(along, " and "));
   if (static_cast<int>(along.size()) == dimension) return free + ", and turning";
   if (!free.empty()) return free;
-  return dimension == 2 ? "turning about one point" : "turning";
+  return dimension == 2 ? "turning about one point" : "turning about an axis";
 }
 
 void Supports::count(const std::string& set, int component, int more) {
@@ -167,7 +167,7 @@ void require_held(const Simulation& simulation, const Supports& supports, const 
   if (simulation.has_press()) return;
   if (const auto motion = supports.free_motion())
     throw Error(
-        fmt::format("{}: nothing holds the body against moving {}, but it has weight or a load: hold "
+        fmt::format("{}: nothing holds the body against {}, but it has weight or a load: hold "
                     "a set of it by a drive, or set gravity to 0",
                     what, *motion));
 }

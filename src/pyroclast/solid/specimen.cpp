@@ -1,6 +1,7 @@
 #include "pyroclast/solid/specimen.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -83,6 +84,14 @@ Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random
                   p.place.empty() ? "" : p.place + ": ", p.count, kMostRounds));
 }
 
+/// Returns the least height of a tetrahedron over one of its faces, m.
+double least_height(const std::array<Vec<3>, 4>& x) {
+  const Vec<3> a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
+  const double widest =
+      std::max({norm(cross(a, b)), norm(cross(b, c)), norm(cross(c, a)), norm(cross(b - a, c - a))});
+  return std::abs(dot(a, cross(b, c))) / widest;
+}
+
 CellMetrics measure(const Complex& complex, const Prism& body) {
   CellMetrics metrics;
   metrics.shortest_edge = std::numeric_limits<double>::infinity();
@@ -95,6 +104,17 @@ CellMetrics measure(const Complex& complex, const Prism& body) {
       metrics.shortest_edge = std::min(
           metrics.shortest_edge,
           norm(complex.vertices[face.corners[(i + 1) % corners]] - complex.vertices[face.corners[i]]));
+  }
+  metrics.lowest_zone = std::numeric_limits<double>::infinity();
+  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
+    const ZonedCell zoned = zone_cell(complex, cell);
+    for (const auto& [a, b, c, d] : zoned.zones) {
+      const auto& x = zoned.gridpoints;
+      const double height = least_height({x[a], x[b], x[c], x[d]});
+      if (height >= metrics.lowest_zone) continue;
+      metrics.lowest_zone = height;
+      metrics.lowest_zone_cell = static_cast<int>(cell);
+    }
   }
   metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(complex.cells.size());
   metrics.mean_size = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
@@ -146,8 +166,10 @@ std::vector<std::string> warnings(const SolidSpecimen& s) {
   int without = 0;
   for (const SizeClass& c : s.classes) without += c.without_a_block;
   if (without > 0)
-    lines.push_back(fmt::format("{} of {} stones have no block of their own: more blocks are needed{}",
-                                without, s.balls.size(), ", or [superposition] rule = \"fit\""));
+    lines.push_back(
+        fmt::format("{} of {} stones have no block of their own: more blocks are needed, or a larger "
+                    "[aggregates] d_min",
+                    without, s.balls.size()));
   return lines;
 }
 

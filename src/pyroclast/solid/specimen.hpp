@@ -24,6 +24,8 @@ struct SizeClass {
 struct CellMetrics {
   double mean_size = 0.0;        ///< cube root of the mean volume, the block size
   double shortest_edge = 0.0;    ///< shortest edge of any block
+  double lowest_zone = 0.0;      ///< least height of any zone over one of its faces
+  int lowest_zone_cell = -1;     ///< cell of this zone
   double zones_per_block = 0.0;  ///< mean number of zones
   int most_corners = 0;          ///< most corners of a face between blocks
   int seeds_redrawn = 0;         ///< seeds drawn anew because their cell was empty or matched no neighbour

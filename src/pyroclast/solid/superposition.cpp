@@ -112,19 +112,27 @@ std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
   return stone;
 }
 
-/// Gives each ball, the largest first, the cell of which it covers most and that none took before.
-void give_each_its_cell(const std::vector<Ball>& balls, const std::vector<Cover>& covers,
-                        std::vector<int>& stone) {
+/// Gives each ball, the largest first, the cell of which it covers most and that none took before, while that
+/// brings the volume of the cells nearer to that of the balls. Returns the volume that is missing then, m³.
+double give_each_its_cell(const Complex& complex, const std::vector<Ball>& balls,
+                          const std::vector<Cover>& covers, std::vector<int>& stone) {
   std::vector<std::vector<Cover>> of_ball(balls.size());
   for (const Cover& cover : covers) of_ball[cover.ball].push_back(cover);
   std::vector<int> order(balls.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater<>(), [&](int ball) { return balls[ball].diameter; });
+  double missing = 0.0;
+  for (const Ball& ball : balls) missing += specimen::extent_of_round<3>(ball.diameter);
   for (const int ball : order) {
     std::ranges::stable_sort(of_ball[ball], std::greater<>(), &Cover::volume);
     const auto free = std::ranges::find_if(of_ball[ball], [&](const Cover& c) { return stone[c.cell] < 0; });
-    if (free != of_ball[ball].end()) stone[free->cell] = ball;
+    if (free == of_ball[ball].end()) continue;
+    const double taken = volume(complex, free->cell);
+    if (0.5 * taken >= missing) break;
+    missing -= taken;
+    stone[free->cell] = ball;
   }
+  return missing;
 }
 
 }  // namespace
@@ -170,11 +178,7 @@ SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::
     cells.push_back(of);
   }
   if (parameters.superposition == specimen::Superposition::fit) {
-    give_each_its_cell(balls, covers, result.stone);
-    double missing = 0.0;
-    for (const Ball& ball : balls) missing += specimen::extent_of_round<3>(ball.diameter);
-    for (const Covered& cell : cells)
-      if (result.stone[cell.cell] >= 0) missing -= cell.volume;
+    double missing = give_each_its_cell(complex, balls, covers, result.stone);
     std::ranges::stable_sort(cells, std::greater<>(), &Covered::share);
     // cells become aggregate, the most covered first, while that brings their volume nearer to the balls'
     result.covered_fraction = std::nextafter(1.0, 0.0);

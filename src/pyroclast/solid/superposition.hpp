@@ -20,9 +20,10 @@ struct SuperposedBalls {
   double covered_fraction = 0.0;
 };
 
-/// Superposes balls on cells. By the rule `fit` each ball first takes one cell, the one of which it covers
-/// most and that no larger ball took; then the cells that are covered most become aggregate, until their
-/// volume comes as near as it can to that of the balls. The other rules are as in the plane.
+/// Superposes balls on cells. By the rule `fit` each ball, the largest first, takes one cell, the one of
+/// which it covers most and that no larger ball took; then the cells that are covered most become aggregate.
+/// Both end when the volume of the cells comes as near as it can to that of the balls. The other rules are as
+/// in the plane.
 SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::vector<Ball>& balls,
                           const specimen::SpecimenParameters& parameters);
 

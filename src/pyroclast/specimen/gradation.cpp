@@ -91,5 +91,7 @@ std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
 
 template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<2>>&,
                                                std::span<const double>);
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<3>>&,
+                                               std::span<const double>);
 
 }  // namespace pyroclast::specimen

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <ranges>
 #include <utility>
@@ -40,16 +41,44 @@ constexpr double kParallel = 1e-9;
 /// Numbers of rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
-const std::vector<Choice<int>> kComponents{{"x", 0, "to the right"}, {"y", 1, "upwards"}};
+const std::vector<Choice<int>> kComponents{
+    {"x", 0, "to the right"}, {"y", 1, "upwards"}, {"z", 2, "to the back of a solid"}};
 
-std::vector<int> read_components(const Section& s, const char* key, Meaning meaning) {
+/// Returns a component, and 0 after an error where the body does not have it.
+int in_body(int component, int dimension, const Section& s, const char* key) {
+  if (component < dimension) return component;
+  s.error(key, "must be \"x\" or \"y\": a body in the plane has no z");
+  return 0;
+}
+
+std::vector<int> read_components(const Section& s, const char* key, int dimension, Meaning meaning) {
   std::vector<int> components;
   for (const std::string& word : s.texts(key, meaning)) {
-    if (word != "x" && word != "y")
-      s.error(key, fmt::format("must be a list of \"x\" and \"y\"; got \"{}\"", word));
-    components.push_back(word == "y" ? 1 : 0);
+    const auto known = std::ranges::find(kComponents, word, &Choice<int>::word);
+    if (known == kComponents.end())
+      s.error(key, fmt::format("must be a list of \"x\", \"y\" and in a solid \"z\"; got \"{}\"", word));
+    else
+      components.push_back(in_body(known->value, dimension, s, key));
   }
   return components;
+}
+
+/// Returns the direction of a force, a unit vector; two numbers are along x and y. Records an error where
+/// there is no such direction.
+Vec<3> read_force_direction(const Section& s, int dimension) {
+  const auto components =
+      s.numbers("direction", Range::any(), "of the force, as [x, y], or in a solid [x, y, z]");
+  if (components.empty()) return {};
+  if (components.size() != 2 && std::ssize(components) != dimension) {
+    s.error("direction",
+            dimension == 2 ? "must be two numbers, [x, y]" : "must be two or three numbers, [x, y, z]");
+    return {};
+  }
+  Vec<3> direction{};
+  std::ranges::copy(components, direction.c.begin());
+  if (norm(direction) > 0.0) return direction * (1.0 / norm(direction));
+  s.error("direction", "has no length");
+  return {};
 }
 
 /// Returns the kind of an action. Records an error where not exactly one key gives it.
@@ -69,7 +98,7 @@ std::optional<ActionKind> kind_of(const Section& s) {
   return chosen;
 }
 
-Drive::Action read_action(const Section& s, double duration, CurveReader& curves) {
+Drive::Action read_action(const Section& s, double duration, int dimension, CurveReader& curves) {
   Drive::Action a;
   a.set = s.text("set", "set of gridpoints that it acts on; see [bodies.md](bodies.md#sets)");
   a.place = fmt::format("{}: {}", s.where("set"), s.path());
@@ -77,12 +106,14 @@ Drive::Action read_action(const Section& s, double duration, CurveReader& curves
   s.know(
       {"hold", "release", "velocity", "force", "pressure", "direction", "follower", "ramp_time", "factor"});
   const auto read_hold = [&] {
-    return read_components(s, "hold", "components of the motion that are held from now on");
+    return read_components(s, "hold", dimension, "components of the motion that are held from now on");
   };
   const auto read_release = [&] {
-    return read_components(s, "release", "components that move freely from now on");
+    return read_components(s, "release", dimension, "components that move freely from now on");
   };
-  const auto read_along = [&](Meaning meaning) { return s.choice("direction", kComponents, meaning); };
+  const auto read_along = [&](Meaning meaning) {
+    return in_body(s.choice("direction", kComponents, meaning), dimension, s, "direction");
+  };
   const auto read_change = [&] {
     a.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(), 0.0,
                              "in which it comes evenly from what it was to its value");
@@ -112,16 +143,7 @@ Drive::Action read_action(const Section& s, double duration, CurveReader& curves
           s.quantity("force", unit::force, Range::any(),
                      "in all, shared out by the faces that belong to each gridpoint; in what thickness the "
                      "specimen has");
-      const auto components = s.numbers("direction", Range::any(), "of the force, as [x, y]");
-      if (components.size() == 2) {
-        const Vec<3> d{{components[0], components[1]}};
-        if (norm(d) > 0.0)
-          a.direction = d * (1.0 / norm(d));
-        else
-          s.error("direction", "has no length");
-      } else if (!components.empty()) {
-        s.error("direction", "must be two numbers, [x, y]");
-      }
+      a.direction = read_force_direction(s, dimension);
       read_change();
       break;
     }
@@ -216,7 +238,7 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
       s.quantity("duration", unit::time, Range::positive(), "after which the stage ends at the latest");
   CurveReader curves(tables.folder, time_axis(), {0.0, keys.duration}, fire_curves());
   for (const Section& own : s.sections("drives", "what is held, moved or loaded, any number"))
-    keys.actions.push_back(read_action(own, keys.duration, curves));
+    keys.actions.push_back(read_action(own, keys.duration, tables.dimension, curves));
   for (const Section& own :
        s.optional_sections("until", "conditions of which the first that is met ends the stage"))
     keys.until.push_back(read_until(own, tables.records));
@@ -247,7 +269,7 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
       "between two frames of the fields; where it is not stated, 1/10 of the duration; there is one behind "
       "each peak of the first force, or stress, too");
   keys.records = tables.records;
-  keys.results = read_record_results(s, tables.records);
+  keys.results = read_record_results(s, tables.records, tables.has_thickness);
   return std::make_unique<Drive>(std::move(keys));
 }
 
@@ -283,6 +305,17 @@ void require_off_press(const Simulation& simulation, const Drive::Action& action
       if (std::ranges::find(model.set(platen), g) != model.set(platen).end())
         throw Error(fmt::format("{}: set \"{}\" has gridpoints of {}, which the press works", action.place,
                                 action.set, platen));
+}
+
+/// Returns the thickness of a body, of a solid its extent along z without bearings, m.
+double thickness_of(const Model& model) {
+  if (model.dimension() == 2) return model.thickness;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const int g : model.set("specimen")) {
+    low = std::min(low, model.place(g)[2]);
+    high = std::max(high, model.place(g)[2]);
+  }
+  return high - low;
 }
 
 HeldMotion motion_of(const Drive::Action& action) {
@@ -457,7 +490,7 @@ void Drive::begin(Simulation& simulation) {
   kept_.most_kinetic = std::abs(energy.kinetic);
   const Vec<3> weight =
       motion.totals().total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
-  kept_.body = {simulation.model().thickness, norm(weight)};
+  kept_.body = {thickness_of(simulation.model()), norm(weight)};
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)
       for (int c : action.components) simulation.release(action.set, c, action.place);

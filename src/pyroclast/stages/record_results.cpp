@@ -228,7 +228,8 @@ void BodyFigures::visit_state(StateVisitor& visitor) {
 }
 
 std::vector<RecordResult> read_record_results(const Section& stage,
-                                              const std::vector<RecordParameters>& records) {
+                                              const std::vector<RecordParameters>& records,
+                                              bool has_thickness) {
   std::vector<RecordResult> results;
   std::vector<std::string> automatic;
   for (const RecordParameters& record : records)
@@ -237,6 +238,7 @@ std::vector<RecordResult> read_record_results(const Section& stage,
       automatic.push_back(fmt::format("{}_{}_time_s", kind, record.name));
     }
   Values known = values_of({1.0, 1.0});
+  if (!has_thickness) known.erase("thickness");
   for (const Section& s : stage.optional_sections(
            "results",
            "numbers that the stage makes of its records, and of results before them; any number")) {

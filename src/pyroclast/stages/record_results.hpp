@@ -71,7 +71,7 @@ PeakRule rule_of_records(const Peak& so_far);
 
 /// Figures of the specimen without its bearings that formulas may use beside results.
 struct BodyFigures {
-  double thickness = 0.0;  ///< m
+  double thickness = 0.0;  ///< thickness, of a solid its depth, m; not known of a cylinder
   double weight = 0.0;     ///< weight as it acts in the run, N
 
   void visit_state(StateVisitor& visitor);
@@ -82,8 +82,10 @@ std::optional<RecordParameters> find_record(const Section& s, std::string_view k
                                             const std::vector<RecordParameters>& records);
 
 /// Reads [[stages.results]] of a stage.
+/// \param has_thickness  true where formulas may use the thickness of the body
 std::vector<RecordResult> read_record_results(const Section& stage,
-                                              const std::vector<RecordParameters>& records);
+                                              const std::vector<RecordParameters>& records,
+                                              bool has_thickness);
 
 /// Returns the peak and the largest value of every record with their times, and then the results asked for. A
 /// formula without a finite value gives no result. Rows without a value of the record do not count.

@@ -33,6 +33,8 @@ struct StageTables {
   bool has_platens = false;
   std::vector<RecordParameters> records;
   std::filesystem::path folder;  ///< folder of the deck
+  int dimension = 2;             ///< dimension of the body, 2 or 3
+  bool has_thickness = true;     ///< false for a cylinder
 };
 
 /// Kind of stage.

@@ -177,16 +177,14 @@ struct Contacts {
       sums.stored = sum(stored);
       sums.applied = sum(applied);
       sums.jump = largest(
-          select(Real::load(s.layout.points[first].area) > 0.0, widest / length(s, first, last), 0.0));
+          select(Real::load(s.layout.points[first].area) > 0.0, widest / size_against_jumps(s, first), 0.0));
     }
   }
 
-  /// Returns the length of the edge in 2D; in 3D the root of twice the area of a face.
-  static Real length(const State<Dim>& s, int first, int last) {
+  /// Returns the length of the edge in 2D; in 3D, where some faces are tiny, the size of a block.
+  static Real size_against_jumps(const State<Dim>& s, int first) {
     if constexpr (Dim == 2) return Real::load(s.layout.points[first].area) * (Dim / s.thickness);
-    Real area = 0.0;
-    for (int at = first; at < last; ++at) area += Real::load(s.layout.points[at].area);
-    return sqrt(2.0 * area);
+    return s.block_size;
   }
 
   static const OneForAll& constants_of_set(const State<Dim>& s, int pack) {

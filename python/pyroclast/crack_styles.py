@@ -1,0 +1,59 @@
+"""How cracks are drawn: colours and widths by their mode, and which contact points a frame shows so."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import style
+
+if TYPE_CHECKING:
+    from .results import Frame, Results
+
+_HALF = 0.5  # damage from which a crack is drawn
+
+
+@dataclass(frozen=True)
+class CrackStyle:
+    mode: str
+    broken: bool
+    colour: str
+    width: float  # points, at most
+
+    @property
+    def label(self) -> str:
+        state = "broken ($D=1$)" if self.broken else f"damaged by more than half (${_HALF}<D<1$)"
+        return f"{self.mode} crack, {state}"
+
+    def holds(self, damage: np.ndarray) -> np.ndarray:
+        return damage >= 1.0 if self.broken else (damage > _HALF) & (damage < 1.0)
+
+
+# Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
+CRACKS = (
+    CrackStyle("mixed", False, style.MIXED_TINT, 0.7),
+    CrackStyle("tension", False, style.TENSION_TINT, 0.7),
+    CrackStyle("shear", False, style.SHEAR_TINT, 0.4),
+    CrackStyle("mixed", True, style.MIXED_COLOUR, 1.8),
+    CrackStyle("tension", True, style.TENSION_COLOUR, 1.8),
+    CrackStyle("shear", True, style.SHEAR_COLOUR, 0.8),
+)
+
+
+def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
+    """(C,) bool: contact points that are drawn so."""
+    contacts = run.mesh.contacts
+    names = run.crack_modes[crack.mode]
+    can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
+    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
+
+
+def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
+    """Cracked contact points that `fracture` draws, by mode (of `Results.crack_modes`) and whether broken."""
+    return {(crack.mode, crack.broken): int(cracked(run, frame, crack).sum()) for crack in cracks_of(run)}
+
+
+def cracks_of(run: Results) -> list[CrackStyle]:
+    return [crack for crack in CRACKS if crack.mode in run.crack_modes]

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pyroclast/material/concrete.hpp"
+#include "pyroclast/mechanics/motion.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/simulation/stress_free.hpp"
+
+namespace pyroclast {
+
+/// Parameters of a simulation that moves the body, beside those of every simulation.
+struct MotionParameters {
+  std::vector<Bearing> bearings;
+  ContactParameters contacts;
+  std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it
+  OnCooling on_cooling = OnCooling::irreversible;
+  std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
+  MechanicsParameters mechanics;
+  int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,179 @@
+#include "pyroclast/simulation/specimen_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/overloaded.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/simulation/sums.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Measured peak of the memory over the number of blocks, bytes, from 5,000 to 1,000,000 blocks of the plane
+/// and from 1,000 to 20,000 of space (docs/performance.md), rounded up: heat conduction takes half as much
+/// again.
+constexpr double kBytesPerBlock = 6000.0, kBytesPerSolidBlock = 60000.0;
+constexpr double kBytesFixed = 40e6;
+
+constexpr const char* kUpperPlaten = "top_platen";
+
+/// Returns the memory that this process may still take, bytes: the free memory of the machine, or the process
+/// limit if smaller.
+double available_memory() {
+  double available = std::numeric_limits<double>::infinity();
+  std::ifstream file("/proc/meminfo");
+  for (std::string name; file >> name;) {
+    double kilobytes = 0.0;
+    if (name == "MemAvailable:" && file >> kilobytes) {
+      available = 1024.0 * kilobytes;
+      break;
+    }
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    available = std::min(available, static_cast<double>(limit.rlim_cur));
+  return available;
+}
+
+bool has_platens(const std::optional<MotionParameters>& motion) {
+  const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
+  return motion && std::ranges::any_of(motion->bearings, is_upper);
+}
+
+Press::Specimen between_platens(const specimen::Specimen& specimen, const Model& model) {
+  const specimen::Box& box = specimen.region.box();
+  return {kVertical, box.height(), model.thickness * box.width(), {box.width()}};
+}
+
+Press::Specimen between_platens(const solid::SolidSpecimen& specimen, const Model& model) {
+  const solid::Prism& of = specimen.body;
+  Press::Specimen between;
+  between.axis = kVertical;
+  between.height = of.high()[kVertical] - of.low()[kVertical];
+  const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
+  for (const solid::CellFace& face : specimen.complex.faces)
+    if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
+  if (!model.sets.contains("left")) between.sides = {{"rim_left", "rim_right"}, {"rim_front", "rim_back"}};
+  const auto mean = [&](const std::string& set, int component) {
+    return mean_position(model, gridpoint_set(model, model.set(set)), component);
+  };
+  for (const int d : {0, 1}) {
+    const int across = d == 0 ? 0 : 2;
+    const auto& [lower, upper] = between.sides[d];
+    between.widths.push_back(mean(upper, across) - mean(lower, across));
+  }
+  return between;
+}
+
+ModelOf<2> model_of(const specimen::Specimen& specimen, double thickness,
+                    const std::vector<InterfaceParameters>& interfaces,
+                    const std::vector<Bearing>& bearings) {
+  return make_concrete_model(specimen, thickness, interfaces, bearings);
+}
+
+ModelOf<3> model_of(const solid::SolidSpecimen& specimen, double /*thickness*/,
+                    const std::vector<InterfaceParameters>& interfaces,
+                    const std::vector<Bearing>& bearings) {
+  return make_solid_model(specimen, interfaces, bearings);
+}
+
+}  // namespace
+
+std::vector<std::string> AskedSpecimen::sides() const {
+  if (prism) return prism->sides();
+  std::vector<std::string> names;
+  for (const specimen::Side& side : region.sides()) names.push_back(side.name);
+  return names;
+}
+
+Vec<3> AskedSpecimen::low() const {
+  return prism ? prism->low() : resized<3>(region.box().low);
+}
+
+Vec<3> AskedSpecimen::high() const {
+  return prism ? prism->high() : resized<3>(region.box().high);
+}
+
+double AskedSpecimen::distance(const Vec<3>& point) const {
+  return prism ? prism->distance(point) : region.distance(resized<2>(point));
+}
+
+double AskedSpecimen::extent() const {
+  return prism ? prism->volume() : region.area();
+}
+
+double AskedSpecimen::block_size() const {
+  if (blocks.count == 0) return 0.0;
+  return prism ? std::cbrt(extent() / blocks.count) : std::sqrt(extent() / blocks.count);
+}
+
+const std::vector<std::string>& phases(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) -> const std::vector<std::string>& { return s.phases; }, specimen);
+}
+
+std::vector<std::string> warnings(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) { return warnings(s); }, specimen);
+}
+
+double estimate_memory(std::int64_t blocks, int dimension) {
+  return kBytesFixed + (dimension == 2 ? kBytesPerBlock : kBytesPerSolidBlock) * static_cast<double>(blocks);
+}
+
+MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team) {
+  const double needed = estimate_memory(asked.blocks.count, asked.dimension());
+  const double available = available_memory();
+  if (needed > available)
+    throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
+                            asked.blocks.count, needed * 1e-9, available * 1e-9));
+  if (asked.prism) return solid::make_specimen(asked, *asked.prism, team);
+  return specimen::make_specimen(asked, team);
+}
+
+SpecimenNumbers numbers_of(const MadeSpecimen& specimen) {
+  return std::visit(
+      Overloaded{
+          [](const specimen::Specimen& s) -> SpecimenNumbers {
+            return {s.fraction, s.metrics.mean_size, specimen::block_size(s), std::sqrt(s.region.area())};
+          },
+          [](const solid::SolidSpecimen& s) -> SpecimenNumbers {
+            const double size = s.metrics.mean_size;
+            return {s.fraction, size, size, std::cbrt(s.body.volume())};
+          }},
+      specimen);
+}
+
+std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness,
+                                  const std::optional<MotionParameters>& motion) {
+  return std::visit(
+      [&](const auto& s) -> std::unique_ptr<Model> {
+        auto made = motion ? model_of(s, thickness, motion->contacts.interfaces, motion->bearings)
+                           : model_of(s, thickness, {}, {});
+        return std::make_unique<decltype(made)>(std::move(made));
+      },
+      specimen);
+}
+
+SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
+                       const std::optional<MotionParameters>& motion) {
+  SpecimenBody body{make_model(specimen, thickness, motion), numbers_of(specimen), {}, {}};
+  if (motion) body.model->cut_into_chunks(motion->chunk_blocks);
+  add_sets(*body.model, sets);
+  if (const auto* plane = std::get_if<specimen::Specimen>(&specimen)) body.notches = plane->region.notches();
+  if (has_platens(motion))
+    body.between_platens =
+        std::visit([&](const auto& s) { return between_platens(s, *body.model); }, specimen);
+  return body;
+}
+
+}  // namespace pyroclast

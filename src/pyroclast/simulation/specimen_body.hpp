@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pyroclast/base/team.hpp"
+#include "pyroclast/model/model.hpp"
+#include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/motion_parameters.hpp"
+#include "pyroclast/simulation/press.hpp"
+#include "pyroclast/solid/specimen.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast {
+
+/// Specimen that is asked for, in the plane or in space.
+struct AskedSpecimen : specimen::SpecimenParameters {
+  std::optional<solid::Prism> prism;  ///< body in space; the region is then empty
+
+  int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
+  std::vector<std::string> sides() const;          ///< Returns the names of its sides.
+  Vec<3> low() const;                              ///< Returns the lower corner of the box around it, m.
+  Vec<3> high() const;                             ///< Returns the upper corner, m.
+  /// Returns the distance of a point from the outline, m, negative or 0 within the specimen.
+  double distance(const Vec<3>& point) const;
+  double extent() const;  ///< Returns the area, m², of a solid the volume, m³.
+  /// Returns the size of a block as foreseen, m: the root of the mean area, of a solid of the mean volume. 0
+  /// where the number of blocks is not known.
+  double block_size() const;
+};
+
+/// Specimen that was made, in the plane or in space.
+using MadeSpecimen = std::variant<specimen::Specimen, solid::SolidSpecimen>;
+
+/// Returns the names of the phases that its blocks can have.
+const std::vector<std::string>& phases(const MadeSpecimen& specimen);
+/// Returns what a user should know of a specimen that differs from the request, one line each.
+std::vector<std::string> warnings(const MadeSpecimen& specimen);
+
+/// Returns an upper estimate of the memory that a run with so many blocks needs, bytes.
+/// \param dimension  dimension of the body, 2 or 3
+double estimate_memory(std::int64_t blocks, int dimension);
+
+/// Makes a specimen. Throws Error when the specimen cannot be made, or a run of it would not fit into the
+/// free memory.
+/// \param team  threads that make it; without a team the calling thread works alone
+MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team = nullptr);
+
+/// Numbers of a specimen that materials, heat and exchanges ask for.
+struct SpecimenNumbers {
+  std::vector<double> fraction;  ///< share of each phase, in the order of the solids
+  double mean_size = 0.0;        ///< mean size of its blocks, m, see specimen::Metrics
+  double block_size = 0.0;  ///< size of a block that counts for fracture zones, m, see specimen::block_size
+  /// Side of the square of its area, m, against which lengths of the body are measured; of a solid the edge
+  /// of the cube of its volume.
+  double size = 0.0;
+};
+
+SpecimenNumbers numbers_of(const MadeSpecimen& specimen);
+
+/// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
+/// gridpoints have a set "specimen"; between platens they have the sets of Press.
+struct SpecimenBody {
+  std::unique_ptr<Model> model;
+  SpecimenNumbers numbers;
+  std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
+  std::optional<Press::Specimen> between_platens;
+};
+
+/// Component of a position along which the press of a deck stands.
+inline constexpr int kVertical = 1;
+
+/// Makes the model of a specimen, with the bearings and interfaces of `motion`.
+/// \param thickness  thickness of a specimen in the plane, m; of a solid not used
+/// \param motion     empty where nothing moves: then there are no bearings
+std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness,
+                                  const std::optional<MotionParameters>& motion);
+
+/// Makes a specimen into a body, with sets beside those that every model has.
+SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
+                       const std::optional<MotionParameters>& motion);
+
+}  // namespace pyroclast

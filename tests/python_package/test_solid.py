@@ -1,0 +1,202 @@
+"""A cylinder in space by deck: what its run keeps, what VTK and the package read of it, and how it is cut."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+import pyroclast
+from pyroclast import cut, solid_sections
+
+PROGRAM = os.environ["PYROCLAST"]
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+DIAMETER, HEIGHT = 0.1, 0.2
+CHANGES = ("blocks.count=300", "aggregates.fraction=0.2", "aggregates.d_min=20 mm", "aggregates.sieves=[]",
+           "stages[1].stop_strain=1.2e-3",
+           "stages[1].ramp_time=2 ms", "stages[1].velocity=4 mm/s", "output.history_strain=2e-5",
+           "output.frame_strain=6e-4")
+
+
+def words(changes) -> list[str]:
+    return [word for change in changes for word in ("--set", change)]
+
+
+class Cylinder(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.place)
+        cls.done = cls.run_deck("out")
+        assert cls.done.returncode == 0, cls.done.stderr
+        cls.results = pyroclast.read(cls.place / "out")
+        cls.summary = json.loads((cls.place / "out/summary.json").read_text())
+
+    @classmethod
+    def run_deck(cls, out: str, *more: str) -> subprocess.CompletedProcess:
+        return subprocess.run([PROGRAM, "run", CASES / "starter_3d.toml", "--out", out, *words(CHANGES), *more],
+                              cwd=cls.place, capture_output=True, text=True, timeout=300, check=False)
+
+    def read(self, name: str):
+        from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
+
+        reader = vtkHDFReader()
+        reader.SetFileName(str(self.place / "out/fields" / name))
+        reader.Update()
+        return reader.GetOutput()
+
+    def test_vtk_reads_tetrahedra_and_contact_faces(self):
+        blocks, contacts = self.read("blocks_0002.hdf"), self.read("contacts_0002.hdf")
+        self.assertEqual({blocks.GetCellType(i) for i in range(blocks.GetNumberOfCells())}, {10})
+        self.assertEqual({contacts.GetCellType(i) for i in range(contacts.GetNumberOfCells())}, {9})
+        mesh = self.results.mesh
+        self.assertEqual(blocks.GetNumberOfCells(), len(mesh.blocks.zones))
+        self.assertEqual(contacts.GetNumberOfCells(), len(mesh.contacts.cells))
+        data = contacts.GetCellData()
+        area, damage = data.GetArray("area [m2]"), data.GetArray("tension_damage [1]")
+        self.assertGreater(damage.GetRange()[1], 0.0)
+        # the cells of a face fill it, as the areas of its contact points do
+        x = mesh.contacts.points[mesh.contacts.cells]
+        shown = 0.5 * np.linalg.norm(np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]), axis=1)
+        whole = sum(area.GetTuple1(i) for i in range(contacts.GetNumberOfCells()))
+        self.assertAlmostEqual(shown.sum() / whole, 1.0, delta=1e-9)
+        moved = contacts.GetPointData().GetArray("displacement [m]")
+        self.assertEqual((moved.GetNumberOfTuples(), moved.GetNumberOfComponents()), (4 * len(mesh.contacts.cells), 3))
+
+    def test_zones_fill_the_cylinder(self):
+        blocks = self.results.mesh.blocks
+        volume = math.pi / 4.0 * DIAMETER**2 * HEIGHT
+        self.assertAlmostEqual(blocks.sizes[~blocks.of_bearing].sum() / volume, 1.0, delta=1e-12)
+        self.assertTrue((blocks.sizes > 0.0).all())
+
+    def test_the_stress_is_over_the_circle(self):
+        loaded = self.results.history["stress_MPa"]
+        self.assertGreater(loaded.max(), 10.0)
+        self.assertAlmostEqual(self.summary["specimen"]["fraction"]["aggregate"], 0.20, delta=0.02)
+        self.assertIn("area_m2", self.summary["cracks"]["tension_mortar_mortar"])
+
+    def test_a_plane_cuts_the_area_of_the_section(self):
+        blocks = self.results.mesh.blocks
+        for axis, share, area in (("y", 0.37, math.pi / 4.0 * DIAMETER**2), ("z", 0.5, None)):
+            polygons = cut.section(blocks, solid_sections.axis_plane(blocks, axis, share))
+            within = polygons.of(~blocks.of_bearing[polygons.owner])
+            found = np.linalg.norm(within.area_vectors, axis=1).sum()
+            if area is None:  # through the axis: the polygon of the circle is as wide as it is there
+                self.assertAlmostEqual(found, DIAMETER * HEIGHT, delta=0.02 * DIAMETER * HEIGHT)
+            else:
+                self.assertAlmostEqual(found, area, delta=1e-9 * area)
+
+    def test_a_corner_is_cut_away_and_the_rest_is_closed(self):
+        blocks = self.results.mesh.blocks
+        planes = solid_sections.middle_planes(blocks, (0.4, 0.6))
+        whole, cuts = cut.without_corner(blocks, planes)
+        for polygons in (whole, cuts):
+            for plane, other in (planes, planes[::-1]):
+                above = (plane.above(polygons.corners).min(axis=1) > 1e-9) & (
+                    other.above(polygons.corners).min(axis=1) > 1e-9)
+                self.assertFalse(above.any())
+        # area vectors of a closed surface sum to zero; cuts are walked in either sense
+        outward = whole.area_vectors.sum(axis=0)
+        normals = np.abs(cuts.area_vectors).sum(axis=0)
+        self.assertAlmostEqual(outward[1], 0.0, delta=1e-12)
+        self.assertAlmostEqual(abs(outward[0]), normals[0], delta=1e-9)
+        self.assertAlmostEqual(abs(outward[2]), normals[2], delta=1e-9)
+
+    def test_traces_of_contacts_lie_in_the_plane_and_on_them(self):
+        contacts, plane = self.results.mesh.contacts, solid_sections.axis_plane(self.results.mesh.blocks, "x", 0.3)
+        cells = contacts.points[contacts.cells]
+        lines, owner = cut.traces(cells, plane)
+        self.assertGreater(len(lines), 100)
+        self.assertLess(np.abs(plane.above(lines)).max(), 1e-12)
+        low, high = cells[owner].min(axis=1), cells[owner].max(axis=1)
+        self.assertTrue((lines >= low[:, None] - 1e-12).all() and (lines <= high[:, None] + 1e-12).all())
+
+    def test_fields_have_three_components(self):
+        fields = self.results.fields
+        self.assertEqual(fields["displacement"].sizes["component"], 3)
+        self.assertEqual(list(fields["component"].values), ["x", "y", "z"])
+        self.assertAlmostEqual(float(fields["volume"].sum()), self.results.mesh.blocks.sizes.sum(), delta=1e-15)
+        self.assertEqual(fields["contact_displacement"].sizes["end"], 4)
+
+    def test_all_figures_of_a_solid_are_drawn(self):
+        names = {path.stem for path in (self.place / "out/figures").iterdir()}
+        self.assertLessEqual({"stress_strain", "fracture", "cracks", "energy", "cracks_inside"}, names)
+        done = subprocess.run([PROGRAM, "figures", "plane", "out", "--axis", "x", "--at", "0.3"], cwd=self.place,
+                              capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue((self.place / "out/figures/plane_x_0.3.png").exists())
+
+    def test_statistics_of_crack_faces(self):
+        faces = solid_sections.crack_faces(self.results, self.results.frames[-1])
+        self.assertGreater(len(faces.area), 100)
+        self.assertAlmostEqual(faces.damage_by_height(0.0, HEIGHT).sum(), 1.0, delta=1e-9)
+        self.assertTrue(0.0 < faces.upright_share() <= 1.0)
+        # smooth ends: cracks stand upright more often than by chance
+        self.assertGreater(faces.upright_share(30.0), 0.5)
+
+    def test_a_specimen_is_drawn_and_written(self):
+        done = subprocess.run([PROGRAM, "specimen", CASES / "starter_3d.toml", "--out", "made", *words(CHANGES)],
+                              cwd=self.place, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for name in ("fields/mesh.h5", "figures/morphology.png", "figures/gradation.png", "specimen/aggregates.csv"):
+            self.assertTrue((self.place / "made" / name).exists(), name)
+        facts = json.loads((self.place / "made/specimen/specimen.json").read_text())
+        self.assertAlmostEqual(facts["volume_m3"], math.pi / 4.0 * DIAMETER**2 * HEIGHT, delta=1e-15)
+        self.assertAlmostEqual(sum(c["asked"] for c in facts["size_classes"]), 0.20, delta=1e-12)
+
+    def test_a_fork_from_the_checkpoint_of_a_stage_gives_the_same_bits(self):
+        forked = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked",
+                                 "--no-figures"], cwd=self.place, capture_output=True, text=True, timeout=300,
+                                check=False)
+        self.assertEqual(forked.returncode, 0, forked.stderr)
+        self.assertEqual((self.place / "forked/history.csv").read_text(),
+                         (self.place / "out/history.csv").read_text())
+
+    def test_threads_and_instructions_change_no_bit(self):
+        want = (self.place / "out/history.csv").read_text()
+        sets = re.findall(r"\w+", pyroclast.instruction_sets)
+        others = [("--threads", "1"), *(("--instructions", name) for name in sets)]
+        for number, more in enumerate(others):
+            done = self.run_deck(f"other_{number}", "--no-figures", *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual((self.place / f"other_{number}/history.csv").read_text(), want, more)
+
+    def test_a_run_starts_from_the_temperatures_of_a_solid_and_of_no_plane(self):
+        """Where each gridpoint is strained by its own temperature without stress, which another run left."""
+        frame = self.place / "out/fields/blocks_0001.hdf"
+        stated = f'[coupling]\nstress_free = {{ frame = "{frame}" }}\n'
+        for name, case in (("space", "starter_3d"), ("plane", "starter")):
+            text = (CASES / f"{case}.toml").read_text()
+            (self.place / f"{name}.toml").write_text(text + "\n" + stated)
+        changes = words(CHANGES)
+        taken = subprocess.run([PROGRAM, "check", "space.toml", *changes], cwd=self.place, capture_output=True,
+                               text=True, timeout=300, check=False)
+        self.assertEqual(taken.returncode, 0, taken.stderr)
+        refused = subprocess.run([PROGRAM, "check", "plane.toml"], cwd=self.place, capture_output=True, text=True,
+                                 timeout=300, check=False)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("is of a body in space, but this one is in the plane", refused.stderr)
+
+    def test_python_drives_a_solid(self):
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        deck["blocks.count"] = 120
+        specimen = deck.make_specimen()
+        self.assertEqual(len(specimen.cells), 120)
+        self.assertAlmostEqual(specimen.volume, math.pi / 4.0 * DIAMETER**2 * HEIGHT, delta=1e-15)
+        areas = np.zeros((120, 3))
+        for corners, (inner, outer) in zip(specimen.faces, specimen.neighbours):
+            x = specimen.vertices[corners]
+            vector = 0.5 * np.cross(x[1:-1] - x[0], x[2:] - x[0]).sum(axis=0)
+            areas[inner] += vector
+            if outer >= 0:
+                areas[outer] -= vector
+        self.assertLess(np.abs(areas).max(), 1e-15)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,231 @@
+// Promise: a deck becomes one of a solid by its depth or as a cylinder, its places have three coordinates or
+// stand for all z, and what a solid cannot have is refused with the line to write.
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "decks.hpp"
+#include "messages.hpp"
+#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/run.hpp"
+
+namespace pyroclast {
+namespace {
+
+Setup read(const std::string& deck) {
+  return read_setup(Deck::parse(deck, "deck.toml"), ".");
+}
+
+std::string message(const std::string& text) {
+  return pyroclast::message([&] { read(text); });
+}
+
+/// The starter of few blocks, as it stands in the plane.
+std::string plane() {
+  return with(shipped_case("starter"), "count = 1000", "count = 60");
+}
+
+/// The same as a solid: one line is another.
+std::string solid() {
+  return with(plane(), "thickness = \"1 m\"", "depth = \"150 mm\"");
+}
+
+std::string cylinder() {
+  return with(with(with(plane(), "thickness = \"1 m\"", "shape = \"cylinder\""), "width", "diameter"),
+              "seed = 1", "seed = 2");
+}
+
+std::string with_more(const std::string& deck, const std::string& tables) {
+  return deck + "\n" + tables;
+}
+
+TEST(SolidDeck, OneLineMakesASolidOfADeckWithoutPlaces) {
+  for (const char* const name : {"starter", "compression", "hot_compression", "hot_strength"}) {
+    const std::string deck = shipped_case(name);
+    const auto line = deck.find("thickness = \"1 m\"");
+    ASSERT_NE(line, std::string::npos) << name;
+    const auto setup = read(with(deck, "thickness = \"1 m\"", "depth = \"150 mm\""));
+    EXPECT_EQ(setup.specimen.dimension(), 3) << name;
+    EXPECT_NEAR(setup.specimen.extent(), 0.15 * 0.3 * 0.15, 1e-15) << name;
+    EXPECT_EQ(setup.specimen.sides(),
+              (std::vector<std::string>{"bottom", "right", "top", "left", "front", "back"}));
+  }
+}
+
+TEST(SolidDeck, ACylinderHasTheAreaOfItsCircle) {
+  const auto setup = read(cylinder());
+  const double circle = 0.25 * std::numbers::pi * 0.15 * 0.15;
+  EXPECT_NEAR(setup.specimen.extent(), circle * 0.3, 1e-12 * circle);
+  EXPECT_GE(setup.specimen.prism->section().pieces().size(), 24U);
+  EXPECT_EQ(setup.specimen.sides(), (std::vector<std::string>{"rim", "bottom", "top"}));
+  // of fine blocks the sides are about a block long
+  const auto fine = read(with(cylinder(), "count = 60", "size = \"2 mm\""));
+  EXPECT_NEAR(0.15 * std::numbers::pi / fine.specimen.prism->section().pieces().size(), 2e-3, 5e-5);
+}
+
+TEST(SolidDeck, DiscsAndPolygonsAreDrawnOut) {
+  const auto of_shape = [](const std::string& shape) {
+    return with(with(solid(), "width = \"150 mm\"", shape), "height = \"300 mm\"", "");
+  };
+  const auto without_platens = [](std::string deck) {
+    deck = deck.substr(0, deck.find("[[stages]]"));
+    deck.erase(deck.find("[materials.platen]"), deck.find("[contacts]") - deck.find("[materials.platen]"));
+    return with(deck, "platen_friction = 0.0", "#") +
+           "[[stages]]\nkind = \"drive\"\nduration = \"1 ms\"\n[[stages.drives]]\nset = \"front\"\n"
+           "hold = [\"x\", \"y\", \"z\"]\n[output]\n";
+  };
+  const auto disc = read(without_platens(of_shape("shape = \"disc\"\ndiameter = \"150 mm\"")));
+  EXPECT_NEAR(disc.specimen.extent(), 0.25 * std::numbers::pi * 0.15 * 0.15 * 0.15, 1e-12);
+  const auto triangle =
+      read(without_platens(of_shape("shape = \"polygon\"\ncorners = [[\"0 mm\", \"0 mm\"], [\"200 mm\", \"0 "
+                                    "mm\"], [\"0 mm\", \"150 mm\"]]")));
+  EXPECT_NEAR(triangle.specimen.extent(), 0.5 * 0.2 * 0.15 * 0.15, 1e-15);
+  EXPECT_EQ(triangle.specimen.sides().back(), "back");
+}
+
+TEST(SolidDeck, BlocksAreToldByTheirNumberOrTheirSize) {
+  EXPECT_EQ(read(with(solid(), "count = 60", "size = \"15 mm\"")).specimen.blocks.count, 2000);
+  EXPECT_NEAR(read(with(solid(), "count = 60", "count = 2000")).specimen.block_size(), 0.015, 1e-12);
+}
+
+TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
+  struct Refused {
+    std::string deck;
+    std::vector<const char*> words;
+  };
+  const std::string notch =
+      "[[specimen.notches]]\nmouth = [\"75 mm\", \"0 mm\"]\ntip = [\"75 mm\", \"50 mm\"]\n";
+  const std::string ring = "shape = \"ring\"\ndiameter = \"200 mm\"\ninner_diameter = \"50 mm\"";
+  const std::vector<Refused> all{
+      {with(plane(), "seed = 1", "seed = 1\ndepth = \"150 mm\""), {"specimen.thickness", "beside depth"}},
+      {with(cylinder(), "shape = \"cylinder\"", "shape = \"cylinder\"\nthickness = \"1 m\""),
+       {"specimen.thickness", "a cylinder is a solid"}},
+      {with(cylinder(), "shape = \"cylinder\"", "shape = \"cylinder\"\ndepth = \"1 m\""),
+       {"specimen.depth", "diameter and a height"}},
+      {with(with(solid(), "width = \"150 mm\"", ring), "height = \"300 mm\"", ""),
+       {"specimen.depth", "hole"}},
+      {with(solid(), "[aggregates]", notch + "[aggregates]"), {"specimen.notches", "in a solid yet"}},
+      {with(solid(), "relaxation = 0", "relaxation = 5"), {"blocks.relaxation", "relaxation = 0"}},
+      {with(solid(), "count = 60", "file = \"a.tess\""), {"blocks.file", "count or size"}},
+      {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),
+       {"mechanics.kinematics", "kinematics = \"small\""}},
+      {with_more(solid(),
+                 "[[inclusions]]\nshape = \"fibre\"\nphase = \"mortar\"\ncount = 3\n"
+                 "length = \"30 mm\"\nminimum_gap = \"1 mm\"\n"),
+       {"inclusions[0].shape", "fibres cannot be placed in a solid yet"}},
+      {with_more(solid(),
+                 "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"150 mm\"]\nwidth = \"20 mm\"\n"
+                 "thickness = \"10 mm\"\nmaterial = \"platen\"\ncontact = \"glued\"\n"),
+       {"bearings[0].at", "all of bottom, right, top, left, front, back"}},
+      {with_more(cylinder(),
+                 "[[bearings]]\nname = \"band\"\nside = \"rim\"\nthickness = \"10 mm\"\n"
+                 "contact = \"glued\"\n"),
+       {"bearings[0].side", "one of bottom, top"}},
+      {with_more(solid(),
+                 "[[bearings]]\nname = \"more\"\nside = \"top\"\nthickness = \"10 mm\"\n"
+                 "contact = \"glued\"\n"),
+       {"bearings[0].side", "lies on \"top\" already"}},
+      {with_more(solid(), "[[record]]\nname = \"c\"\nkind = \"crack_length\"\nset = \"cracks\"\n"),
+       {"record[0].kind", "kind = \"crack_area\""}},
+      {with_more(plane(), "[[record]]\nname = \"c\"\nkind = \"crack_area\"\nset = \"cracks\"\n"),
+       {"record[0].kind", "kind = \"crack_length\""}},
+      {with_more(plane(),
+                 "[[record]]\nname = \"u\"\nkind = \"displacement\"\nset = \"top\"\ndirection = \"z\"\n"),
+       {"record[0].direction", "\"x\""}},
+      {with_more(solid(), "[[sets]]\nname = \"a\"\nnearest = [\"75 mm\", \"150 mm\"]\n"),
+       {"sets[0].nearest", "nearest = [\"0.075 m\", \"0.15 m\", \"0.075 m\"]"}},
+      {with_more(solid(), "[[sets]]\nname = \"a\"\ncentre = [\"75 mm\", \"150 mm\"]\nradius = \"9 mm\"\n"),
+       {"sets[0].centre", "centre = [\"0.075 m\", \"0.15 m\", \"0.075 m\"]"}},
+      {with_more(solid(),
+                 "[[sets]]\nname = \"a\"\nbox = [[\"0 mm\", \"0 mm\"], [\"9 mm\", \"9 mm\", \"9 mm\"]]\n"),
+       {"sets[0].box", "all z"}},
+      {with_more(plane(), "[[sets]]\nname = \"a\"\nnearest = [\"75 mm\", \"150 mm\", \"0 mm\"]\n"),
+       {"sets[0].nearest", "no z"}},
+  };
+  for (const auto& [deck, words] : all) {
+    const std::string complaint = message(deck);
+    expect_in("deck.toml:", complaint);
+    for (const char* const word : words) expect_in(word, complaint);
+  }
+  EXPECT_EQ(message(solid()), "no Error was thrown");
+  EXPECT_EQ(message(cylinder()), "no Error was thrown");
+}
+
+TEST(SolidDeck, FormulasKnowADepthButNoThicknessOfACylinder) {
+  const std::string drive =
+      "[[stages]]\nkind = \"drive\"\nduration = \"1 ms\"\n[[stages.drives]]\nset = \"front\"\n"
+      "hold = [\"x\", \"y\", \"z\"]\n[[stages.results]]\nname = \"X\"\nkind = \"formula\"\n"
+      "formula = \"thickness\"\nunit = \"m\"\n[output]\n";
+  const auto of = [&](std::string deck) {
+    deck = deck.substr(0, deck.find("[[stages]]"));
+    deck.erase(deck.find("[materials.platen]"), deck.find("[contacts]") - deck.find("[materials.platen]"));
+    return with(deck, "platen_friction = 0.0", "#") + drive;
+  };
+  auto setup = read(with(of(solid()), "depth = \"150 mm\"", "depth = \"80 mm\""));
+  const auto simulation = make_simulation(setup);
+  pyroclast::Run run(*simulation, std::move(setup.stages));
+  ASSERT_EQ(run.run(), Outcome::completed);
+  const auto report = run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
+  const auto found = std::ranges::find(report.results, "X_m", &Result::name);
+  ASSERT_NE(found, report.results.end());
+  EXPECT_NEAR(std::get<double>(found->value), 0.08, 1e-12);
+  const std::string of_cylinder = message(with(of(cylinder()), "set = \"front\"", "set = \"bottom\""));
+  expect_in("stages[0].results[0].formula", of_cylinder);
+  expect_in("thickness", of_cylinder);
+}
+
+TEST(SolidDeck, ShortEdgesStayAndAWarningSaysSo) {
+  const auto warnings = [](const std::string& deck) {
+    std::string all;
+    for (const Diagnostic& warning : read(deck).warnings) all += warning.key + ": " + warning.message + "\n";
+    return all;
+  };
+  expect_in("blocks.shortest_edge: has no effect on a solid", warnings(solid()));
+  EXPECT_EQ(warnings(with(solid(), "shortest_edge = 0.2", "")).find("shortest_edge"), std::string::npos);
+}
+
+/// The gridpoints of a set in a model of the deck.
+std::vector<Vec<3>> places_of(const std::string& deck, const std::string& set) {
+  const auto simulation = make_simulation(read(deck));
+  std::vector<Vec<3>> places;
+  for (const int g : simulation->model().set(set)) places.push_back(simulation->model().place(g));
+  return places;
+}
+
+TEST(SolidDeck, PairsStandForAllZ) {
+  const auto box = [](const char* corners) {
+    return places_of(with_more(solid(), fmt::format("[[sets]]\nname = \"a\"\nbox = [{}]\n", corners)), "a");
+  };
+  const auto whole = box(R"(["0 mm", "0 mm"], ["150 mm", "100 mm"])");
+  const auto front = box(R"(["0 mm", "0 mm", "0 mm"], ["150 mm", "100 mm", "40 mm"])");
+  const auto at_back = [](const std::vector<Vec<3>>& places) {
+    return std::ranges::count_if(places, [](const Vec<3>& x) { return x[2] > 0.1; });
+  };
+  EXPECT_GT(at_back(whole), 0);
+  EXPECT_EQ(at_back(front), 0);
+  EXPECT_GT(whole.size(), front.size());
+  for (const Vec<3>& x : whole) EXPECT_LE(x[1], 0.1 + 1e-9);
+  // a line of pairs is the plane through it
+  const auto side =
+      places_of(with_more(solid(),
+                          "[[sets]]\nname = \"a\"\nwithin = \"specimen\"\nline = [[\"0 mm\", \"0 mm\"], "
+                          "[\"0 mm\", \"300 mm\"]]\n"),
+                "a");
+  EXPECT_EQ(side, places_of(solid(), "left"));
+}
+
+TEST(SolidDeck, AProbeHasThreeCoordinates) {
+  std::string deck = with(shipped_case("thermal_wall"), "thickness = \"1 m\"", "depth = \"100 mm\"");
+  deck.erase(deck.find("[[probes]]"), deck.find("[output]") - deck.find("[[probes]]"));
+  const std::string probe = "[[probes]]\nname = \"p\"\nx = \"20 mm\"\ny = \"20 mm\"\n";
+  expect_in("z = \"0.05 m\"", message(with_more(deck, probe)));
+  EXPECT_EQ(message(with_more(deck, probe + "z = \"20 mm\"\n")), "no Error was thrown");
+  expect_in("probes", message(with_more(deck, probe + "z = \"200 mm\"\n")));
+}
+
+}  // namespace
+}  // namespace pyroclast
