@@ -328,7 +328,7 @@ TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
        "is neither part of the program (cohesive, elastic");
   says("between = [\"light\", \"mortar\", \"aggregate\", \"light\"]", "between = [\"light\"]",
        "must name two phases");
-  says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the solid of a bearing");
+  says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the material of a bearing");
   says("friction = 0.4", "friction = 0.4\nstrength_factor = 0.5", "strength_factor = 0.5: has no effect");
 }
 

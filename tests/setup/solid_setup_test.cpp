@@ -1,5 +1,6 @@
 // Promise: a deck becomes one of a solid by its depth or as a cylinder, its places have three coordinates or
 // stand for all z, and what a solid cannot have is refused with the line to write.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "decks.hpp"
 #include "messages.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
 
@@ -176,6 +178,29 @@ TEST(SolidDeck, FormulasKnowADepthButNoThicknessOfACylinder) {
   const std::string of_cylinder = message(with(of(cylinder()), "set = \"front\"", "set = \"bottom\""));
   expect_in("stages[0].results[0].formula", of_cylinder);
   expect_in("thickness", of_cylinder);
+}
+
+TEST(SolidDeck, ABearingLiesOnTheRimOfADisc) {
+  std::string deck = with(shipped_case("brazilian"), "thickness = \"300 mm\"", "depth = \"60 mm\"");
+  deck = with(with(deck, "count = 2000", "count = 150"), "fraction = 0.34", "fraction = 0.0");
+  const auto simulation = make_simulation(read(deck));
+  const Model& model = simulation->model();
+  const auto area_of = [&](const char* set) {
+    double area = 0.0;
+    for (const Face& face : faces_in(model, model.set(set))) area += face.area;
+    return area;
+  };
+  // the seat is two chords of the circle, and belongs to the rim too
+  for (const char* const strip : {"lower_strip", "upper_strip"}) {
+    double seat = 0.0;
+    for (const int c : model.contact_sets.at(strip)) seat += model.joint(c).area;
+    EXPECT_NEAR(seat, 0.015 * 0.06, 0.02 * seat);
+    for (const int g : model.set(std::string(strip) + "_seat"))
+      EXPECT_TRUE(std::ranges::binary_search(model.set("rim"), g));
+    for (const int g : model.set(std::string(strip) + "_support"))
+      EXPECT_NEAR(std::abs(model.place(g)[1]), std::abs(model.place(model.set(strip).back())[1]), 1e-12);
+  }
+  EXPECT_GT(area_of("rim"), 0.9 * (std::numbers::pi * 0.15 - 2 * 0.015) * 0.06);
 }
 
 TEST(SolidDeck, ShortEdgesStayAndAWarningSaysSo) {

@@ -48,8 +48,8 @@ void add_prism(const std::array<int, 3>& columns, int inner, int outer, const st
   }
 }
 
-/// Share of its area by which a side may lack in area vectors by rounding, and be plane.
-constexpr double kPlane = 1e-9;
+/// Least area vector of a side on which a bearing lies, over its area: a seat on a rim is bent by little.
+constexpr double kMostBent = 0.9;
 
 /// Adds a bearing over a side of the specimen.
 SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen, const Bearing& bearing,
@@ -73,9 +73,9 @@ SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen
   if (block.faces.empty() || !(bearing.thickness > 0.0))
     throw Error(fmt::format("bearing \"{}\": {}", bearing.name,
                             block.faces.empty() ? "no block lies on its side" : "it has no thickness"));
-  if (norm(outward) < (1.0 - kPlane) * area)
+  if (norm(outward) < kMostBent * area)
     throw Error(
-        fmt::format("bearing \"{}\": its side \"{}\" is not plane, and no bearing can lie on it in a "
+        fmt::format("bearing \"{}\": its side \"{}\" goes around the body, and no bearing can lie on it in a "
                     "solid yet",
                     bearing.name, bearing.side));
   outward *= 1.0 / norm(outward);
@@ -192,6 +192,7 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
     for (const int v : corners)
       its.push_back(model.block_gridpoints[first_block + inner] + place_in(vertices[inner], v));
     std::vector<std::string> names{"outline", sides[side]};
+    if (const int whole = specimen.body.whole_of(side); whole >= 0) names.push_back(sides[whole]);
     if (has_quarters && sides[side] == "rim")
       names.emplace_back(quarter_of(solid::area_vector(complex, complex.faces[f])));
     for (const std::string& name : names) {

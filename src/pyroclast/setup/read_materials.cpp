@@ -30,7 +30,7 @@ constexpr Interval kStandardRange{20.0, 1200.0};
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
-constexpr Meaning kBearingSolid = "the solid of platens or other bearings, at 20 °C in every run";
+constexpr Meaning kBearingSolid = "the material of platens or other bearings, at 20 °C in every run";
 constexpr Meaning kSolid = "a phase of the specimen; each phase has such a table";
 
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
@@ -535,7 +535,7 @@ void check_complete(const Section& s, const std::vector<InterfaceParameters>& in
 }  // namespace
 
 MaterialRules read_material_rules(const Section& root) {
-  const Section s = root.section("materials", "solids that the body is made of");
+  const Section s = root.section("materials", "what the body is made of");
   return {
       s.choice<ExpansionReading>(
           "expansion_reading",

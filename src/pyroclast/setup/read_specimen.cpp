@@ -554,12 +554,15 @@ struct ReadBlocks {
 /// Least number of sides of the polygon by which a solid has a circle.
 constexpr double kFewestSides = 24.0;
 
-/// Returns a polygon of a circle's area around [0, 0], with sides about a block long.
-specimen::Region round_section(double diameter, double length, const ReadBlocks& read) {
-  const double circle = 0.25 * std::numbers::pi * diameter * diameter;
-  const double side =
-      std::min(read.size_in_solid(circle * length), std::numbers::pi * diameter / kFewestSides);
-  return specimen::Region::polygon(specimen::circle_corners({}, diameter, side), {"rim"}, true);
+/// Returns a polygon of a circle's area around [0, 0], with sides about a block long and the seats of
+/// bearings.
+specimen::Region round_section(double diameter, double length, const ReadBlocks& read,
+                               std::span<const ReadBearing> bearings) {
+  const double area = 0.25 * std::numbers::pi * diameter * diameter;
+  const double side = std::min(read.size_in_solid(area * length), std::numbers::pi * diameter / kFewestSides);
+  const Circle circle{{}, diameter};
+  const auto rim = specimen::Region::polygon(corners_of(circle, side, bearings), {"rim"}, true);
+  return with_seats(rim, std::array{circle}, bearings);
 }
 
 std::vector<std::string> side_names(std::size_t count) {
@@ -569,19 +572,20 @@ std::vector<std::string> side_names(std::size_t count) {
 }
 
 /// Returns the solid of a deck; a cube stands in for an error.
-solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& space, const ReadBlocks& read) {
+solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& space, const ReadBlocks& read,
+                        std::span<const ReadBearing> bearings) {
   using enum solid::Prism::Axis;
   const solid::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
   if (!s.ok()) return stand_in;
   try {
-    if (o.shape == Shape::cylinder) return {round_section(o.diameter, o.height, read), y, o.height};
+    if (o.shape == Shape::cylinder) return {round_section(o.diameter, o.height, read, {}), y, o.height};
     const double depth = *space.depth;
     if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
     if (o.shape == Shape::polygon)
       return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
-    return {round_section(o.diameter, depth, read), z, depth};
+    return {round_section(o.diameter, depth, read, bearings), z, depth};
   } catch (const Error& error) {
-    s.error(error.what());
+    o.shape == Shape::polygon ? s.error("corners", error.what()) : s.error(error.what());
     return stand_in;
   }
 }
@@ -645,11 +649,16 @@ void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> 
   if (specimen.prism)
     for (const specimen::Side& side : specimen.prism->section().sides())
       if (side.is_round) std::erase(names, side.name);  // no bearing of a solid lies on a bent side yet
+  const auto has_seat = [&](const ReadBearing& b) {
+    const auto sides = specimen.sides();
+    return std::ranges::find(sides, b.bearing.side) != sides.end();
+  };
   for (const ReadBearing& b : bearings)
-    if (b.at && specimen.prism && b.section.ok())
-      b.section.error("at", fmt::format("a bearing on a part of a side cannot be made in a solid yet; side = "
-                                        "... lays one on all of {}",
-                                        fmt::join(names, ", ")));
+    if (b.at && specimen.prism && b.section.ok() && !has_seat(b))
+      b.section.error("at",
+                      fmt::format("a bearing on a part of a side can be made in a solid only on the rim of "
+                                  "a disc yet; side = ... lays one on all of {}",
+                                  fmt::join(names, ", ")));
   for (std::size_t i = 0; i < bearings.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!bearings[i].at && !bearings[j].at && bearings[i].section.ok() &&
@@ -872,7 +881,7 @@ void check_phases(const Section& s, const specimen::SpecimenParameters& p,
   for (const auto& phase : specimen::phases(p))
     if (phase == "platen" ||
         std::ranges::any_of(bearings, [&](const ReadBearing& b) { return b.bearing.material == phase; }))
-      s.error(fmt::format("\"{}\" is the solid of a bearing; a phase needs another name", phase));
+      s.error(fmt::format("\"{}\" is the material of a bearing; a phase needs another name", phase));
 }
 
 /// Returns the phase of the first of these inclusions.
@@ -908,7 +917,7 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   const Section blocks = root.section("blocks", "the tessellation into blocks");
   ReadBlocks read = read_blocks(blocks, folder, outline, space, aggregates || !p.inclusions.empty());
   if (space.is_solid())
-    p.prism = make_prism(s, outline, space, read);
+    p.prism = make_prism(s, outline, space, read, bearings);
   else
     p.region = make_region(s, outline, read, bearings);
   p.blocks = std::move(read.parameters);

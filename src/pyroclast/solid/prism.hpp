@@ -28,6 +28,11 @@ class Prism {
   Prism(specimen::Region section, Axis axis, double length);
 
   const std::vector<std::string>& sides() const { return sides_; }
+  /// Returns the side of which a side is a patch, such as the rim of a seat; -1 where it is whole.
+  int whole_of(int side) const {
+    const auto& of_section = section_.sides();
+    return side < static_cast<int>(of_section.size()) ? of_section[side].part_of : -1;
+  }
   const std::vector<Plane>& planes() const { return planes_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
