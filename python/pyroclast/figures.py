@@ -238,7 +238,7 @@ def _parser() -> argparse.ArgumentParser:
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures, asked.out))
 
-    plane = commands.add_parser("plane", help="a plane through a solid, with its cracks, at the last frame")
+    plane = commands.add_parser("plane", help="a plane through a solid, with its cracks")
     plane.add_argument("folder", type=Path, metavar="RUN_DIR")
     plane.add_argument("--axis", choices=("x", "y", "z"), default="z", help="across which it stands (default: z)")
     plane.add_argument("--at", type=_share, default=0.5, metavar="SHARE",
