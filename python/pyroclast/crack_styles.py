@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from . import style
+from .mesh import BlockMesh
 
 if TYPE_CHECKING:
     from .results import Frame, Results
@@ -42,12 +47,15 @@ CRACKS = (
 )
 
 
+def can_crack(run: Results, interfaces: Collection[str]) -> np.ndarray:
+    """(C,) bool: contact points of these interfaces."""
+    contacts = run.mesh.contacts
+    return np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in interfaces])
+
+
 def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
     """(C,) bool: contact points that are drawn so."""
-    contacts = run.mesh.contacts
-    names = run.crack_modes[crack.mode]
-    can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
-    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
+    return can_crack(run, run.crack_modes[crack.mode]) & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
 
 
 def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
@@ -57,3 +65,16 @@ def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
 
 def cracks_of(run: Results) -> list[CrackStyle]:
     return [crack for crack in CRACKS if crack.mode in run.crack_modes]
+
+
+def crack_legend(run: Results) -> list[Artist]:
+    """A handle for each way in which the run's cracks are drawn."""
+    return [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label) for crack in cracks_of(run)]
+
+
+def material_legend(blocks: BlockMesh, zones: np.ndarray | None = None) -> list[Artist]:
+    """A handle for each material of some zones; None: of all."""
+    shown = blocks.material if zones is None else blocks.material[zones]
+    colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
+    return [Patch(facecolor=colour, edgecolor=style.FAINT, linewidth=0.4, label=name)
+            for kind, (name, colour) in enumerate(zip(blocks.materials, colours)) if (shown == kind).any()]

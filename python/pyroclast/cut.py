@@ -8,8 +8,6 @@ import numpy as np
 
 from .mesh import BlockMesh
 
-_NONE = 1e-12  # of the size of a body: a point so near to a plane lies on it
-
 
 @dataclass(frozen=True)
 class Plane:
@@ -21,6 +19,10 @@ class Plane:
     def above(self, points: np.ndarray) -> np.ndarray:
         """Distance along the normal, m."""
         return points @ self.normal - self.offset
+
+    def along(self, vectors: np.ndarray) -> np.ndarray:
+        """(n, 3): the parts of vectors that lie in the plane."""
+        return vectors - (vectors @ self.normal)[:, None] * self.normal
 
     @property
     def other_way(self) -> Plane:

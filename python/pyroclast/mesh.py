@@ -79,6 +79,14 @@ class Mesh:
     contacts: ContactMesh
 
 
+def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of the specimen without bearings, m."""
+    points = blocks.points[blocks.zones[~blocks.of_bearing].ravel()]
+    if not len(points):
+        raise Error(f"{blocks.path}: /blocks/material has bearings only")
+    return points.min(axis=0), points.max(axis=0)
+
+
 def cells_of_contacts(points: np.ndarray, face: np.ndarray) -> np.ndarray:
     """(C, 4, 3), m: the quadrangles of `ContactMesh`, of contact points of a solid that go around their faces.
 

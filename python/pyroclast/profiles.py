@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .errors import Error
-from .mesh import BlockMesh
-from .sections import specimen_box
+from .mesh import BlockMesh, specimen_box
 from .writing import whole
 
 if TYPE_CHECKING:

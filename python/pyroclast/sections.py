@@ -13,12 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from . import style
-from .crack_styles import count_cracks, cracked, cracks_of
-from .errors import Error
-from .mesh import BlockMesh, ContactMesh
+from .crack_styles import count_cracks, crack_legend, cracked, cracks_of, material_legend
+from .mesh import BlockMesh, ContactMesh, specimen_box
 from .solid_sections import crack_lines, draw_cut_open, flat
 
 if TYPE_CHECKING:
@@ -150,14 +148,6 @@ def _draw_panel(axes: Axes, panel: Panel, points: np.ndarray, magnification: flo
     axes.set_title(panel.title, fontweight="bold")
 
 
-def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of the specimen without bearings, m."""
-    points = blocks.points[blocks.zones[~blocks.of_bearing].ravel()]
-    if not len(points):
-        raise Error(f"{blocks.path}: /blocks/material has bearings only")
-    return points.min(axis=0), points.max(axis=0)
-
-
 def _panel_box(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> tuple[np.ndarray, np.ndarray]:
     """Corners of what a panel shows: all blocks, and a margin, m."""
     low, high = _block_box(blocks)
@@ -275,15 +265,7 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
 
 def fracture_legend(run: Results) -> list:
     """Handles of the cracks and materials that `fracture` and `draw_specimen` draw."""
-    lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
-             for crack in cracks_of(run)]
-    return lines + _material_legend(run.mesh.blocks)
-
-
-def _material_legend(blocks: BlockMesh) -> list[Patch]:
-    colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
-    return [Patch(facecolor=colour, edgecolor=style.FAINT, linewidth=0.4, label=name)
-            for kind, (name, colour) in enumerate(zip(blocks.materials, colours)) if (blocks.material == kind).any()]
+    return crack_legend(run) + material_legend(run.mesh.blocks)
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -305,7 +287,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
         axes.set_xlabel("x [mm]")
         axes.set_ylabel("y [mm]")
     axes.set_title(f"{specimen.fact('blocks'):.0f} blocks{_shares(specimen)}")
-    handles: list[Artist] = list(_material_legend(blocks))
+    handles: list[Artist] = list(material_legend(blocks))
     if circles.rows and blocks.dimension == 2:
         handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
                               label="placed circle"))

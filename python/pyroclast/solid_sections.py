@@ -13,13 +13,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from . import style
-from .crack_styles import cracked, cracks_of
+from .crack_styles import can_crack, crack_legend, cracked, cracks_of, material_legend
 from .cut import Plane, Polygons, joined, outline, section, surface, traces, without_corner
-from .mesh import BlockMesh, Mesh
+from .mesh import BlockMesh, Mesh, specimen_box
 
 if TYPE_CHECKING:
     from .results import Frame, Results
@@ -29,7 +27,7 @@ _GHOST = 0.035  # opacity of the body around its cracks
 _TENTHS = 10
 _IN_PLANE = {"x": (2, 1), "y": (0, 2), "z": (0, 1)}
 """By the axis across a plane: the axes to the right and upwards in its picture."""
-_NEAR = 1e-7  # of the size of a body: a point so near to a side lies on it
+_NEAR = 3e-7  # of the size of a body: a point so near to a side lies on it
 
 
 @dataclass(frozen=True)
@@ -65,26 +63,29 @@ def flat(points: np.ndarray) -> np.ndarray:
 
 def middle_planes(blocks: BlockMesh, at: tuple[float, float] = (0.5, 0.5)) -> tuple[Plane, Plane]:
     """Planes across x and across z, through the middle of the specimen or at other shares of its width and depth."""
-    points = blocks.points[np.unique(blocks.zones[~blocks.of_bearing])]
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = specimen_box(blocks)
     place = low + np.array([at[0], 0.0, at[1]]) * (high - low)
     return Plane(np.array([1.0, 0.0, 0.0]), float(place[0])), Plane(np.array([0.0, 0.0, 1.0]), float(place[2]))
 
 
-def draw_polygons(axes: Axes, polygons: Polygons, colours: np.ndarray, edge: str | None = None,
-                  view: View = VIEW) -> None:
+def _fills(blocks: BlockMesh) -> np.ndarray:
+    """(materials, 3): the colour of each."""
+    return np.array([to_rgb(c) for c in style.phase_colours(blocks.materials, blocks.bearing_materials)])
+
+
+def draw_polygons(axes: Axes, polygons: Polygons, colours: np.ndarray) -> None:
     """Fills what faces the eye, the farthest first, darker where it is seen from the side.
 
     colours: (P, 3), of each polygon.
     """
     normals = polygons.area_vectors
     area = np.linalg.norm(normals, axis=1)
-    facing = np.divide(normals @ view.towards_eye, area, out=np.zeros_like(area), where=area > 0.0)
+    facing = np.divide(normals @ VIEW.towards_eye, area, out=np.zeros_like(area), where=area > 0.0)
     seen = np.flatnonzero(facing > 0.0)
-    seen = seen[np.argsort(polygons.corners[seen].mean(axis=1) @ view.towards_eye, kind="stable")]
+    seen = seen[np.argsort(polygons.corners[seen].mean(axis=1) @ VIEW.towards_eye, kind="stable")]
     shaded = colours[seen] * (_DARKEST + (1.0 - _DARKEST) * facing[seen])[:, None]
-    axes.add_collection(PolyCollection(style.MILLI * view.flat(polygons.corners[seen]), facecolors=shaded,
-                                       edgecolors=edge or shaded, linewidths=0.15, rasterized=True))
+    axes.add_collection(PolyCollection(style.MILLI * VIEW.flat(polygons.corners[seen]), facecolors=shaded,
+                                       edgecolors=shaded, linewidths=0.15, rasterized=True))
 
 
 def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
@@ -93,9 +94,8 @@ def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str |
     points: (N, 3), places of the gridpoints, m.
     """
     whole, cuts = without_corner(blocks, middle_planes(blocks), points)
-    colours = np.array([to_rgb(c) for c in style.phase_colours(blocks.materials, blocks.bearing_materials)])
     polygons = joined([whole, _towards(cuts)])
-    draw_polygons(axes, polygons, colours[blocks.material[polygons.owner]])
+    draw_polygons(axes, polygons, _fills(blocks)[blocks.material[polygons.owner]])
     if edge is not None:
         lines = np.concatenate([_outer_edges(blocks, points), *_seams(blocks, points)])
         axes.add_collection(LineCollection(style.MILLI * VIEW.flat(lines), colors=edge, linewidths=0.2,
@@ -151,10 +151,10 @@ def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
         cut, _ = traces(cells[chosen], plane)
         lines.append(cut[(other.above(cut) > 0.0).all(axis=1)])
     # on the sides: the halves of the edges beside the contact point
+    halves = np.concatenate([cells[chosen][:, [0, end]] for end in (1, 3)])
     at = mesh.contacts.points[mesh.contacts.cells[chosen]]
-    for end in (1, 3):
-        visible = _lies_on_visible_side(mesh.blocks, 0.5 * (at[:, 0] + at[:, end]))
-        lines.append(_outside_quarter(cells[chosen][visible][:, [0, end]], mesh.blocks))
+    middles = np.concatenate([0.5 * (at[:, 0] + at[:, end]) for end in (1, 3)])
+    lines.append(_outside_quarter(halves[_lies_on_visible_side(mesh.blocks, middles)], mesh.blocks))
     return np.concatenate(lines)
 
 
@@ -169,7 +169,7 @@ def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
     planes = np.unique(np.round(np.c_[normals, offsets / size][facing], 7), axis=0)
     lies = np.zeros(len(points), bool)
     for plane in planes:
-        lies |= np.abs(points @ plane[:3] - plane[3] * size) < max(_NEAR, 3e-7) * size
+        lies |= np.abs(points @ plane[:3] - plane[3] * size) < _NEAR * size
     return lies
 
 
@@ -220,12 +220,10 @@ def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
     """Contact points of a solid whose damage is above `least`."""
     contacts = run.mesh.contacts
     damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
-    can_crack = np.zeros(len(contacts.cells), bool)
-    for names in run.crack_modes.values():
-        can_crack |= np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
+    interfaces = {name for names in run.crack_modes.values() for name in names}
     modes, values = list(damages), np.array(list(damages.values()))
     largest = values.max(axis=0)
-    which = can_crack & (largest > least)
+    which = can_crack(run, interfaces) & (largest > least)
     cells = contacts.points[contacts.cells[which]]
     across = np.cross(cells[:, 2] - cells[:, 0], cells[:, 3] - cells[:, 1])
     size = np.linalg.norm(across, axis=1)
@@ -309,8 +307,7 @@ def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
 
 
 def _draw_heights(axes: Axes, faces: CrackFaces, blocks: BlockMesh) -> None:
-    points = blocks.points[np.unique(blocks.zones[~blocks.of_bearing])]
-    low, high = points[:, 1].min(), points[:, 1].max()
+    low, high = (corner[1] for corner in specimen_box(blocks))
     share = faces.damage_by_height(low, high)
     heights = style.MILLI * np.linspace(low, high, len(share) + 1)
     axes.barh(heights[:-1], share, height=np.diff(heights), align="edge", color=style.BLUE, edgecolor="white",
@@ -328,30 +325,23 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     """
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
     plane = axis_plane(blocks, axis, at)
-    moved = magnification * run.gridpoint_displacement(frame)
     # the plane goes with the body: only displacements along it move what it shows
-    moved -= (moved @ plane.normal)[:, None] * plane.normal
-    points = blocks.points + moved
+    points = blocks.points + magnification * plane.along(run.gridpoint_displacement(frame))
     across, up = _IN_PLANE[axis]
-    fills = np.array([to_rgb(c) for c in style.phase_colours(blocks.materials, blocks.bearing_materials)])
     cut = section(blocks, plane, points)
+    fills = _fills(blocks)[blocks.material[cut.owner]]
     shown = cut.corners[..., [across, up]]
     low, high = shown.reshape(-1, 2).min(axis=0), shown.reshape(-1, 2).max(axis=0)
     figure = style.new_figure(1.6 + 4.0 * min((high - low)[1] / (high - low)[0], 2.2), width=5.0)
     axes, below = figure.subplots(2, 1, height_ratios=[1.0, 0.16])
-    axes.add_collection(PolyCollection(style.MILLI * shown, facecolors=fills[blocks.material[cut.owner]],
-                                       edgecolors=fills[blocks.material[cut.owner]], linewidths=0.15, rasterized=True))
-    displaced = magnification * run.contact_displacement(frame)
-    displaced -= (displaced @ plane.normal)[:, None] * plane.normal
-    cells = (contacts.points + displaced)[contacts.cells]
-    handles = []
+    axes.add_collection(PolyCollection(style.MILLI * shown, facecolors=fills, edgecolors=fills, linewidths=0.15,
+                                       rasterized=True))
+    cells = (contacts.points + magnification * plane.along(run.contact_displacement(frame)))[contacts.cells]
     for crack in cracks_of(run):
         lines, _ = traces(cells[cracked(run, frame, crack)], plane)
         axes.add_collection(LineCollection(style.MILLI * lines[..., [across, up]], colors=crack.colour,
                                            linewidths=crack.width, capstyle="round", rasterized=True))
-        handles.append(Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label))
-    handles += [Patch(facecolor=fills[kind], edgecolor=style.FAINT, linewidth=0.4, label=name)
-                for kind, name in enumerate(blocks.materials) if (blocks.material[cut.owner] == kind).any()]
+    handles = crack_legend(run) + material_legend(blocks, cut.owner)
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.grid(False)
@@ -370,8 +360,8 @@ def axis_plane(blocks: BlockMesh, axis: str, share: float = 0.5) -> Plane:
     Raises KeyError for another axis.
     """
     number = {"x": 0, "y": 1, "z": 2}[axis]
-    points = blocks.points[np.unique(blocks.zones[~blocks.of_bearing])][:, number]
-    return Plane(np.eye(3)[number], float(points.min() + share * np.ptp(points)))
+    low, high = (corner[number] for corner in specimen_box(blocks))
+    return Plane(np.eye(3)[number], float(low + share * (high - low)))
 
 
 def _in_the_middle(polygons: Polygons, blocks: BlockMesh, field: np.ndarray) -> np.ndarray:

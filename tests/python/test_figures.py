@@ -27,17 +27,18 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
-from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
 from pyroclast.crack_styles import count_cracks  # noqa: E402
+from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
+from pyroclast.mesh import specimen_box  # noqa: E402
 from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
 from pyroclast.results import Frame, Results, SpecimenFolder, Table  # noqa: E402
-from pyroclast.sections import fracture, morphology, select_frames, specimen_box  # noqa: E402
+from pyroclast.sections import fracture, morphology, select_frames  # noqa: E402
 
 
 # A fifth of what users get: what is drawn is the same, and half of the time goes into pictures' compression.

@@ -19,17 +19,26 @@ constexpr double kMilli = 1e3;
 /// Number of blocks that take some seconds to be made.
 constexpr int kManyBlocks = 20'000;
 
-std::string describe_specimen(const specimen::Specimen& s) {
-  const auto& m = s.metrics;
-  std::string text = fmt::format("specimen        {} blocks", s.tessellation.cells.size());
-  if (!s.aggregates.empty() || s.fraction_asked > 0.0)
+/// Describes what specimens of the plane and of space have in common.
+/// \param extent  what shares are of, "area" or "volume"
+template <class Specimen>
+std::string describe_phases(const Specimen& s, const char* blocks, std::size_t block_count,
+                            std::size_t stone_count, const char* extent) {
+  std::string text = fmt::format("specimen        {} {}", block_count, blocks);
+  if (stone_count > 0 || s.fraction_asked > 0.0)
     text += fmt::format(
         ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
         "superposition",
-        s.aggregates.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+        stone_count, s.fraction_asked, s.fraction_placed, s.fraction_superposed);
   text += '\n';
   for (std::size_t i = 0; i < s.phases.size(); ++i)
-    text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
+    text += fmt::format("                {:<12} {:.3f} of the {}\n", s.phases[i], s.fraction[i], extent);
+  return text;
+}
+
+std::string describe_specimen(const specimen::Specimen& s) {
+  const auto& m = s.metrics;
+  std::string text = describe_phases(s, "blocks", s.tessellation.cells.size(), s.aggregates.size(), "area");
   if (const std::string skeleton = specimen::skeleton(s); !skeleton.empty())
     text += fmt::format("                {}\n", skeleton);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
@@ -46,15 +55,7 @@ std::string describe_specimen(const specimen::Specimen& s) {
 
 std::string describe_specimen(const solid::SolidSpecimen& s) {
   const auto& m = s.metrics;
-  std::string text = fmt::format("specimen        {} blocks in space", s.complex.cells.size());
-  if (!s.balls.empty() || s.fraction_asked > 0.0)
-    text += fmt::format(
-        ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
-        "superposition",
-        s.balls.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
-  text += '\n';
-  for (std::size_t i = 0; i < s.phases.size(); ++i)
-    text += fmt::format("                {:<12} {:.3f} of the volume\n", s.phases[i], s.fraction[i]);
+  std::string text = describe_phases(s, "blocks in space", s.complex.cells.size(), s.balls.size(), "volume");
   for (const auto& c : s.classes)
     text += fmt::format(
         "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "

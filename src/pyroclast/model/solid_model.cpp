@@ -120,8 +120,8 @@ constexpr double kDiagonal = 1e-9;
 /// a side of the polygon belong to one.
 const char* quarter_of(const Vec<3>& normal) {
   if (std::abs(normal[0]) >= std::abs(normal[2]) - kDiagonal * norm(normal))
-    return normal[0] < 0.0 ? "rim_left" : "rim_right";
-  return normal[2] < 0.0 ? "rim_front" : "rim_back";
+    return kQuartersOfRim[normal[0] < 0.0 ? 0 : 1];
+  return kQuartersOfRim[normal[2] < 0.0 ? 2 : 3];
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "pyroclast/solid/specimen.hpp"
 
 namespace pyroclast {
+
+/// Sets of gridpoints of the rim of an upright cylinder: the quarters towards -x and x, -z and z.
+inline constexpr std::array<const char*, 4> kQuartersOfRim{"rim_left", "rim_right", "rim_front", "rim_back"};
 
 /// Adds the cells of a complex to a model as blocks, cell by cell, and joins the faces of neighbours.
 /// \param material           material of each cell, index into Model::material_names
@@ -18,9 +22,8 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
 
 /// Makes a solid specimen and its bearings into a model, as make_concrete_model does in the plane, with the
 /// same sets. A bearing is a prism over the polygons of the blocks on its side; its sets are in the order of
-/// their gridpoints. An upright cylinder has four quarters of its rim as sets too: `rim_left`, `rim_right`,
-/// towards -x and x, `rim_front` and `rim_back`, towards -z and z. Throws Error, naming the bearing, when it
-/// has no plane side to lie on, or no thickness.
+/// their gridpoints. An upright cylinder has four quarters of its rim as sets too, see kQuartersOfRim. Throws
+/// Error, naming the bearing, when it has no plane side to lie on, or no thickness.
 ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
                             const std::vector<InterfaceParameters>& interfaces = {},
                             const std::vector<Bearing>& bearings = {});

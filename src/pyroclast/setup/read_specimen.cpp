@@ -645,12 +645,12 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
 
 /// Records an error for each bearing on a side that the specimen does not have.
 void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings) {
-  std::vector<std::string> names = specimen.sides();
+  const std::vector<std::string> sides = specimen.sides();
+  std::vector<std::string> names = sides;
   if (specimen.prism)
     for (const specimen::Side& side : specimen.prism->section().sides())
       if (side.is_round) std::erase(names, side.name);  // no bearing of a solid lies on a bent side yet
   const auto has_seat = [&](const ReadBearing& b) {
-    const auto sides = specimen.sides();
     return std::ranges::find(sides, b.bearing.side) != sides.end();
   };
   for (const ReadBearing& b : bearings)

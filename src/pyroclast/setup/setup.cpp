@@ -10,6 +10,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/setup/effects.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
@@ -121,12 +122,15 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
   }
 }
 
+bool is_cylinder(const AskedSpecimen& specimen) {
+  return specimen.prism && specimen.prism->axis() == solid::Prism::Axis::y;
+}
+
 /// Records an error for each boundary on a side or set that the specimen does not have.
 void check_heated_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
   for (const std::string& side : setup.specimen.sides()) names.push_back(side);
-  if (setup.specimen.prism && setup.specimen.prism->axis() == solid::Prism::Axis::y)
-    names.insert(names.end(), {"rim_left", "rim_right", "rim_front", "rim_back"});
+  if (is_cylinder(setup.specimen)) names.insert(names.end(), kQuartersOfRim.begin(), kQuartersOfRim.end());
   for (const auto& set : setup.sets)
     if (set.of != SetOf::contacts) names.push_back(set.name);
   const auto heat = root.optional_section("heat");
@@ -260,9 +264,8 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
   const double thickness = s->quantity("thickness", unit::length, Range::positive(), "of each platen");
   const auto sides = setup.specimen.sides();
   const auto lacks = [&](const char* name) { return std::ranges::find(sides, name) == sides.end(); };
-  const bool is_cylinder = setup.specimen.prism && setup.specimen.prism->axis() == solid::Prism::Axis::y;
   for (const char* name : {"bottom", "top", "left", "right"})
-    if (!is_cylinder && lacks(name)) {
+    if (!is_cylinder(setup.specimen) && lacks(name)) {
       s->error(
           fmt::format("platens need a specimen with the sides bottom, top, left, right, such as a rectangle, "
                       "or a cylinder; it has no side \"{}\"",

@@ -64,7 +64,8 @@ Press::Specimen between_platens(const solid::SolidSpecimen& specimen, const Mode
   const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
   for (const solid::CellFace& face : specimen.complex.faces)
     if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
-  if (!model.sets.contains("left")) between.sides = {{"rim_left", "rim_right"}, {"rim_front", "rim_back"}};
+  const auto& [left, right, front, back] = kQuartersOfRim;
+  if (!model.sets.contains("left")) between.sides = {{left, right}, {front, back}};
   const auto mean = [&](const std::string& set, int component) {
     return mean_position(model, gridpoint_set(model, model.set(set)), component);
   };
