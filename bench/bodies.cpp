@@ -38,12 +38,12 @@ Setup read(const std::filesystem::path& path) {
 template <int Dim>
 void add_properties(Sample<Dim>& sample, const Setup& setup, double block_size) {
   sample.parameters = setup.motion->mechanics;
-  const auto materials = pyroclast::make_concrete(setup.solids, setup.motion->contacts, block_size);
+  const auto materials = pyroclast::make_concrete(setup.block_materials, setup.motion->contacts, block_size);
   const pyroclast::TemperatureField field(sample.model, pyroclast::kReferenceTemperature);
   sample.properties =
       pyroclast::properties_at(sample.model, materials, field, {sample.model, materials, field});
-  for (const auto& solid : materials.solids)
-    sample.densities.push_back(solid.density(pyroclast::kReferenceTemperature));
+  for (const auto& material : materials.block_materials)
+    sample.densities.push_back(material.density(pyroclast::kReferenceTemperature));
 }
 
 std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {

@@ -26,24 +26,24 @@ struct HeatConstants {
 };
 
 /// Aggregate and mortar conduct alike.
-inline std::vector<SolidMaterial> alike_solids(const HeatConstants& constants = {}) {
-  std::vector<SolidMaterial> solids(3);
-  solids.back().is_of_bearing = true;
-  solids[aggregate_material].name = "aggregate";
-  solids[mortar_material].name = "mortar";
+inline std::vector<BlockMaterial> alike_materials(const HeatConstants& constants = {}) {
+  std::vector<BlockMaterial> block_materials(3);
+  block_materials.back().is_of_bearing = true;
+  block_materials[aggregate_material].name = "aggregate";
+  block_materials[mortar_material].name = "mortar";
   for (const int m : {aggregate_material, mortar_material}) {
-    solids[m].conductivity = Curve::constant(constants.conductivity);
-    solids[m].specific_heat = Curve::constant(constants.specific_heat);
-    solids[m].density = Curve::constant(constants.density);
+    block_materials[m].conductivity = Curve::constant(constants.conductivity);
+    block_materials[m].specific_heat = Curve::constant(constants.specific_heat);
+    block_materials[m].density = Curve::constant(constants.density);
   }
-  return solids;
+  return block_materials;
 }
 
 /// The same of a specimen without platens.
-inline std::vector<SolidMaterial> alike_phases() {
-  std::vector<SolidMaterial> solids = alike_solids();
-  solids.pop_back();
-  return solids;
+inline std::vector<BlockMaterial> alike_phases() {
+  std::vector<BlockMaterial> block_materials = alike_materials();
+  block_materials.pop_back();
+  return block_materials;
 }
 
 inline HeatConditions heat_conditions(std::vector<HeatBoundaryCondition> boundaries) {
@@ -67,7 +67,7 @@ inline Convection convection(double coefficient, Curve gas) {
 /// The field of heat conditions on a body, for a run of `duration`, s.
 inline TemperatureField conduct(const ModelOf<2>& body, const HeatConditions& heat, double duration,
                                 const HeatConstants& constants = {}) {
-  return {body, make_conduction(body, alike_solids(constants), heat, temperature_range(heat, duration))};
+  return {body, make_conduction(body, alike_materials(constants), heat, temperature_range(heat, duration))};
 }
 
 }  // namespace pyroclast

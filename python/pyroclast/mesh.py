@@ -26,7 +26,7 @@ class BlockMesh:
     zones: np.ndarray  #: (Z, dimension + 1) gridpoints of each zone, positively oriented
     block: np.ndarray  #: (Z,) block of each zone
     material: np.ndarray  #: (Z,) indices into `materials`
-    materials: tuple[str, ...]  #: names of the phases, and last of the solids of bearings
+    materials: tuple[str, ...]  #: names of the phases, and last those of bearings
     of_bearing: np.ndarray  #: (Z,) bool: zones of platens and other bearings
 
     @property

@@ -719,7 +719,7 @@ class Run:
 
     @property
     def material_names(self) -> list[str]:
-        """Names of the phases, and behind them of the solids of platens and other bearings."""
+        """Names of the phases, and behind them of the materials of platens and other bearings."""
         return self._core.material_names
 
     @property

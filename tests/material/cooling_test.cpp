@@ -5,7 +5,7 @@
 #include "known.hpp"
 #include "pyroclast/material/concrete.hpp"
 
-/// What a solid has on cooling: its free strain, and the share of its properties that is left.
+/// What a material has on cooling: its free strain, and the share of its properties that is left.
 namespace pyroclast {
 namespace {
 
@@ -20,20 +20,21 @@ TEST(CoolingVerification, AShareIsLostEvenlyDownTo20) {
   EXPECT_EQ(share_left(ratio, -30.0, 300.0), 0.9);
   EXPECT_EQ(share_left(ratio, -30.0, 20.0), 1.0);
   EXPECT_EQ(share_left(std::nullopt, 20.0, 300.0), 1.0);
-  SolidMaterial solid;
-  solid.young = Curve::table({20.0, 1000.0}, {30e9, 10e9}, temperature_axis());
-  EXPECT_EQ(solid.young_at(20.0, 1000.0), 10e9);
-  solid.residual_ratio = ratio;
-  EXPECT_EQ(solid.young_at(20.0, 1000.0), 8e9);
-  EXPECT_EQ(solid.young_at(1000.0, 1000.0), 10e9);
+  BlockMaterial material;
+  material.young = Curve::table({20.0, 1000.0}, {30e9, 10e9}, temperature_axis());
+  EXPECT_EQ(material.young_at(20.0, 1000.0), 10e9);
+  material.residual_ratio = ratio;
+  EXPECT_EQ(material.young_at(20.0, 1000.0), 8e9);
+  EXPECT_EQ(material.young_at(1000.0, 1000.0), 10e9);
 }
 
 TEST(CoolingVerification, FreeStrainHasItsOwnSlopeBelowTheHighestTemperature) {
-  SolidMaterial solid;
-  solid.thermal_strain =
+  BlockMaterial material;
+  material.thermal_strain =
       Curve::table({-50.0, 20.0, 200.0, 800.0}, {-7e-4, 0.0, 2e-3, -4e-3}, temperature_axis());
-  for (const double T : {20.0, 100.0, 500.0}) EXPECT_EQ(solid.free_strain(T, 500.0), solid.thermal_strain(T));
-  solid.contraction = 6e-6;
+  for (const double T : {20.0, 100.0, 500.0})
+    EXPECT_EQ(material.free_strain(T, 500.0), material.thermal_strain(T));
+  material.contraction = 6e-6;
   double hottest = 20.0;
   for (const double T : {400.0, 20.0, 300.0, 400.0, 450.0, 60.0, -30.0}) {
     const double before = std::max(hottest, T);
@@ -41,7 +42,7 @@ TEST(CoolingVerification, FreeStrainHasItsOwnSlopeBelowTheHighestTemperature) {
         before <= 200.0 ? 2e-3 * (before - 20.0) / 180.0 : 2e-3 - 1e-5 * (before - 200.0);
     expect_known({"Free strain on the way 20, 400, 20, 300, 400, 450, 60, -30 degC",
                   "strain(T_max) - contraction (T_max - T)", "1"},
-                 solid.free_strain(T, before), on_heating - 6e-6 * (before - T), 1e-17);
+                 material.free_strain(T, before), on_heating - 6e-6 * (before - T), 1e-17);
     hottest = before;
   }
 }

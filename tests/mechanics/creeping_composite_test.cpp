@@ -209,7 +209,7 @@ TEST(CreepVerification, RelaxesTheMisfitOfADiscInARing) {
 
 TEST(CoolingVerification, LeavesTheMisfitOfADiscInARing) {
   const ModelOf<2> model = disc();
-  SolidMaterial inclusion, ring;
+  BlockMaterial inclusion, ring;
   inclusion.thermal_strain = Curve::table({20.0, 420.0}, {0.0, 4.8e-3}, temperature_axis());
   ring.thermal_strain = Curve::table({20.0, 420.0}, {0.0, 4e-3}, temperature_axis());
   ring.contraction = 14e-6;

@@ -367,10 +367,10 @@ struct Compression {
   ModelOf<2> model = between_platens(small_specimen(), 0.01, 1.0);
 
   Pair<2> pair() const {
-    const std::array<ZoneProperties, 3> solids{zone_properties<2>(70e9, 0.2), zone_properties<2>(29.4e9, 0.2),
-                                               zone_properties<2>(200e9, 0.3)};
+    const std::array<ZoneProperties, 3> block_materials{
+        zone_properties<2>(70e9, 0.2), zone_properties<2>(29.4e9, 0.2), zone_properties<2>(200e9, 0.3)};
     std::vector<ZoneProperties> zones;
-    for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);
+    for (int block : zone_blocks(model)) zones.push_back(block_materials[model.block_material[block]]);
     auto weaker = mortar_contact();
     for (double* of : {&weaker.normal_stiffness, &weaker.shear_stiffness, &weaker.tensile_strength,
                        &weaker.cohesion, &weaker.residual_cohesion, &weaker.compressive_limit})

@@ -202,18 +202,18 @@ TEST(RestraintVerification, ABodyHeldEverywhereTakesTheFullStressAndStoresTheHea
 
 // ---- Cooling
 
-/// A solid whose free strain has a slope of its own on cooling.
-SolidMaterial contracting_solid() {
-  SolidMaterial solid;
-  solid.thermal_strain = Curve::table({20.0, 820.0}, {0.0, 8e-3}, temperature_axis());
-  solid.contraction = 6e-6;
-  return solid;
+/// A material whose free strain has a slope of its own on cooling.
+BlockMaterial contracting_material() {
+  BlockMaterial material;
+  material.thermal_strain = Curve::table({20.0, 820.0}, {0.0, 8e-3}, temperature_axis());
+  material.contraction = 6e-6;
+  return material;
 }
 
 /// A body that is held everywhere, heated, cooled and heated again.
 template <int Dim>
 void expect_stress_of_its_own_slope(const ModelOf<Dim>& model, Kinematics kinematics) {
-  const SolidMaterial solid = contracting_solid();
+  const BlockMaterial material = contracting_material();
   auto parameters = quasi_static<Dim>();
   parameters.kinematics = kinematics;
   auto m = mechanics(model, elastic_contact(), parameters);
@@ -223,7 +223,7 @@ void expect_stress_of_its_own_slope(const ModelOf<Dim>& model, Kinematics kinema
   double hottest = 20.0;
   for (const auto& [T, strain] : {std::pair{420.0, 4e-3}, {20.0, 1.6e-3}, {320.0, 3.4e-3}, {520.0, 5e-3}}) {
     hottest = std::max(hottest, T);
-    m.set_properties(uniform(model, elastic_contact(), solid.free_strain(T, hottest)));
+    m.set_properties(uniform(model, elastic_contact(), material.free_strain(T, hottest)));
     m.advance(1);
     for (const auto& stress : m.read().stresses())
       expect_known({std::string("Stress of a held body after heating and on cooling, ") +

@@ -404,11 +404,12 @@ TEST(ExchangeStress, EachPartOfTheWayHasItsOwnExpansion) {
   const ConcreteMaterials& materials = r.simulation->materials();
   double largest = 0.0;
   for (const double from : {20.0, 30.0, 40.0, 50.0, 60.0})
-    for (const SolidMaterial& solid : materials.solids)
-      if (!solid.is_of_bearing)
-        largest = std::max(largest, estimate_modulus(r.simulation->model(), materials, from + 10.0) * 5.0 *
-                                        (solid.thermal_strain(from + 10.0) - solid.thermal_strain(from)) /
-                                        10.0 / 2.5e6);
+    for (const BlockMaterial& material : materials.block_materials)
+      if (!material.is_of_bearing)
+        largest =
+            std::max(largest, estimate_modulus(r.simulation->model(), materials, from + 10.0) * 5.0 *
+                                  (material.thermal_strain(from + 10.0) - material.thermal_strain(from)) /
+                                  10.0 / 2.5e6);
   EXPECT_NEAR(r.summary().exchange_stress.value(), largest, 1e-9 * largest);
   // twice as much as that of the even body, at least
   EXPECT_GT(largest, 1.9 * 0.5);

@@ -36,11 +36,11 @@ Deck deck_of(const Properties& p) {
 }
 
 struct Materials {
-  std::vector<SolidMaterial> solids;
+  std::vector<BlockMaterial> block_materials;
   ContactParameters contacts;
   std::vector<ReadCurve> curves;
 
-  const SolidMaterial& mortar() const { return solids[mortar_material]; }
+  const BlockMaterial& mortar() const { return block_materials[mortar_material]; }
 };
 
 /// Of two blocks of mortar.
@@ -53,7 +53,7 @@ Materials read(const Deck& deck, Interval needed = kFire) {
   Materials m;
   const std::vector<std::string> phases{"aggregate", "mortar"};
   const MaterialRules rules = read_material_rules(deck.root());
-  m.solids = read_solids(deck.root(), phases, {"platen"}, rules, {}, curves);
+  m.block_materials = read_block_materials(deck.root(), phases, {"platen"}, rules, {}, curves);
   m.contacts = read_contacts(
       deck.root(), phases, "mortar", true, rules.on_cooling,
       [](const auto&, bool) -> const LawTable& { return table_of<Cohesive>(); }, curves);
@@ -94,7 +94,7 @@ TEST(ReadMaterials, HeatPropertiesMayBeLeftOut) {
 
 TEST(ReadMaterials, WithoutExpansionNothingExpands) {
   const Materials m = read_good({});
-  for (const SolidMaterial& solid : m.solids) EXPECT_EQ(solid.thermal_strain(500.0), 0.0);
+  for (const BlockMaterial& material : m.block_materials) EXPECT_EQ(material.thermal_strain(500.0), 0.0);
 }
 
 TEST(ReadMaterials, ExpansionIsSecantUnlessSaidToBeTangent) {
@@ -202,7 +202,7 @@ TEST(ReadContacts, StatedStiffnessesFollowTheMortarsModulus) {
   p.contact += "K_n = \"18400 GPa/m\"\nK_s = \"7660 GPa/m\"\n";
   p.mortar = "E = { value = \"29.4 GPa\", times = \"glasgow_modulus\" }\n";
   const Materials m = read_good(p);
-  const auto concrete = make_concrete(m.solids, m.contacts, 3e-3);
+  const auto concrete = make_concrete(m.block_materials, m.contacts, 3e-3);
   EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar]["K_n"](520.0), 0.25 * 18400e9);
   EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar]["K_s"](520.0), 0.25 * 7660e9);
 }
@@ -247,7 +247,7 @@ TEST(ReadContacts, ResidualRatiosGoToWhatTheyAreOf) {
       "c_o = \"3.8 MPa\"\nc_res = \"0.038 MPa\"\nG_f2 = \"240 N/m\"\n"
       "residual_ratio = { table = [[\"20 degC\", 1], [\"420 degC\", 0.6], [\"800 degC\", 0.6]] }\n";
   const Materials m = read_good(p);
-  const auto concrete = make_concrete(m.solids, m.contacts, 3e-3);
+  const auto concrete = make_concrete(m.block_materials, m.contacts, 3e-3);
   EXPECT_DOUBLE_EQ(m.mortar().young_at(20.0, 800.0), 0.5 * 29.4e9);
   for (const int interface : {mortar_mortar, aggregate_mortar}) {
     const ContactMaterial& contact = concrete.contacts[interface];

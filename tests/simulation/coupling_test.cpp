@@ -20,9 +20,9 @@ TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
   auto field = conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
-  materials.solids.resize(3);
+  materials.block_materials.resize(3);
   materials.contacts.resize(4, ContactMaterial(table_of<Cohesive>()));
-  for (auto& solid : materials.solids) solid.young = Curve::constant(30e9);
+  for (auto& material : materials.block_materials) material.young = Curve::constant(30e9);
   for (auto& contact : materials.contacts)
     for (const auto& [key, value] : {std::pair{"K_n", 1e13},
                                      {"K_s", 1e13},
@@ -50,14 +50,14 @@ TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
 ConcreteMaterials creeping_materials(OnCooling on_cooling) {
   ConcreteMaterials materials;
   materials.on_cooling = on_cooling;
-  materials.solids.resize(3);
+  materials.block_materials.resize(3);
   materials.contacts.resize(4, ContactMaterial(table_of<Elastic>()));
   const Curve falls = Curve::table({-100.0, 900.0}, {1.1, 0.1}, temperature_axis());
-  for (auto& solid : materials.solids) solid.young = falls * 30e9;
-  materials.solids.back().is_of_bearing = true;
+  for (auto& material : materials.block_materials) material.young = falls * 30e9;
+  materials.block_materials.back().is_of_bearing = true;
   for (auto& contact : materials.contacts)
     for (const char* key : {"K_n", "K_s"}) contact[key] = falls * 1e13;
-  auto& creep = materials.solids[mortar_material].creep.emplace();
+  auto& creep = materials.block_materials[mortar_material].creep.emplace();
   creep.strain = Curve::table({20.0, 120.0, 820.0}, {0.0, 1e-3, 30e-3}, temperature_axis());
   creep.strength = 35e6;
   creep.choices.poisson = 0.3;
@@ -80,7 +80,7 @@ std::pair<double, double> compliances(const ModelOf<2>& body, const BodyProperti
 TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
   const ModelOf<2> body = small_body();
   const auto materials = creeping_materials(OnCooling::irreversible);
-  const Curve& strain = materials.solids[mortar_material].creep->strain;
+  const Curve& strain = materials.block_materials[mortar_material].creep->strain;
   TemperatureField field(body, 20.0);
   HottestTemperatures hottest(body, materials, field);
   double hottest_so_far = 20.0;
@@ -162,10 +162,10 @@ TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
   const auto blocks = zone_blocks(body);
   for (const OnCooling on_cooling : {OnCooling::irreversible, OnCooling::reversible}) {
     auto materials = creeping_materials(on_cooling);
-    materials.solids[mortar_material].creep.reset();
-    materials.solids[mortar_material].contraction = 6e-6;
-    for (auto& solid : materials.solids)
-      solid.thermal_strain = Curve::table({-100.0, 900.0}, {-1.2e-3, 8.8e-3}, temperature_axis());
+    materials.block_materials[mortar_material].creep.reset();
+    materials.block_materials[mortar_material].contraction = 6e-6;
+    for (auto& material : materials.block_materials)
+      material.thermal_strain = Curve::table({-100.0, 900.0}, {-1.2e-3, 8.8e-3}, temperature_axis());
     const auto expect = [&](const std::vector<double>& now, const std::vector<double>& hottest,
                             const BodyProperties& p) {
       for (int z = 0; z < body.zone_count(); ++z) {
@@ -206,8 +206,8 @@ TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
   auto materials = creeping_materials(OnCooling::irreversible);
   const Curve of_young = Curve::table({20.0, 420.0, 900.0}, {1.0, 0.8, 0.8}, temperature_axis());
   const Curve of_strength = Curve::table({20.0, 420.0, 900.0}, {1.0, 0.6, 0.6}, temperature_axis());
-  for (auto& solid : materials.solids)
-    if (!solid.is_of_bearing) solid.residual_ratio = of_young;
+  for (auto& material : materials.block_materials)
+    if (!material.is_of_bearing) material.residual_ratio = of_young;
   materials.contacts.assign(4, ContactMaterial(table_of<Cohesive>()));
   for (auto& contact : materials.contacts) {
     for (const auto& [key, value] :

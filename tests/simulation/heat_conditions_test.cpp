@@ -45,8 +45,8 @@ Diagnostic error_of(const std::string& text) {
 }
 
 std::string message_of(const ModelOf<2>& body, const HeatConditions& heat,
-                       const std::vector<SolidMaterial>& solids = alike_solids()) {
-  return message([&] { make_conduction(body, solids, heat, {20.0, 1000.0}); });
+                       const std::vector<BlockMaterial>& block_materials = alike_materials()) {
+  return message([&] { make_conduction(body, block_materials, heat, {20.0, 1000.0}); });
 }
 
 // ---- Reading ---------------------------------------------------------------------------------------------
@@ -211,7 +211,7 @@ double area_of(const Conduction<2>& heat, const std::vector<int>& faces) {
 
 TEST(MakeConduction, TheOutlineIsTheSpecimensOwnUnderThePlatensToo) {
   const auto body = small_body();
-  const auto solver = make_conduction(body, alike_solids(), heat_conditions({}), {20.0, 100.0});
+  const auto solver = make_conduction(body, alike_materials(), heat_conditions({}), {20.0, 100.0});
   const Conduction<2>& heat = in_plane::conduction(*solver);
   EXPECT_NEAR(area_of(heat, heat.faces([](const auto&) { return true; })),
               2.0 * (kSpecimenWidth + kSpecimenHeight) * kSpecimenThickness, 1e-12);
@@ -222,7 +222,7 @@ TEST(MakeConduction, TheOutlineIsTheSpecimensOwnUnderThePlatensToo) {
 /// Heat that comes in through a part of the outline in a second, over a flux of 1 W/m2: its area.
 double heated_area(const ModelOf<2>& body, const HeatedFaces& faces) {
   HeatConditions heat = heat_conditions({{faces, HeatFlux{Curve::constant(1.0)}, ""}});
-  const auto conduction = make_conduction(body, alike_solids(), heat, {20.0, 100.0});
+  const auto conduction = make_conduction(body, alike_materials(), heat, {20.0, 100.0});
   in_plane::conduction(*conduction).advance_to(1.0);
   return conduction->ledger().boundary.flux;
 }
@@ -263,14 +263,14 @@ TEST(MakeConduction, ConditionsThatContradictEachOtherOnOneFaceAreAnError) {
                                                          {lower_left, Adiabatic{}, "deck.toml:9"}})),
                        "already"));
   EXPECT_NO_THROW(make_conduction(
-      body, alike_solids(), heat_conditions({on("right", held), {lower_left, held, ""}}), {20.0, 1000.0}));
+      body, alike_materials(), heat_conditions({on("right", held), {lower_left, held, ""}}), {20.0, 1000.0}));
 }
 
 TEST(MakeConduction, AMaterialWithoutConductivityIsNamed) {
-  auto solids = alike_solids();
-  solids[mortar_material].conductivity.reset();
-  EXPECT_TRUE(
-      mentions(message_of(small_body(), heat_conditions({}), solids), "materials.mortar.conductivity"));
+  auto block_materials = alike_materials();
+  block_materials[mortar_material].conductivity.reset();
+  EXPECT_TRUE(mentions(message_of(small_body(), heat_conditions({}), block_materials),
+                       "materials.mortar.conductivity"));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ struct Whole {
     simulation->field().begin_exposure(setup.temperatures);
     simulation->field().advance(1000.0, 300.0);
     properties = properties_at(model(), simulation->materials(), simulation->field(), simulation->hottest());
-    for (const SolidMaterial& solid : simulation->materials().solids)
-      densities.push_back(solid.density(kReferenceTemperature));
+    for (const BlockMaterial& material : simulation->materials().block_materials)
+      densities.push_back(material.density(kReferenceTemperature));
     mechanics = std::make_unique<Mechanics<2>>(model(), densities, properties, setup.motion->mechanics);
   }
   const ModelOf<2>& model() const { return in_plane::model(simulation->model()); }

@@ -5,7 +5,7 @@
 #include "known.hpp"
 #include "stages/small_runs.hpp"
 
-/// Runs whose mortar, or all of whose solids, creep when they are heated under load.
+/// Runs whose mortar, or all of whose blocks, creep when they are heated under load.
 namespace pyroclast {
 namespace {
 
@@ -137,13 +137,14 @@ TEST(CreepInADeck, IsTakenToTheMortar) {
   };
   const auto k2 = materials("[materials.mortar.creep]\nk2 = 2.35\nshare = 0.6\n");
   const double free_strain = 0.006 * std::log(7.0 / (7.0 - 4.0));
-  const auto& mortar = k2.solids[1];
+  const auto& mortar = k2.block_materials[1];
   ASSERT_EQ(mortar.name, "mortar");
   EXPECT_NEAR(mortar.creep->strain(420.0), 2.35 * free_strain / 0.6, 1e-12);
   const auto own = materials("[materials.mortar.creep]\nstrain = { builtin = \"glasgow_creep\" }\n");
   const auto [share, far] = *own.composition->creep_share;
   const double weight = *own.composition->strain_weight;
-  const double of_mortar = own.solids[1].creep->strain(420.0), of_concrete = 0.0005 * 16.0 + 0.00125 * 4.0;
+  const double of_mortar = own.block_materials[1].creep->strain(420.0),
+               of_concrete = 0.0005 * 16.0 + 0.00125 * 4.0;
   // some eleven times its elastic strain
   EXPECT_NEAR(of_mortar * far, of_concrete, 0.005 * of_concrete);
   EXPECT_GT(of_mortar * share, of_concrete);
@@ -151,10 +152,10 @@ TEST(CreepInADeck, IsTakenToTheMortar) {
   // alike but for the creep, so that shares of the volume are weights, and R is near that of the mortar
   EXPECT_NEAR(weight, own.composition->inclusions, 1e-12);
   EXPECT_NEAR(share, 1.0 - own.composition->inclusions, 0.15);
-  EXPECT_NEAR(own.solids[0].thermal_strain(420.0), 1.25 * free_strain, 1e-15);
-  EXPECT_NEAR(
-      weight * own.solids[0].thermal_strain(420.0) + (1.0 - weight) * own.solids[1].thermal_strain(420.0),
-      free_strain, 1e-15);
+  EXPECT_NEAR(own.block_materials[0].thermal_strain(420.0), 1.25 * free_strain, 1e-15);
+  EXPECT_NEAR(weight * own.block_materials[0].thermal_strain(420.0) +
+                  (1.0 - weight) * own.block_materials[1].thermal_strain(420.0),
+              free_strain, 1e-15);
   EXPECT_THROW(pyroclast::read(deck(kUniform + kSettle + heat("420 degC")) + concrete), DeckError);
 }
 

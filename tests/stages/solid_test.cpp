@@ -79,7 +79,7 @@ SpecimenBody column_between_platens(const Setup& setup) {
 struct Solid {
   explicit Solid(const std::string& text, const StageRegistry& kinds = {})
       : setup(read(text, kinds)),
-        simulation(column_between_platens(setup), setup.solids, setup.heat, {}, {}, setup.motion,
+        simulation(column_between_platens(setup), setup.block_materials, setup.heat, {}, {}, setup.motion,
                    std::make_shared<Team>()),
         run(simulation, std::move(setup.stages)) {}
   double at_end_of(int stage, const char* column) const {
@@ -153,8 +153,8 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
 // its modulus, a tight one.
 TEST(Solid, ACylinderOfConcreteHasItsStressAndModulus) {
   auto setup = read(deck(kUniform + kSettle + kCompress));
-  Simulation simulation(cylinder_between_platens(setup), setup.solids, setup.heat, {}, {}, setup.motion,
-                        std::make_shared<Team>());
+  Simulation simulation(cylinder_between_platens(setup), setup.block_materials, setup.heat, {}, {},
+                        setup.motion, std::make_shared<Team>());
   pyroclast::Run run(simulation, std::move(setup.stages));
   ASSERT_EQ(run.run(), Outcome::completed);
   const Model& model = simulation.model();
@@ -192,7 +192,8 @@ TEST(Solid, ABodyThatIsNoneIsRefused) {
     SpecimenBody body = column_between_platens(setup);
     change(body);
     return message([&] {
-      Simulation(std::move(body), setup.solids, setup.heat, {}, {}, setup.motion, std::make_shared<Team>());
+      Simulation(std::move(body), setup.block_materials, setup.heat, {}, {}, setup.motion,
+                 std::make_shared<Team>());
     });
   };
   expect_in("without blocks", refusal([](auto& body) { body.model = nullptr; }));

@@ -34,7 +34,7 @@ std::filesystem::path bar_file() {
   return path;
 }
 
-std::string solid(const std::string& name, double young, double expansion) {
+std::string material(const std::string& name, double young, double expansion) {
   return fmt::format(
       "[materials.{}]\nE = \"{} Pa\"\nnu = 0.0\ndensity = \"2200 kg/m3\"\nexpansion = \"{} 1/K\"\n", name,
       young, expansion);
@@ -49,8 +49,8 @@ std::string bar_deck(const std::string& initial, const std::string& coupling) {
   for (const char* side : {"bottom", "top"})
     held += std::string("[[stages.drives]]\nset = \"") + side + "\"\nhold = [\"y\"]\n";
   return "title = \"bar\"\n[specimen]\nshape = \"cells\"\nfile = \"" + bar_file().string() +
-         "\"\n[materials]\n" + solid("mortar", kMortar, kMortarExpansion) +
-         solid("aggregate", kStone, kStoneExpansion) +
+         "\"\n[materials]\n" + material("mortar", kMortar, kMortarExpansion) +
+         material("aggregate", kStone, kStoneExpansion) +
          "[contacts]\nt_b = \"1.6 mm\"\nt_b_scaling = \"fixed\"\n"
          "[contacts.mortar_mortar]\nlaw = \"elastic\"\n"
          "[contacts.aggregate_mortar]\nlike = \"mortar_mortar\"\nstiffness_factor = 1.0\n"
@@ -122,8 +122,8 @@ TEST(StressFree, ABodyCastWarmIsAtRestThere) {
 
 TEST(StressFree, IsNoLessThanTheHottestThatWas) {
   ConcreteMaterials materials;
-  materials.solids.resize(1);
-  SolidMaterial& mortar = materials.solids.front();
+  materials.block_materials.resize(1);
+  BlockMaterial& mortar = materials.block_materials.front();
   mortar.thermal_strain = Curve::table({0.0, 100.0}, {-2e-4, 8e-4}, temperature_axis());
   mortar.contraction = 6e-6;
   set_stress_free(materials, 35.0);

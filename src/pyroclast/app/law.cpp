@@ -42,7 +42,8 @@ LawPoint point_of_deck(const LawOptions& options) {
     throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
                             options.deck.string()));
   const ContactParameters& contacts = setup.motion->contacts;
-  const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
+  const auto concrete =
+      make_concrete(setup.block_materials, contacts, expected_block_size(setup.specimen, contacts));
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
   const auto& stress_free = setup.motion->stress_free;
   return LawPoint(

@@ -25,8 +25,8 @@ constexpr ExitCode kExitCodes[] = {
      "The run ended without what it was for: it did not come to rest or to the stated stress, a number was "
      "not finite, or its energy ledger does not close. summary.json says so. Of law --verify: a law fails."},
     {3,
-     "The deck or the study names code that was not allowed (--allow-code); of check: all but the keys of that "
-     "law was checked."},
+     "The deck or the study names code that was not allowed (--allow-code); of check: all but the keys of "
+     "that law was checked."},
     {130, "Ended by Ctrl-C or another signal; results so far and a checkpoint are kept."},
 };
 

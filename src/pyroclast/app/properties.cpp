@@ -20,26 +20,28 @@ constexpr Interval kDrawn{20.0, 800.0};
 constexpr double kTemperatureStep = 1.0;
 
 /// Returns the phases as a run has them: those of the specimen, where they follow its composition.
-std::vector<SolidMaterial> solids_of(const Setup& setup) {
-  if (!setup.motion || !follows_composition(setup.solids, *setup.motion)) return setup.solids;
-  return make_materials(setup.solids, *setup.motion, numbers_of(make_checked_specimen(setup.specimen)))
-      .solids;
+std::vector<BlockMaterial> block_materials_of(const Setup& setup) {
+  if (!setup.motion || !follows_composition(setup.block_materials, *setup.motion))
+    return setup.block_materials;
+  return make_materials(setup.block_materials, *setup.motion,
+                        numbers_of(make_checked_specimen(setup.specimen)))
+      .block_materials;
 }
 
 /// \param moves  true where the mechanical properties were read too
-void add_solid(const SolidMaterial& solid, bool moves, std::vector<ReadCurve>& list) {
+void add_material(const BlockMaterial& material, bool moves, std::vector<ReadCurve>& list) {
   const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
-    list.push_back({fmt::format("materials.{}.{}", solid.name, key), unit.si, curve});
+    list.push_back({fmt::format("materials.{}.{}", material.name, key), unit.si, curve});
   };
-  if (moves) add("E", unit::stress, solid.young);
-  add("density", unit::density, solid.density);
-  if (moves) add("thermal_strain", unit::dimensionless, solid.thermal_strain);
-  if (moves && solid.creep) add("creep.strain", unit::dimensionless, solid.creep->strain);
-  if (solid.conductivity) add("conductivity", unit::conductivity, *solid.conductivity);
-  if (!solid.specific_heat) return;
-  add("specific_heat", unit::specific_heat, *solid.specific_heat);
-  list.push_back({fmt::format("materials.{}.heat_capacity", solid.name), "J/m3/K",
-                  solid.density * *solid.specific_heat});
+  if (moves) add("E", unit::stress, material.young);
+  add("density", unit::density, material.density);
+  if (moves) add("thermal_strain", unit::dimensionless, material.thermal_strain);
+  if (moves && material.creep) add("creep.strain", unit::dimensionless, material.creep->strain);
+  if (material.conductivity) add("conductivity", unit::conductivity, *material.conductivity);
+  if (!material.specific_heat) return;
+  add("specific_heat", unit::specific_heat, *material.specific_heat);
+  list.push_back({fmt::format("materials.{}.heat_capacity", material.name), "J/m3/K",
+                  material.density * *material.specific_heat});
 }
 
 void add_contact(const ContactMaterial& contact, const std::string& name, std::vector<ReadCurve>& list) {
@@ -55,12 +57,12 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
 std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
   const bool moves = setup.motion.has_value();
-  for (const SolidMaterial& solid : solids_of(setup))
-    if (moves || !solid.name.empty()) add_solid(solid, moves, list);
+  for (const BlockMaterial& material : block_materials_of(setup))
+    if (moves || !material.name.empty()) add_material(material, moves, list);
   if (moves) {
     const ContactParameters& contacts = setup.motion->contacts;
     const auto concrete =
-        make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
+        make_concrete(setup.block_materials, contacts, expected_block_size(setup.specimen, contacts));
     for (std::size_t i = 0; i + contacts.bearings.size() < concrete.contacts.size(); ++i)
       add_contact(concrete.contacts[i], concrete.interfaces[i], list);
   }

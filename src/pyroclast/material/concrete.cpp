@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// K_n and K_s over the temperature, Pa/m, and their residual ratios on cooling: both follow E of a solid.
+/// K_n and K_s over the temperature, Pa/m, and their residual ratios on cooling: both follow E of a block.
 struct Stiffness {
   Curve normal, shear;
   std::optional<Curve> normal_residual, shear_residual;
@@ -24,9 +24,10 @@ struct Stiffness {
 };
 
 /// Returns E(T) / t_b and G(T) / t_b of Eq. (17).
-Stiffness stiffness_of(const SolidMaterial& solid, double fracture_zone) {
-  return {solid.young * (1.0 / fracture_zone), solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone),
-          solid.residual_ratio, solid.residual_ratio};
+Stiffness stiffness_of(const BlockMaterial& material, double fracture_zone) {
+  return {material.young * (1.0 / fracture_zone),
+          material.young * (0.5 / (1.0 + material.poisson) / fracture_zone), material.residual_ratio,
+          material.residual_ratio};
 }
 
 const InterfaceParameters* find(const std::vector<InterfaceParameters>& interfaces, const std::string& name) {
@@ -37,15 +38,18 @@ const InterfaceParameters* find(const std::vector<InterfaceParameters>& interfac
 /// Stiffnesses of interfaces, some of which have those of others.
 class StiffnessOfInterfaces {
  public:
-  StiffnessOfInterfaces(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
-                        double fracture_zone, double stated_scale)
-      : solids_(solids), parameters_(parameters), fracture_zone_(fracture_zone), scale_(stated_scale) {}
+  StiffnessOfInterfaces(const std::vector<BlockMaterial>& block_materials,
+                        const ContactParameters& parameters, double fracture_zone, double stated_scale)
+      : materials_(block_materials),
+        parameters_(parameters),
+        fracture_zone_(fracture_zone),
+        scale_(stated_scale) {}
 
   Stiffness of(const InterfaceParameters& interface, std::size_t depth = 0) const {
     if (depth > parameters_.interfaces.size())
       throw Error(fmt::format("contacts.{}: \"like\" leads back to itself", interface.name));
-    const SolidMaterial& solid = softest(interface);
-    Stiffness k = stiffness_of(solid, fracture_zone_);
+    const BlockMaterial& material = softest(interface);
+    Stiffness k = stiffness_of(material, fracture_zone_);
     if (interface.like) {
       const InterfaceParameters* other = find(parameters_.interfaces, *interface.like);
       if (!other)
@@ -56,34 +60,34 @@ class StiffnessOfInterfaces {
       k.shear = k.shear * interface.stiffness_factor;
     }
     // A stated stiffness follows E(T) like a computed one.
-    const double young = solid.young(kReferenceTemperature);
+    const double young = material.young(kReferenceTemperature);
     if (interface.normal_stiffness) {
-      k.normal = solid.young * (*interface.normal_stiffness * scale_ / young);
-      k.normal_residual = solid.residual_ratio;
+      k.normal = material.young * (*interface.normal_stiffness * scale_ / young);
+      k.normal_residual = material.residual_ratio;
     }
     if (interface.shear_stiffness) {
-      k.shear = solid.young * (*interface.shear_stiffness * scale_ / young);
-      k.shear_residual = solid.residual_ratio;
+      k.shear = material.young * (*interface.shear_stiffness * scale_ / young);
+      k.shear_residual = material.residual_ratio;
     }
     return k;
   }
 
  private:
   /// Returns the phase with the least E at the reference temperature of those that an interface joins.
-  const SolidMaterial& softest(const InterfaceParameters& interface) const {
-    const SolidMaterial* softest = nullptr;
+  const BlockMaterial& softest(const InterfaceParameters& interface) const {
+    const BlockMaterial* softest = nullptr;
     for (const auto& pair : interface.between)
       for (const auto& name : pair)
-        for (const SolidMaterial& solid : solids_)
-          if (solid.name == name &&
-              (!softest || solid.young(kReferenceTemperature) < softest->young(kReferenceTemperature)))
-            softest = &solid;
+        for (const BlockMaterial& material : materials_)
+          if (material.name == name &&
+              (!softest || material.young(kReferenceTemperature) < softest->young(kReferenceTemperature)))
+            softest = &material;
     if (!softest)
       throw Error(fmt::format("contacts.{}: none of its phases is in the specimen", interface.name));
     return *softest;
   }
 
-  const std::vector<SolidMaterial>& solids_;
+  const std::vector<BlockMaterial>& materials_;
   const ContactParameters& parameters_;
   double fracture_zone_, scale_;
 };
@@ -145,15 +149,15 @@ void ContactMaterial::write_at(double temperature, double property_temperature, 
                       share_left(residual_ratios[i], temperature, property_temperature);
 }
 
-double SolidMaterial::free_strain(double temperature, double hottest) const {
+double BlockMaterial::free_strain(double temperature, double hottest) const {
   if (!contraction || temperature >= hottest) return thermal_strain(temperature) - first_strain;
   return thermal_strain(hottest) - *contraction * (hottest - temperature) - first_strain;
 }
 
 void set_stress_free(ConcreteMaterials& concrete, double temperature) {
   concrete.stress_free = temperature;
-  for (SolidMaterial& solid : concrete.solids)
-    if (!solid.is_of_bearing) solid.first_strain = solid.thermal_strain(temperature);
+  for (BlockMaterial& material : concrete.block_materials)
+    if (!material.is_of_bearing) material.first_strain = material.thermal_strain(temperature);
 }
 
 CreepIncrement CreepMaterial::between(double from, double to) const {
@@ -162,13 +166,14 @@ CreepIncrement CreepMaterial::between(double from, double to) const {
   return increment;
 }
 
-bool any_creeps(const std::vector<SolidMaterial>& solids) {
-  return std::ranges::any_of(solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
+bool any_creeps(const std::vector<BlockMaterial>& block_materials) {
+  return std::ranges::any_of(block_materials,
+                             [](const BlockMaterial& material) { return material.creep.has_value(); });
 }
 
 bool ConcreteMaterials::asks_for_hottest() const {
-  const auto contracts = [](const SolidMaterial& solid) { return solid.contraction.has_value(); };
-  return on_cooling == OnCooling::irreversible || creeps() || std::ranges::any_of(solids, contracts);
+  const auto contracts = [](const BlockMaterial& material) { return material.contraction.has_value(); };
+  return on_cooling == OnCooling::irreversible || creeps() || std::ranges::any_of(block_materials, contracts);
 }
 
 InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,
@@ -198,23 +203,23 @@ std::array<int, 2> InterfaceTable::pair_of(int interface) const {
   throw Error(fmt::format("no pair of phases has interface {}; there are {}", interface, count()));
 }
 
-std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids) {
+std::vector<std::string> phases_of(const std::vector<BlockMaterial>& block_materials) {
   std::vector<std::string> names;
-  for (const SolidMaterial& solid : solids)
-    if (!solid.is_of_bearing) names.push_back(solid.name);
+  for (const BlockMaterial& material : block_materials)
+    if (!material.is_of_bearing) names.push_back(material.name);
   return names;
 }
 
-ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& p,
+ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_materials, const ContactParameters& p,
                                 double block_size, std::optional<double> foreseen) {
-  const InterfaceTable table(phases_of(solids), p.interfaces);
+  const InterfaceTable table(phases_of(block_materials), p.interfaces);
   ConcreteMaterials concrete;
-  concrete.solids = solids;
+  concrete.block_materials = block_materials;
   concrete.interfaces = table.names();
   concrete.fracture_zone =
       p.fracture_zone_size ? p.fracture_zone * block_size / *p.fracture_zone_size : p.fracture_zone;
   const double scale = p.fracture_zone_size ? *p.fracture_zone_size / foreseen.value_or(block_size) : 1.0;
-  const StiffnessOfInterfaces stiffness(solids, p, concrete.fracture_zone, scale);
+  const StiffnessOfInterfaces stiffness(block_materials, p, concrete.fracture_zone, scale);
   std::optional<Stiffness> of_matrix;
   for (int i = 0; i < table.count(); ++i) {
     const auto [a, b] = table.pair_of(i);
@@ -222,13 +227,13 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
       concrete.contacts.push_back(stated->contact);
       const Stiffness k = stiffness.of(*stated);
       k.put_into(concrete.contacts.back());
-      if (solids[a].name == p.matrix && a == b) of_matrix = k;
+      if (block_materials[a].name == p.matrix && a == b) of_matrix = k;
     } else if (a == b) {
       concrete.contacts.emplace_back(table_of<Elastic>());
-      stiffness_of(solids[a], concrete.fracture_zone).put_into(concrete.contacts.back());
+      stiffness_of(block_materials[a], concrete.fracture_zone).put_into(concrete.contacts.back());
     } else {
       throw Error(fmt::format("contacts: blocks of {} and {} may meet, but no interface is between them",
-                              solids[a].name, solids[b].name));
+                              block_materials[a].name, block_materials[b].name));
     }
   }
   if (!of_matrix)
@@ -252,11 +257,11 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
 namespace {
 
 /// Returns a phase at the reference temperature. Its blocks lie in series with the contacts between them.
-MixedPhase with_contacts(const SolidMaterial& solid, double fraction, const ContactMaterial& contact,
+MixedPhase with_contacts(const BlockMaterial& material, double fraction, const ContactMaterial& contact,
                          double block_size) {
-  const double young = solid.young(kReferenceTemperature);
+  const double young = material.young(kReferenceTemperature);
   const double layer = contact.at(kReferenceTemperature).stiffness().normal * block_size;
-  return {fraction, 1.0 / (1.0 / young + 1.0 / layer), solid.poisson};
+  return {fraction, 1.0 / (1.0 / young + 1.0 / layer), material.poisson};
 }
 
 /// Creep of the matrix as a function of the creep of the whole, both 1/Pa: the inverse of Mixture::creep,
@@ -311,14 +316,14 @@ void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const Mixed
 void follow_composition(ConcreteMaterials& concrete, const ContactParameters& parameters,
                         const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
                         double block_size) {
-  const auto phases = phases_of(concrete.solids);
+  const auto phases = phases_of(concrete.block_materials);
   const InterfaceTable table(phases, parameters.interfaces);
   const auto of_matrix =
       static_cast<std::size_t>(std::ranges::find(phases, parameters.matrix) - phases.begin());
   std::vector<MixedPhase> mixed, inclusions;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     const int phase = static_cast<int>(i);
-    mixed.push_back(with_contacts(concrete.solids[i], fraction[i],
+    mixed.push_back(with_contacts(concrete.block_materials[i], fraction[i],
                                   concrete.contacts[table.between(phase, phase)], block_size));
     if (i != of_matrix && fraction[i] > 0.0) inclusions.push_back(mixed.back());
   }
@@ -327,7 +332,7 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
   whole.inclusions = 1.0 - fraction[of_matrix];
 
   for (std::size_t i = 0; i < phases.size(); ++i) {
-    auto& creep = concrete.solids[i].creep;
+    auto& creep = concrete.block_materials[i].creep;
     if (!creep || creep->level == CreepLevel::phase) continue;
     if (i != of_matrix)
       throw Error(
@@ -350,7 +355,7 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
   whole.strain_weight = weight;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     const double ratio = i == of_matrix ? (1.0 - weight * strain->ratio) / (1.0 - weight) : strain->ratio;
-    concrete.solids[i].thermal_strain =
+    concrete.block_materials[i].thermal_strain =
         (strain->strain * ratio).named(fmt::format("materials.{}.thermal_strain", phases[i]));
   }
 }

@@ -39,7 +39,7 @@ struct CreepMaterial {
 };
 
 /// Material of a block: the zones' parameters as functions of temperature.
-struct SolidMaterial {
+struct BlockMaterial {
   std::string name;                    ///< name in [materials]
   Curve young = Curve::constant(0.0);  ///< E, Pa
   double poisson = 0.0;                ///< nu
@@ -187,14 +187,14 @@ class InterfaceTable {
 
 /// Behaviour, when a body cools, of E of its phases and of strengths, fracture energies and stiffnesses of
 /// its contacts. Free thermal strains go back along their curves in any case, or by
-/// SolidMaterial::contraction.
+/// BlockMaterial::contraction.
 enum class OnCooling : std::uint8_t {
   irreversible,  ///< values stay those of the highest temperature so far
   reversible     ///< values come back along their curves
 };
 
-/// Tells whether any of the solids creeps.
-bool any_creeps(const std::vector<SolidMaterial>& solids);
+/// Tells whether any of the materials creeps.
+bool any_creeps(const std::vector<BlockMaterial>& block_materials);
 
 /// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, °C.
 inline double property_temperature(OnCooling on_cooling, double temperature, double hottest) {
@@ -203,15 +203,15 @@ inline double property_temperature(OnCooling on_cooling, double temperature, dou
 
 /// Materials, interfaces and contacts of a concrete specimen.
 struct ConcreteMaterials {
-  std::vector<SolidMaterial> solids;      ///< materials by phase, then those of bearings
-  std::vector<std::string> interfaces;    ///< names as in InterfaceTable, then those of bearings
-  std::vector<ContactMaterial> contacts;  ///< contacts in the order of `interfaces`
-  double fracture_zone = 0.0;             ///< t_b that results, m
+  std::vector<BlockMaterial> block_materials;  ///< materials by phase, then those of bearings
+  std::vector<std::string> interfaces;         ///< names as in InterfaceTable, then those of bearings
+  std::vector<ContactMaterial> contacts;       ///< contacts in the order of `interfaces`
+  double fracture_zone = 0.0;                  ///< t_b that results, m
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< composition, where `follow_composition` was called
   std::optional<double> stress_free;       ///< temperature of `set_stress_free`, where it was called, °C
 
-  bool creeps() const { return any_creeps(solids); }
+  bool creeps() const { return any_creeps(block_materials); }
   bool asks_for_hottest() const;  ///< Tells whether any property depends on the highest temperature so far.
   /// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, see OnCooling,
   /// °C.
@@ -220,17 +220,18 @@ struct ConcreteMaterials {
   }
 };
 
-/// Returns the names of the solids, without those of bearings.
-std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
+/// Returns the names of the materials, without those of bearings.
+std::vector<std::string> phases_of(const std::vector<BlockMaterial>& block_materials);
 
 /// Makes the materials of a concrete. Throws Error when blocks of two phases would have no interface.
-/// \param solids      materials by phase, then those of bearings
+/// \param block_materials  materials by phase, then those of bearings
 /// \param block_size  square root of the mean block area, m: t_b scales with it
 /// \param foreseen    block size that a deck foresees, sqrt(area / count), m; without it block_size. Stated
 ///                    stiffnesses scale with it: where it is fracture_zone_size, they are as printed, to the
 ///                    last bit.
-ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
-                                double block_size, std::optional<double> foreseen = std::nullopt);
+ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_materials,
+                                const ContactParameters& parameters, double block_size,
+                                std::optional<double> foreseen = std::nullopt);
 
 /// Counts the thermal strain of every phase from a temperature, °C, at which the body was put together
 /// without stress; without this call it counts from the reference temperature. Call it after everything that

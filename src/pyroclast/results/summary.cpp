@@ -125,9 +125,9 @@ std::optional<double> exchange_stress(const Simulation& simulation, double incre
     const double from = low + i * (high - low) / kTemperatures;
     const double to = low + (i + 1) * (high - low) / kTemperatures;
     double strain = 0.0;
-    for (const SolidMaterial& solid : materials.solids)
-      if (!solid.is_of_bearing)
-        strain = std::max(strain, std::abs(solid.thermal_strain(to) - solid.thermal_strain(from)));
+    for (const BlockMaterial& material : materials.block_materials)
+      if (!material.is_of_bearing)
+        strain = std::max(strain, std::abs(material.thermal_strain(to) - material.thermal_strain(from)));
     const double stress =
         estimate_modulus(simulation.model(), materials, to) * strain * increment / (to - from);
     for (const ContactMaterial& contact : materials.contacts)

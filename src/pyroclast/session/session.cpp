@@ -34,8 +34,9 @@ std::string told(std::string text) {
 
 /// Throws Error where materials differ in what a run takes only at its beginning.
 void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& changed) {
-  for (std::size_t i = 0; i < old.solids.size(); ++i)
-    if (old.solids[i].density(kReferenceTemperature) != changed.solids[i].density(kReferenceTemperature))
+  for (std::size_t i = 0; i < old.block_materials.size(); ++i)
+    if (old.block_materials[i].density(kReferenceTemperature) !=
+        changed.block_materials[i].density(kReferenceTemperature))
       throw Error("a density cannot change in a run: mass would come or go");
   for (std::size_t i = 0; i < old.contacts.size(); ++i)
     if (old.contacts[i].law != changed.contacts[i].law)
@@ -225,7 +226,7 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
   Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes);
   Setup setup = read(deck);
-  auto materials = make_materials(setup.solids, *setup.motion, simulation_->numbers());
+  auto materials = make_materials(setup.block_materials, *setup.motion, simulation_->numbers());
   require_same_body(simulation_->materials(), materials);
   simulation_->set_materials(std::move(materials));
   take_over(std::move(deck), std::move(setup));

@@ -23,8 +23,8 @@ bool is_nothing(const Curve& strain) {
 bool expands(const Setup& setup) {
   const auto& of_concrete = setup.motion->strain_of_concrete;
   return (of_concrete && !is_nothing(of_concrete->strain)) ||
-         std::ranges::any_of(setup.solids, [](const SolidMaterial& solid) {
-           return !solid.is_of_bearing && (!is_nothing(solid.thermal_strain) || solid.contraction);
+         std::ranges::any_of(setup.block_materials, [](const BlockMaterial& material) {
+           return !material.is_of_bearing && (!is_nothing(material.thermal_strain) || material.contraction);
          });
 }
 
@@ -43,11 +43,11 @@ std::vector<std::string> keys_of_change(const Section& root, const Setup& setup)
   const auto add = [&](bool is_there, const std::string& owner, const char* key) {
     if (is_there) keys.push_back(fmt::format("{}.{}", owner, key));
   };
-  for (const SolidMaterial& solid : setup.solids) {
-    const std::string owner = "materials." + solid.name;
-    add(solid.creep.has_value(), owner, "creep");
-    add(solid.contraction.has_value(), owner, "contraction");
-    add(solid.residual_ratio.has_value(), owner, "residual_ratio");
+  for (const BlockMaterial& material : setup.block_materials) {
+    const std::string owner = "materials." + material.name;
+    add(material.creep.has_value(), owner, "creep");
+    add(material.contraction.has_value(), owner, "contraction");
+    add(material.residual_ratio.has_value(), owner, "residual_ratio");
   }
   if (!setup.motion) return keys;
   for (const auto& interface : setup.motion->contacts.interfaces)
@@ -128,12 +128,12 @@ std::vector<std::string> unused_sets(const Setup& setup) {
 std::vector<std::string> unused_properties(const Section& root, const Setup& setup) {
   std::vector<std::string> lines;
   if (!root.ok()) return lines;
-  for (const SolidMaterial& solid : setup.solids)
-    if (solid.quartz_step && setup.temperatures.upper <= solid.quartz_step->over.lower)
+  for (const BlockMaterial& material : setup.block_materials)
+    if (material.quartz_step && setup.temperatures.upper <= material.quartz_step->over.lower)
       lines.push_back(
           fmt::format("materials.{}.quartz_step begins at {:.6g} degC, and the run comes to {:.6g} degC at "
                       "most, so that it has no effect",
-                      solid.name, solid.quartz_step->over.lower, setup.temperatures.upper));
+                      material.name, material.quartz_step->over.lower, setup.temperatures.upper));
   if (changes_temperature(setup) || (setup.motion && setup.motion->stress_free)) return lines;
   const auto keys = keys_of_change(root, setup);
   if (!keys.empty())

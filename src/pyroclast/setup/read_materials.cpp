@@ -30,8 +30,8 @@ constexpr Interval kStandardRange{20.0, 1200.0};
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
-constexpr Meaning kBearingSolid = "the material of platens or other bearings, at 20 °C in every run";
-constexpr Meaning kSolid = "a phase of the specimen; each phase has such a table";
+constexpr Meaning kMaterialOfBearing = "the material of platens or other bearings, at 20 °C in every run";
+constexpr Meaning kMaterialOfPhase = "a phase of the specimen; each phase has such a table";
 
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
 void require_at_reference(const Section& s, std::string_view key, const Curve& curve, double expected,
@@ -114,13 +114,13 @@ std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete&
 }
 
 /// Reads the density, and the conductivity and specific heat where they are given.
-SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
+BlockMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   const auto optional = [&](std::string_view key, const Unit& unit, const Range& range,
                             Meaning meaning) -> std::optional<Curve> {
     if (!s.has(key)) return std::nullopt;
     return curves.read(s, key, unit, range, meaning);
   };
-  SolidMaterial m;
+  BlockMaterial m;
   m.name = s.path().substr(s.path().rfind('.') + 1);
   m.density = curves.read(s, "density", unit::density, Range::positive().usually(500.0, 20e3),
                           "masses are those at 20 °C; heat conduction follows the curve");
@@ -131,8 +131,8 @@ SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   return m;
 }
 
-SolidMaterial read_solid(const Section& s, CurveReader& curves) {
-  SolidMaterial m = read_heat_properties(s, curves);
+BlockMaterial read_block_material(const Section& s, CurveReader& curves) {
+  BlockMaterial m = read_heat_properties(s, curves);
   m.young = curves.read(s, "E", unit::stress, Range::positive().usually(1e9, 500e9), "Young's modulus");
   m.poisson = s.number("nu", Range::inside(-1.0, 0.5).usually(0.0, 0.45), "Poisson's ratio");
   return m;
@@ -207,10 +207,10 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
   return m;
 }
 
-/// Reads a phase of the specimen, not a solid of bearings.
-SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const ReadConcrete& concrete,
+/// Reads a phase of the specimen, not a material of bearings.
+BlockMaterial read_phase(const Section& s, const MaterialRules& rules, const ReadConcrete& concrete,
                          CurveReader& curves) {
-  SolidMaterial m = read_solid(s, curves);
+  BlockMaterial m = read_block_material(s, curves);
   m.residual_ratio = read_residual_ratio(
       s, rules.on_cooling,
       "share of E at T_max, the highest temperature that was there, that is left at 20 °C: a curve of T_max, "
@@ -234,7 +234,7 @@ SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
   return m;
 }
 
-SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
+BlockMaterial read_conducting_material(const Section& s, CurveReader& curves) {
   s.know({"E", "nu", "expansion", "thermal_strain", "quartz_step", "quartz_range", "contraction",
           "residual_ratio", "creep"});
   return read_heat_properties(s, curves);
@@ -249,7 +249,7 @@ std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curve
   return ratio;
 }
 
-/// Reads a number of a law that follows the temperature. A stiffness is none: it comes from the solids.
+/// Reads a number of a law that follows the temperature. A stiffness is none: it comes from the blocks.
 Curve read_property(const Section& s, const PropertyInfo& info, const std::optional<Curve>& ratio,
                     bool& ratio_has_effect, CurveReader& curves) {
   const Curve curve = curves.read(s, info.key, info.unit, info.range, Meaning(info.meaning));
@@ -583,31 +583,33 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
   return concrete;
 }
 
-std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
-                                       const std::vector<std::string>& of_bearings,
-                                       const MaterialRules& rules, const ReadConcrete& concrete,
-                                       CurveReader& curves) {
+std::vector<BlockMaterial> read_block_materials(const Section& root, const std::vector<std::string>& phases,
+                                                const std::vector<std::string>& of_bearings,
+                                                const MaterialRules& rules, const ReadConcrete& concrete,
+                                                CurveReader& curves) {
   const Section s = root.section("materials");
-  std::vector<SolidMaterial> solids;
+  std::vector<BlockMaterial> block_materials;
   for (const auto& phase : phases)
-    solids.push_back(read_phase(s.section(phase, kSolid), rules, concrete, curves));
+    block_materials.push_back(read_phase(s.section(phase, kMaterialOfPhase), rules, concrete, curves));
   for (const auto& name : of_bearings) {
-    const Section own = s.section(name, kBearingSolid);
-    solids.push_back(read_solid(own, curves));
-    solids.back().thermal_strain = read_thermal_strain(own, rules.expansion_reading, curves);
-    solids.back().is_of_bearing = true;
+    const Section own = s.section(name, kMaterialOfBearing);
+    block_materials.push_back(read_block_material(own, curves));
+    block_materials.back().thermal_strain = read_thermal_strain(own, rules.expansion_reading, curves);
+    block_materials.back().is_of_bearing = true;
   }
   s.know({"platen"});
-  return solids;
+  return block_materials;
 }
 
-std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
-                                                  CurveReader& curves) {
+std::vector<BlockMaterial> read_conducting_materials(const Section& root,
+                                                     const std::vector<std::string>& phases,
+                                                     CurveReader& curves) {
   const Section s = root.section("materials");
   s.know({"expansion_reading", "on_cooling", "platen"});
-  std::vector<SolidMaterial> solids;
-  for (const auto& phase : phases) solids.push_back(read_conducting_solid(s.section(phase, kSolid), curves));
-  return solids;
+  std::vector<BlockMaterial> block_materials;
+  for (const auto& phase : phases)
+    block_materials.push_back(read_conducting_material(s.section(phase, kMaterialOfPhase), curves));
+  return block_materials;
 }
 
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,

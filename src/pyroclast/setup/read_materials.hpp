@@ -11,7 +11,7 @@
 
 namespace pyroclast {
 
-/// Rules of [materials] for all solids.
+/// Rules of [materials] for all blocks.
 struct MaterialRules {
   ExpansionReading expansion_reading = ExpansionReading::secant;
   OnCooling on_cooling = OnCooling::irreversible;
@@ -30,17 +30,18 @@ struct ReadConcrete {
 ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
                            const MaterialRules& rules, CurveReader& curves);
 
-/// Reads [materials]: a table for each phase, then one for each solid of bearings. `curves` must be of the
+/// Reads [materials]: a table for each phase, then one for each material of bearings. `curves` must be of the
 /// temperature. Errors are recorded in the deck.
-std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
-                                       const std::vector<std::string>& of_bearings,
-                                       const MaterialRules& rules, const ReadConcrete& concrete,
-                                       CurveReader& curves);
+std::vector<BlockMaterial> read_block_materials(const Section& root, const std::vector<std::string>& phases,
+                                                const std::vector<std::string>& of_bearings,
+                                                const MaterialRules& rules, const ReadConcrete& concrete,
+                                                CurveReader& curves);
 
 /// Reads [materials] for heat conduction alone: of the phases only density, conductivity and specific heat;
 /// other properties have no effect.
-std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
-                                                  CurveReader& curves);
+std::vector<BlockMaterial> read_conducting_materials(const Section& root,
+                                                     const std::vector<std::string>& phases,
+                                                     CurveReader& curves);
 
 /// Function that finds the contact law that a deck names. It throws CodeNotAllowed where the law may not run,
 /// and Error when there is none.

@@ -220,7 +220,7 @@ Interval run_temperatures(const Section& root, const HeatConditions& conditions,
 void check_contacts(const Section& root, const Setup& setup) {
   const Section contacts = root.section("contacts");
   if (!root.ok()) return;
-  const auto concrete = make_concrete(setup.solids, setup.motion->contacts,
+  const auto concrete = make_concrete(setup.block_materials, setup.motion->contacts,
                                       expected_block_size(setup.specimen, setup.motion->contacts));
   const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
@@ -311,7 +311,8 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   motion.on_cooling = rules.on_cooling;
   const ReadConcrete concrete = read_concrete(root, phases, rules, curves);
   motion.strain_of_concrete = concrete.of_phases;
-  setup.solids = read_solids(root, phases, materials_of(motion.bearings), rules, concrete, curves);
+  setup.block_materials =
+      read_block_materials(root, phases, materials_of(motion.bearings), rules, concrete, curves);
   motion.contacts =
       read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
@@ -322,7 +323,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
 
 /// Reads the materials where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
-  setup.solids = read_conducting_solids(root, specimen::phases(setup.specimen), curves);
+  setup.block_materials = read_conducting_materials(root, specimen::phases(setup.specimen), curves);
   root.know({"platens", "bearings", "contacts", "mechanics", "concrete"});
 }
 
@@ -417,7 +418,7 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
     throw Error(fmt::format("the specimen's phases are {}, but those of the deck {}",
                             fmt::join(phases(specimen), ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
-  return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.sets,
+  return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.block_materials, setup.sets,
                                       setup.heat, setup.probes, setup.records, setup.motion, std::move(team));
 }
 

@@ -27,8 +27,8 @@ struct CheckpointChoice {
 struct Setup {
   std::string title;
   AskedSpecimen specimen;
-  double thickness = 1.0;             ///< thickness out of plane, m; of a solid 1
-  std::vector<SolidMaterial> solids;  ///< solids by phase of the specimen, then those of bearings
+  double thickness = 1.0;                      ///< thickness out of plane, m; of a solid 1
+  std::vector<BlockMaterial> block_materials;  ///< by phase of the specimen, then those of bearings
   ExpansionReading expansion_reading = ExpansionReading::secant;
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
   /// Temperatures to which the run may come, °C; its curves must cover them.

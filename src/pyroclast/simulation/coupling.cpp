@@ -7,11 +7,11 @@ namespace pyroclast {
 
 namespace {
 
-/// Returns the solid of each zone, by place in the solids.
-std::vector<int> solids_of_zones(const Model& model) {
-  std::vector<int> solids = zone_blocks(model);
-  for (int& entry : solids) entry = model.block_material[entry];
-  return solids;
+/// Returns the material of each zone, by place in the materials of blocks.
+std::vector<int> materials_of_zones(const Model& model) {
+  std::vector<int> block_materials = zone_blocks(model);
+  for (int& entry : block_materials) entry = model.block_material[entry];
+  return block_materials;
 }
 
 /// Elastic constants by dimension: in 2D those of plane stress.
@@ -26,44 +26,45 @@ Elasticity elasticity_of(const Model& model) {
 }
 
 /// \param hottest  highest temperature so far, °C
-ZoneProperties zone_at(const ConcreteMaterials& materials, Elasticity elasticity, const SolidMaterial& solid,
-                       double temperature, double hottest) {
-  return elasticity(solid.young_at(temperature, materials.property_temperature(temperature, hottest)),
-                    solid.poisson, solid.free_strain(temperature, hottest));
+ZoneProperties zone_at(const ConcreteMaterials& materials, Elasticity elasticity,
+                       const BlockMaterial& material, double temperature, double hottest) {
+  return elasticity(material.young_at(temperature, materials.property_temperature(temperature, hottest)),
+                    material.poisson, material.free_strain(temperature, hottest));
 }
 
 /// Finds the creep of each zone; none where nothing creeps.
-/// \param zone_solids  solid of each zone, by place in the solids
+/// \param zone_materials  material of each zone, by place in the materials of blocks
 /// \param increments   creep of each zone, out
-void find_creep_increments(const std::vector<int>& zone_solids, const ConcreteMaterials& materials,
+void find_creep_increments(const std::vector<int>& zone_materials, const ConcreteMaterials& materials,
                            const TemperatureField& field, const HottestTemperatures& before,
                            std::vector<CreepIncrement>& increments) {
   increments.clear();
   if (!materials.creeps()) return;
-  for (int z = 0; z < static_cast<int>(zone_solids.size()); ++z) {
-    const SolidMaterial& solid = materials.solids[zone_solids[z]];
+  for (int z = 0; z < static_cast<int>(zone_materials.size()); ++z) {
+    const BlockMaterial& material = materials.block_materials[zone_materials[z]];
     const double now = field.zones()[z];
-    increments.push_back(solid.creep
-                             ? solid.creep->between(before.of_zone_at_exchanges(z, kReferenceTemperature),
-                                                    before.of_zone(z, now))
+    increments.push_back(material.creep
+                             ? material.creep->between(before.of_zone_at_exchanges(z, kReferenceTemperature),
+                                                       before.of_zone(z, now))
                              : CreepIncrement{});
   }
 }
 
 /// Returns properties at one temperature: one set of parameters a material and an interface. Bearings keep
 /// the reference temperature.
-BodyProperties properties_at_one_temperature(const Model& model, const std::vector<int>& zone_solids,
+BodyProperties properties_at_one_temperature(const Model& model, const std::vector<int>& zone_materials,
                                              const ConcreteMaterials& materials, double temperature,
                                              double hottest) {
   const Elasticity elasticity = elasticity_of(model);
-  std::vector<ZoneProperties> solids;
-  for (const SolidMaterial& solid : materials.solids)
-    solids.push_back(solid.is_of_bearing
-                         ? zone_at(materials, elasticity, solid, kReferenceTemperature, kReferenceTemperature)
-                         : zone_at(materials, elasticity, solid, temperature, hottest));
+  std::vector<ZoneProperties> block_materials;
+  for (const BlockMaterial& material : materials.block_materials)
+    block_materials.push_back(
+        material.is_of_bearing
+            ? zone_at(materials, elasticity, material, kReferenceTemperature, kReferenceTemperature)
+            : zone_at(materials, elasticity, material, temperature, hottest));
   std::vector<ZoneProperties> zones;
-  zones.reserve(zone_solids.size());
-  for (int solid : zone_solids) zones.push_back(solids[solid]);
+  zones.reserve(zone_materials.size());
+  for (int material : zone_materials) zones.push_back(block_materials[material]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
     interfaces.push_back(
@@ -132,24 +133,24 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
 BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
                              BodyProperties memory) {
-  const std::vector<int> zone_solids = solids_of_zones(model);
+  const std::vector<int> zone_materials = materials_of_zones(model);
   BodyProperties p = std::move(memory);
-  find_creep_increments(zone_solids, materials, field, before, p.creep);
+  find_creep_increments(zone_materials, materials, field, before, p.creep);
   if (field.is_uniform() && before.stress_free_zones().empty()) {
-    BodyProperties even = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
+    BodyProperties even = properties_at_one_temperature(model, zone_materials, materials, field.mean(),
                                                         before.of_body(field.mean()));
     even.creep = std::move(p.creep);
     return even;
   }
   const Elasticity elasticity = elasticity_of(model);
   p.zones.clear();
-  p.zones.reserve(zone_solids.size());
+  p.zones.reserve(zone_materials.size());
   for (int z = 0; z < model.zone_count(); ++z) {
     const double now = field.zones()[z];
-    const SolidMaterial& solid = materials.solids[zone_solids[z]];
-    p.zones.push_back(zone_at(materials, elasticity, solid, now, before.of_zone(z, now)));
-    if (!before.stress_free_zones().empty() && !solid.is_of_bearing)
-      p.zones.back().thermal_strain -= solid.thermal_strain(before.stress_free_zones()[z]);
+    const BlockMaterial& material = materials.block_materials[zone_materials[z]];
+    p.zones.push_back(zone_at(materials, elasticity, material, now, before.of_zone(z, now)));
+    if (!before.stress_free_zones().empty() && !material.is_of_bearing)
+      p.zones.back().thermal_strain -= material.thermal_strain(before.stress_free_zones()[z]);
   }
   std::size_t numbers = 0;
   for (int c = 0; c < model.contact_count(); ++c)

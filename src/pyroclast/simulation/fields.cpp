@@ -49,7 +49,7 @@ SymmetricTensor<3> creep_of(const R& r, int zone) {
   if (!r.motion().creeps()) return {};
   const Model& model = r.model();
   const int block = model.block_of(model.gridpoints_of_zone(zone)[0]);
-  const auto& creep = r.simulation().materials().solids[model.block_material[block]].creep;
+  const auto& creep = r.simulation().materials().block_materials[model.block_material[block]].creep;
   SymmetricTensor<3> strain = r.motion().read().creep_strain(zone);
   if (model.dimension() == 2 && creep) strain[2] = creep_across(strain[0], strain[1], creep->choices.poisson);
   return strain;

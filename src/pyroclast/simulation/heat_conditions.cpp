@@ -56,20 +56,20 @@ bool boundaries_are_constant(const HeatConditions& heat, double begin, double en
   });
 }
 
-HeatMaterial heat_material(const SolidMaterial& solid) {
+HeatMaterial heat_material(const BlockMaterial& material) {
   const auto require = [&](const std::optional<Curve>& curve, const char* key) -> const Curve& {
-    if (!curve) throw Error(fmt::format("heat conduction needs materials.{}.{}", solid.name, key));
+    if (!curve) throw Error(fmt::format("heat conduction needs materials.{}.{}", material.name, key));
     return *curve;
   };
-  return {require(solid.conductivity, "conductivity"),
-          solid.density * require(solid.specific_heat, "specific_heat")};
+  return {require(material.conductivity, "conductivity"),
+          material.density * require(material.specific_heat, "specific_heat")};
 }
 
-/// Returns the heat material of each solid; none for bearings.
-std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<SolidMaterial>& solids) {
-  std::vector<std::optional<HeatMaterial>> materials(solids.size());
-  for (std::size_t m = 0; m < solids.size(); ++m)
-    if (!solids[m].is_of_bearing) materials[m] = heat_material(solids[m]);
+/// Returns the heat material of each material of blocks; none for bearings.
+std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<BlockMaterial>& block_materials) {
+  std::vector<std::optional<HeatMaterial>> materials(block_materials.size());
+  for (std::size_t m = 0; m < block_materials.size(); ++m)
+    if (!block_materials[m].is_of_bearing) materials[m] = heat_material(block_materials[m]);
   return materials;
 }
 
@@ -156,12 +156,12 @@ class FaceUse {
 
 }  // namespace
 
-HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
+HeatConditions with_specimen(HeatConditions heat, const std::vector<BlockMaterial>& block_materials,
                              const std::vector<double>& fraction, double mean_size) {
   if (!heat.cracks || !heat.cracks->splits_by_block_size) return heat;
   double conductivity = 0.0;
   for (std::size_t i = 0; i < fraction.size(); ++i)
-    conductivity += fraction[i] * heat_material(solids[i]).conductivity(kReferenceTemperature);
+    conductivity += fraction[i] * heat_material(block_materials[i]).conductivity(kReferenceTemperature);
   heat.cracks->law.split_below = conductivity / (kLeftOut * mean_size);
   heat.cracks->splits_by_block_size = false;
   return heat;
@@ -222,10 +222,10 @@ namespace {
 
 template <int Dim>
 std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
-                                               const std::vector<SolidMaterial>& solids,
+                                               const std::vector<BlockMaterial>& block_materials,
                                                const HeatConditions& heat, const Interval& range,
                                                std::shared_ptr<Team> team) {
-  auto conduction = std::make_unique<Conduction<Dim>>(model, heat_materials(solids),
+  auto conduction = std::make_unique<Conduction<Dim>>(model, heat_materials(block_materials),
                                                       HeatParameters{.temperature_range = range,
                                                                      .initial_temperature = heat.initial,
                                                                      .scheme = heat.scheme,
@@ -255,11 +255,12 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
 
 }  // namespace
 
-std::unique_ptr<HeatSolver> make_conduction(const Model& model, const std::vector<SolidMaterial>& solids,
+std::unique_ptr<HeatSolver> make_conduction(const Model& model,
+                                            const std::vector<BlockMaterial>& block_materials,
                                             const HeatConditions& heat, const Interval& range,
                                             std::shared_ptr<Team> team) {
   return with_dimension(model, [&](const auto& of_dimension) {
-    return make_conduction_of(of_dimension, solids, heat, range, std::move(team));
+    return make_conduction_of(of_dimension, block_materials, heat, range, std::move(team));
   });
 }
 

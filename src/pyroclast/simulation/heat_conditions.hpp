@@ -67,7 +67,7 @@ struct HeatConditions {
 /// Fills in values that depend on the specimen. Where cracks split temperatures by the block size l, they do
 /// so below 20 lambda / l, with the mean conductivity of the specimen's area at 20 °C. The resistances left
 /// out are less than 5 % of a block's.
-HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
+HeatConditions with_specimen(HeatConditions heat, const std::vector<BlockMaterial>& block_materials,
                              const std::vector<double>& fraction, double mean_size);
 
 /// Tells whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic
@@ -96,7 +96,8 @@ double constant_from(const HeatConditions& heat, double duration);
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one face.
-std::unique_ptr<HeatSolver> make_conduction(const Model& model, const std::vector<SolidMaterial>& solids,
+std::unique_ptr<HeatSolver> make_conduction(const Model& model,
+                                            const std::vector<BlockMaterial>& block_materials,
                                             const HeatConditions& heat, const Interval& range,
                                             std::shared_ptr<Team> team = nullptr);
 

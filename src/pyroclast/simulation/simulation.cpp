@@ -12,11 +12,11 @@ namespace pyroclast {
 
 namespace {
 
-TemperatureField make_field(const Model& model, const std::vector<SolidMaterial>& solids,
+TemperatureField make_field(const Model& model, const std::vector<BlockMaterial>& block_materials,
                             const HeatConditions& heat, const std::shared_ptr<Team>& team) {
   if (heat.uniform) return {model, heat.initial};
   const Interval initial{heat.initial, heat.initial};  // each exposure widens it
-  return {model, make_conduction(model, solids, heat, initial, team)};
+  return {model, make_conduction(model, block_materials, heat, initial, team)};
 }
 
 /// Throws Error: a slit parts a contact whose law holds it together.
@@ -33,7 +33,8 @@ std::unique_ptr<Motion> make_motion_at(const Model& model, const ConcreteMateria
                                        const MechanicsParameters& parameters,
                                        const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
-  for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
+  for (const auto& material : materials.block_materials)
+    densities.push_back(material.density(kReferenceTemperature));
   return make_motion(model, densities, properties_at(model, materials, field, hottest), parameters, team);
 }
 
@@ -44,10 +45,10 @@ std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
   return model;
 }
 
-SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<SolidMaterial>& solids) {
-  if (numbers.fraction.size() > solids.size())
-    throw Error(fmt::format("the specimen has shares of {} phases, but there are {} solids",
-                            numbers.fraction.size(), solids.size()));
+SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<BlockMaterial>& block_materials) {
+  if (numbers.fraction.size() > block_materials.size())
+    throw Error(fmt::format("the specimen has shares of {} phases, but there are {} materials of blocks",
+                            numbers.fraction.size(), block_materials.size()));
   if (!(numbers.size > 0.0 && numbers.block_size > 0.0 && numbers.mean_size > 0.0))
     throw Error("the sizes of a specimen and of its blocks must be greater than 0");
   return numbers;
@@ -55,15 +56,15 @@ SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<SolidMateria
 
 }  // namespace
 
-bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion) {
-  return motion.strain_of_concrete || any_creeps(solids);
+bool follows_composition(const std::vector<BlockMaterial>& block_materials, const MotionParameters& motion) {
+  return motion.strain_of_concrete || any_creeps(block_materials);
 }
 
-ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
-                                 const SpecimenNumbers& specimen) {
-  auto materials = make_concrete(solids, motion.contacts, specimen.mean_size, specimen.block_size);
+ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materials,
+                                 const MotionParameters& motion, const SpecimenNumbers& specimen) {
+  auto materials = make_concrete(block_materials, motion.contacts, specimen.mean_size, specimen.block_size);
   materials.on_cooling = motion.on_cooling;
-  if (follows_composition(solids, motion))
+  if (follows_composition(block_materials, motion))
     follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
                        specimen.mean_size);
   if (motion.stress_free && !motion.stress_free->is_field())
@@ -71,31 +72,32 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
   return materials;
 }
 
-Simulation::Simulation(MadeSpecimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
+Simulation::Simulation(MadeSpecimen specimen, double thickness,
+                       const std::vector<BlockMaterial>& block_materials,
                        const std::vector<SetParameters>& sets, const HeatConditions& heat,
                        const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
-    : Simulation(make_body(specimen, thickness, sets, motion), solids, heat, probes, records, motion,
+    : Simulation(make_body(specimen, thickness, sets, motion), block_materials, heat, probes, records, motion,
                  std::move(team)) {
   specimen_ = std::move(specimen);
 }
 
-Simulation::Simulation(SpecimenBody body, const std::vector<SolidMaterial>& solids,
+Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& block_materials,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
                        const std::vector<RecordParameters>& records,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : team_(std::move(team)),
       model_(required(std::move(body.model))),
-      numbers_(required(std::move(body.numbers), solids)),
-      heat_(with_specimen(heat, solids, numbers_.fraction, numbers_.mean_size)),
-      field_(make_field(*model_, solids, heat_, team_)) {
+      numbers_(required(std::move(body.numbers), block_materials)),
+      heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
+      field_(make_field(*model_, block_materials, heat_, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!motion) {
     for (const RecordParameters& record : records) records_.emplace_back(*model_, false, record);
     show_cracks_to_heat();
     return;
   }
-  materials_ = make_materials(solids, *motion, numbers_);
+  materials_ = make_materials(block_materials, *motion, numbers_);
   std::vector<double> stress_free;
   if (motion->stress_free && motion->stress_free->is_field())
     stress_free = stress_free_gridpoints(*motion->stress_free, *model_, numbers_.mean_size);
@@ -209,7 +211,7 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
   for (int z = 0; z < model.zone_count(); ++z) {
     if (model.is_of_bearing(blocks[z])) continue;
     volume += volumes[z];
-    compliance += volumes[z] / materials.solids[model.block_material[blocks[z]]].young(temperature);
+    compliance += volumes[z] / materials.block_materials[model.block_material[blocks[z]]].young(temperature);
   }
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);

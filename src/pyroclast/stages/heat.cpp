@@ -24,7 +24,7 @@ struct StrainChange {
   Interval axial{0.0, 0.0}, lateral{0.0, 0.0};
 };
 
-/// Returns bounds that hold no change and the changes of all solids: their free thermal strain, and this
+/// Returns bounds that hold no change and the changes of all materials: their free thermal strain, and this
 /// strain with the creep under the stress on the platens.
 StrainChange strain_change(const Simulation& simulation, double from, double to) {
   const auto widen = [](Interval& change, double strain) {
@@ -33,13 +33,13 @@ StrainChange strain_change(const Simulation& simulation, double from, double to)
   const double stress = -simulation.press().stress();  // tension positive
   const HottestTemperatures& hottest = simulation.hottest();
   StrainChange change;
-  for (const SolidMaterial& solid : simulation.materials().solids) {
-    if (solid.is_of_bearing) continue;
+  for (const BlockMaterial& material : simulation.materials().block_materials) {
+    if (material.is_of_bearing) continue;
     const double thermal =
-        solid.free_strain(to, hottest.of_body(to)) - solid.free_strain(from, hottest.of_body(from));
+        material.free_strain(to, hottest.of_body(to)) - material.free_strain(from, hottest.of_body(from));
     for (Interval* direction : {&change.axial, &change.lateral}) widen(*direction, thermal);
-    if (!solid.creep) continue;
-    const CreepIncrement creep = solid.creep->between(hottest.of_body(kReferenceTemperature), to);
+    if (!material.creep) continue;
+    const CreepIncrement creep = material.creep->between(hottest.of_body(kReferenceTemperature), to);
     const double along = creep.compliance * stress;
     widen(change.axial, thermal + along);
     widen(change.lateral, thermal - creep.poisson * along);
