@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -47,7 +48,7 @@ def write_table(table: pathlib.Path, columns: tuple[str, ...], rows: list[dict])
 def physics_version(program: str = PROGRAM) -> str:
     """Of the program: results of the same deck are the same with the same version."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
-    return version.split("physics version ")[1].strip()
+    return re.search(r"physics version (\d+)", version)[1]
 
 
 def _same_run(folder: pathlib.Path, command: list[str]) -> bool:

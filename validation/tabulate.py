@@ -10,8 +10,7 @@ import pathlib
 import statistics
 import sys
 
-COLUMNS = ("E_GPa", "f_c_MPa", "strain_at_peak", "strain_ic")
-
+COLUMNS = ("E_GPa", "f_c_MPa", "stress_max_MPa", "strain_at_peak", "strain_ic")
 
 INERTIA_COUNTS_FROM = 0.1  # of f_c, as in the program's own verdict
 
@@ -27,6 +26,11 @@ def inertia(history: pathlib.Path) -> tuple[float, float]:
             max(abs(r["stress_top_MPa"] - r["stress_bottom_MPa"]) for r in loaded) / strength)
 
 
+def number(value: float | None) -> str:
+    """A number of the table; nothing where a run has no peak and so no strength."""
+    return "" if value is None else f"{value:.5g}"
+
+
 def main() -> None:
     folder = pathlib.Path(sys.argv[1])
     runs: dict[str, list[dict]] = {}
@@ -39,13 +43,14 @@ def main() -> None:
         result = next(stage["results"] for stage in summary["stages"] if stage["kind"] == "compress")
         kinetic, difference = inertia(file.parent / "history.csv")
         runs.setdefault(variant, []).append(result)
-        print(f"{variant},{manifest['seed']}," + ",".join(f"{result[c]:.5g}" for c in COLUMNS) +
+        print(f"{variant},{manifest['seed']}," + ",".join(number(result[c]) for c in COLUMNS) +
               f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_turnover']:.3f}"
               f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},"
               f"{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):
-            print(f"{variant},{name}," + ",".join(f"{of([r[c] for r in results]):.5g}" for c in COLUMNS) + ",,,,,,")
+            columns = ([r[c] for r in results if r[c] is not None] for c in COLUMNS)
+            print(f"{variant},{name}," + ",".join(number(of(values) if values else None) for values in columns) + ",,,,,,")
 
 
 if __name__ == "__main__":

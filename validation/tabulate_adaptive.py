@@ -9,9 +9,8 @@ import math
 import pathlib
 import sys
 
-from tabulate_heating import strain_at
-
-from pyroclast.results import Results  # tabulate_heating made the package known
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from pyroclast.results import Results  # noqa: E402
 
 COLUMNS = ("kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static",
            "strain_500", "critical_degC", "not_converged", "wall_time_s")
@@ -28,7 +27,7 @@ def row_of(folder: pathlib.Path) -> dict:
         result = Results(folder).compression
         return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static")}
     heating = Results(folder).heating
-    strain, critical = strain_at(Results(folder), 500), heating["critical_temperature_degC"]
+    strain, critical = Results(folder).standing_strain((500,))[0], heating["critical_temperature_degC"]
     return row | {"strain_500": "" if math.isnan(strain) else strain,
                   "not_converged": heating["exchanges_not_converged"],
                   "critical_degC": "" if critical is None else critical}

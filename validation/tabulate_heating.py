@@ -40,8 +40,9 @@ def main() -> None:
         heating = run.heating
         critical = heating["critical_temperature_degC"]
         print(f"{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)
-              + f",{'' if critical is None else f'{critical:.0f}'},{heating['exchanges']},"
-              f"{heating['exchanges_not_converged']},{heating['worst_unbalanced_ratio']:.1e},{heating['cycles']},"
+              + f",{'' if critical is None else f'{critical:.0f}'},{heating['exchanges']:.0f},"
+              f"{heating['exchanges_not_converged']:.0f},{heating['worst_unbalanced_ratio']:.1e},"
+              f"{heating['cycles']:.0f},"
               f"{100.0 * run.summary['energy_J']['error_over_turnover']:.3f},{run.summary['wall_time_s']:.0f}")
 
 

@@ -221,8 +221,9 @@ def _temperatures(text: str) -> list[float]:
         raise argparse.ArgumentTypeError(f"{text} is not a list like 300,400,500") from None
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python3 -m pyroclast.figures",
+def parser() -> argparse.ArgumentParser:
+    """Reads the words behind `pyroclast figures`."""
+    parser = argparse.ArgumentParser(prog="pyroclast figures",
                                      description="Draws the figures of runs and specimens.")
     commands = parser.add_subparsers(dest="command", required=True)
 
@@ -278,7 +279,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code."""
-    asked = _parser().parse_args(arguments)
+    asked = parser().parse_args(arguments)
     with warnings.catch_warnings():
         warnings.simplefilter("always", GapWarning)
         warnings.showwarning = lambda message, *_: _tell(message)

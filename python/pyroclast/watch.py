@@ -502,8 +502,8 @@ def _tell(what: object) -> None:
     print(f"pyroclast watch: {what}", file=sys.stderr)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Returns the exit code."""
+def parser() -> argparse.ArgumentParser:
+    """Reads the words behind `pyroclast watch`."""
     parser = argparse.ArgumentParser(prog="pyroclast watch", description="Shows a run while it is computed.")
     parser.add_argument("folder", type=Path, metavar="RUN", help="folder of a run")
     parser.add_argument("--once", action="store_true", help="show what there is by now, and stop")
@@ -512,10 +512,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
                              f"but {PICTURE} in the folder (default: what there is)")
     parser.add_argument("--out", type=Path, metavar="FILE",
                         help=f"the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Returns the exit code."""
     hear_ctrl_c()
-    asked = parser.parse_args(arguments)
+    options = parser()
+    asked = options.parse_args(arguments)
     if asked.out is not None and asked.out.suffix.lower() not in (".png", ".svg", ".pdf"):
-        parser.error("--out: the file's ending must be .png, .svg or .pdf")
+        options.error("--out: the file's ending must be .png, .svg or .pdf")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GapWarning)  # the figures tell of them

@@ -72,6 +72,7 @@ class CommandLine(unittest.TestCase):
         for what, word in (("curves", "en1992_siliceous_strength"), ("fires", "iso834"), ("units", "stress"),
                            ("keys", "specimen.width"), ("laws", "cohesive")):
             self.assertIn(word, self.pyroclast("list", what).stdout)
+        self.assertIn("cases, curves", self.error("list").replace('"', ""))
 
     def test_new_gives_every_case_as_it_is(self):
         for case in CASES.glob("*.toml"):
@@ -79,16 +80,31 @@ class CommandLine(unittest.TestCase):
             self.assertEqual((self.folder / f"my_{case.stem}.toml").read_text(), case.read_text())
 
     def test_manual_and_completion_have_every_command_and_option(self):
-        manual, completion = self.pyroclast("manual").stdout, self.pyroclast("completion").stdout
-        for word in ("run", "resume", "plot-properties", "--law-path", "--from-stage", "--no-fields", "--watch"):
+        manual, bash = self.pyroclast("manual").stdout, self.pyroclast("completion").stdout
+        zsh = self.pyroclast("completion", "zsh").stdout
+        of_program = ("run", "resume", "plot-properties", "--law-path", "--from-stage", "--no-fields", "--watch")
+        of_package = ("--magnification", "--temperatures", "--once", "--executor", "--dry-run", "compare", "report")
+        for word in of_program + of_package:
             self.assertIn(word.replace("-", "\\-"), manual)
-            self.assertIn(word, completion)
+            self.assertIn(word, bash)
+            self.assertIn(word, zsh)
+        for text in (bash, zsh):
+            self.assertIn("contacts.mortar_mortar.f_t", text)
+            self.assertNotIn("contacts.NAME", text)
+        self.assertIn("bash, zsh", self.error("completion", "fish"))
         for code in (0, 1, 2, 130):
             self.assertIn(f".TP\n{code}\n", manual)
         if shutil.which("bash"):
-            script = f"{completion}\nCOMP_WORDS=(pyroclast run --ov) COMP_CWORD=2; _pyroclast; echo ${{COMPREPLY[@]}}"
-            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-            self.assertEqual(done.stdout.strip(), "--overwrite")
+            for words, completed in (("run --ov", "--overwrite"), ("run mine.toml --set blocks.co", "blocks.count="),
+                                     ("study re", "report"), ("study run --exec", "--executor"), ("list fi", "fields fires"),
+                                     ("study run --executor sl", "slurm"), ("figures compare --wh", "--what"),
+                                     ("watch --on", "--once --on"), ("new --from hot_c", "hot_compression")):
+                script = (f"{bash}\nCOMP_WORDS=(pyroclast {words}) COMP_CWORD={len(words.split())}; _pyroclast; "
+                          "echo ${COMPREPLY[@]}")
+                done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+                self.assertEqual(done.stdout.strip(), completed, words)
+        if shutil.which("zsh"):
+            subprocess.run(["zsh", "-n"], input=zsh, capture_output=True, text=True, check=True)
 
     def test_exit_codes_speech_and_fields(self):
         self.pyroclast("new", "mine")

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pyroclast/deck/reference.hpp"
+#include "pyroclast/deck/schema_json.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/stages/settle.hpp"
 
@@ -27,6 +28,9 @@ TEST(DeckReference, SaysWhatEveryKeyWordAndTableMeans) {
   const std::string page = deck_reference(schema);
   EXPECT_NE(page.find("### `kind = \"shake\"`\n\nDrives the platen up and down."), std::string::npos);
   EXPECT_NE(page.find("| `turns` | whole number |"), std::string::npos);
+  EXPECT_EQ(schema_of(json_of(schema)), schema);
+  EXPECT_THROW(schema_of("{}"), Error);
+  EXPECT_THROW(schema_of("tables"), Error);
 }
 
 }  // namespace

@@ -8,17 +8,17 @@ import math
 import os
 import shutil
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
 from ..errors import CodeNotAllowed, Error
 from ..interrupts import hear_ctrl_c
+from .command_line import parser
 from .driver import NOT_RUN, duration
 from .executors.commands import Commands
-from .file import KEEP, reference
-from .study import EXECUTORS, Study
+from .file import reference
+from .study import Study
 
 _INTRODUCTION = """# Study reference
 
@@ -34,10 +34,10 @@ def main(words: list[str]) -> int:
     """Exit code: 0 done, 2 runs are missing, 3 code has to be allowed first, 1 another error."""
     try:
         hear_ctrl_c()
-        options = _parser().parse_args(words)
+        options = parser().parse_args(words)
         if options.allow_code:
             _core.allow_code()
-        return int(options.do(options) or 0)
+        return int(_COMMANDS[options.do](options) or 0)
     except CodeNotAllowed as error:
         print(f"error: {_core.shown(str(error))}", file=sys.stderr)
         return 3
@@ -50,47 +50,6 @@ def main(words: list[str]) -> int:
     except KeyboardInterrupt:
         return 130
     return 1
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="pyroclast study", description="From one run to a thousand: sensitivity, "
-                                     "scatter, calibration. docs/studies.md tells what a study file holds.")
-    parser.add_argument("--program", help=argparse.SUPPRESS)  # by which `pyroclast study` names itself
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-
-    def command(name: str, do: Callable[[argparse.Namespace], int], meaning: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=meaning, description=meaning)
-        added.set_defaults(do=do, allow_code=False)
-        if name != "keys":
-            added.add_argument("--allow-code", action="store_true",
-                               help="let code that the study and its deck name run, now and until it changes; read it "
-                               "first")
-            added.add_argument("study", metavar="STUDY", help="TOML file that describes the study")
-        return added
-
-    run = command("run", _run, "Make the runs of a study that are missing; what is done is never run again")
-    run.add_argument("--executor", choices=EXECUTORS, default="local", help="where the runs are made")
-    run.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
-    run.add_argument("--keep", choices=KEEP, help="what stays of each run that is made now (default: as the file says)")
-    run.add_argument("--dry-run", action="store_true", help="only say how many runs, how long and how much disk")
-    run.add_argument("--again", action="store_true", help="make runs that crashed or timed out once more")
-    run.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    command("check", _check, "Check a study file, the ends of its ranges, and all points that are known beforehand")
-    command("status", _status, "Say what is done, what failed and why, and what is left")
-    table = command("table", _table, "Write the table of all runs as CSV")
-    table.add_argument("-o", "--out", type=Path, help="file (default: table.csv in the folder of the study; -: here)")
-    report = command("report", _report, "Draw the figures of a study, and one page that gathers them")
-    report.add_argument("-o", "--out", type=Path, metavar="FOLDER",
-                        help="where they go (default: report in the folder of the study, which is then written to)")
-    command("keys", _keys, "Print every key that a study file may hold, as Markdown")
-    return parser
-
-
-def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError("must be 1 or more")
-    return number
 
 
 def _study(options: argparse.Namespace) -> Study:
@@ -202,6 +161,9 @@ def _report(options: argparse.Namespace) -> int:
 def _keys(options: argparse.Namespace) -> int:
     print(f"{_INTRODUCTION}{reference()}", end="")
     return 0
+
+
+_COMMANDS = {"run": _run, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
 
 
 if __name__ == "__main__":

@@ -15,8 +15,6 @@ from ..errors import Error
 from .outputs import Output
 from .parameters import Distribution, Parameter, Value
 
-KEEP = ("summary", "history", "all")
-RUNNERS = ("pyroclast", "command", "function")
 FIRST_SEED = 1
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s+(\S.*?))?\s*")

@@ -17,6 +17,7 @@ import numpy as np
 from .. import _core
 from ..decks import is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
+from .choices import EXECUTORS
 from .code import require_code
 from .driver import Driver, StudyForecast, free_cores
 from .executors import Executor
@@ -28,8 +29,6 @@ from .store import CRASHED, TIMED_OUT, Store, only_writer
 
 if TYPE_CHECKING:
     import pandas
-
-EXECUTORS = ("local", "slurm", "commands")
 
 
 class Study:

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/deck/survey.hpp"
+
 namespace pyroclast::app {
 
 constexpr int kMostThreads = 1024;
@@ -86,10 +88,24 @@ int plot_properties(const PropertiesOptions& options);
 /// Writes a new deck.
 /// \param from  a case, see kCases
 int make_deck(const std::string& name, const std::string& from);
+/// Returns the places of all keys that a deck may have, such as "stages[].kind"; NAME stands for a name of
+/// one's own.
+/// \param of_tables  true to leave out forms of values, which are in several tables
+std::vector<std::string> key_paths(bool of_tables = false);
+/// Returns what print_list prints.
+std::vector<std::string> names_of_lists();
 /// Prints a list.
-/// \param what  curves, fields, fires, units, keys, cases or laws
+/// \param what  one of names_of_lists
 int print_list(const std::string& what);
-int print_keys();
+
+struct KeysOptions {
+  bool json = false;
+  bool survey = false;  ///< true to ask the readers of decks, false for what they left at the build
+};
+/// Prints all keys that a deck may have, as Markdown or JSON.
+int print_keys(const KeysOptions& options);
+/// Returns all keys that a deck may have, from the file that the build left where it is there.
+DeckSchema known_deck_schema();
 int print_laws();
 
 /// Draws figures of present results, by the command of the Python package: `run`, `compare`, `levels` ...

@@ -16,14 +16,20 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Runs the package's command; returns its exit code, or -1 if there is no such program or it was ended.
-int draw(
+/// Runs the package's command; returns its exit code, -1 if it was ended, or none where Python cannot be run.
+std::optional<int> draw(
     const std::vector<std::string>& words, Speech speech = Speech::usual,
     const std::function<bool()>& skip = [] { return false; }) {
   if (skip()) return -1;
   const auto child = start_package("pyroclast.figures", words, {.prints = speech != Speech::quiet});
-  const int status = child ? wait_for(*child, skip) : -1;
+  if (!child) return std::nullopt;
+  const int status = wait_for(*child, skip);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string no_python() {
+  return fmt::format(
+      "there is no {}, which draws them; PYROCLAST_PYTHON in the environment names another Python", python());
 }
 
 }  // namespace
@@ -34,18 +40,19 @@ int figures(const std::vector<std::string>& words) {
   if (words.size() >= 2 && (words[0] == "run" || words[0] == "plane") &&
       std::ranges::none_of(words, is_out) && std::filesystem::is_directory(words[1]))
     lock.emplace(words[1]);
-  const int code = draw(words);
-  if (code < 0) throw Error(fmt::format("{} cannot be run, which draws the figures", PYROCLAST_PYTHON));
-  return code == 0 ? 0 : 1;
+  const auto code = draw(words);
+  if (!code) throw Error(no_python());
+  return *code == 0 ? 0 : 1;
 }
 
 void draw_figures(const std::string& what, const std::filesystem::path& folder, Speech speech,
                   const std::function<bool()>& skip) {
-  if (draw({what, folder.string()}, speech, skip) == 0) return;
+  const auto code = draw({what, folder.string()}, speech, skip);
+  if (code == 0) return;
   say_aside(
-      fmt::format("warning: no figures were drawn; the results are complete without them.\n"
+      fmt::format("warning: no figures were drawn{}; the results are complete without them.\n"
                   "To draw them later: pyroclast figures {} {}\n",
-                  what, folder.string()));
+                  code ? "" : ": " + no_python(), what, folder.string()));
 }
 
 }  // namespace pyroclast::app

@@ -1,7 +1,12 @@
+#include <filesystem>
+
 #include <fmt/format.h>
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/base/own_program.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/deck/reference.hpp"
+#include "pyroclast/deck/schema_json.hpp"
 #include "pyroclast/setup/setup.hpp"
 
 namespace pyroclast::app {
@@ -22,10 +27,25 @@ stages are.
 
 )";
 
+/// File that the build leaves beside the program: to find all keys takes some 15 s.
+constexpr auto kFile = "deck_keys.json";
+
 }  // namespace
 
-int print_keys() {
-  fmt::print("{}{}", kKeysIntroduction, deck_reference(deck_schema()));
+DeckSchema known_deck_schema() {
+  for (const auto* folder : {PYROCLAST_DATA, "generated"}) {
+    const auto file = own_prefix() / folder / kFile;
+    if (std::filesystem::exists(file)) return schema_of(read_file(file));
+  }
+  return deck_schema();
+}
+
+int print_keys(const KeysOptions& options) {
+  const DeckSchema schema = options.survey ? deck_schema() : known_deck_schema();
+  if (options.json)
+    fmt::print("{}", json_of(schema));
+  else
+    fmt::print("{}{}", kKeysIntroduction, deck_reference(schema));
   return 0;
 }
 

@@ -1,6 +1,6 @@
-#include <functional>
-#include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -32,9 +32,7 @@ void print_units() {
 }
 
 void print_key_paths() {
-  for (const DeckTable& table : deck_schema().tables)
-    for (const DeckKey& key : table.keys)
-      fmt::print("{}{}{}\n", table.path, table.path.empty() ? "" : ".", key.key);
+  for (const std::string& path : key_paths()) fmt::print("{}\n", path);
 }
 
 void print_cases() {
@@ -53,24 +51,44 @@ void print_fields() {
     fmt::print("{:<24} {:<8} {:<12} {}\n", field.name, field.unit.si, name_of(field.item), field.meaning);
 }
 
+struct List {
+  std::string_view name;
+  void (*print)();
+};
+
+constexpr List kLists[] = {
+    {"cases", print_cases},    {"curves", [] { print_curves(builtin_curves()); }},
+    {"fields", print_fields},  {"fires", [] { print_curves(fire_curves()); }},
+    {"keys", print_key_paths}, {"laws", print_law_names},
+    {"units", print_units},
+};
+
 }  // namespace
 
-int print_list(const std::string& what) {
-  const std::map<std::string, std::function<void()>> lists = {
-      {"curves", [] { print_curves(builtin_curves()); }},
-      {"fields", print_fields},
-      {"fires", [] { print_curves(fire_curves()); }},
-      {"units", print_units},
-      {"keys", print_key_paths},
-      {"cases", print_cases},
-      {"laws", print_law_names},
-  };
-  if (const auto found = lists.find(what); found != lists.end()) {
-    found->second();
-    return 0;
+std::vector<std::string> key_paths(bool of_tables) {
+  std::vector<std::string> paths;
+  for (const DeckTable& table : known_deck_schema().tables) {
+    if (of_tables && table.is_form) continue;
+    for (const DeckKey& key : table.keys)
+      paths.push_back(fmt::format("{}{}{}", table.path, table.path.empty() ? "" : ".", key.key));
   }
+  return paths;
+}
+
+std::vector<std::string> names_of_lists() {
   std::vector<std::string> names;
-  for (const auto& [name, print] : lists) names.push_back(name);
+  for (const auto& [name, print] : kLists) names.emplace_back(name);
+  return names;
+}
+
+int print_list(const std::string& what) {
+  for (const auto& [name, print] : kLists)
+    if (name == what) {
+      print();
+      return 0;
+    }
+  const std::vector<std::string> names = names_of_lists();
+  if (what.empty()) throw Error(fmt::format("list: of what? {}", quoted_list(names)));
   throw Error(fmt::format("list {}: there is no such list{}; lists: {}", what,
                           did_you_mean(what, names, "; "), quoted_list(names)));
 }

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "pyroclast/app/command_names.hpp"
 #include "pyroclast/app/commands.hpp"
-#include "pyroclast/app/manual.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
@@ -234,15 +234,24 @@ int command_line(int argc, char** argv) {
   starter->add_option("--from", from, "Case that it is a copy of, see `pyroclast list cases`")
       ->capture_default_str();
 
+  app::KeysOptions keys_options;
   auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
+  keys->add_flag("--json", keys_options.json, "As JSON");
+  keys->add_flag(
+          "--survey", keys_options.survey,
+          "Ask the readers of decks, which takes a while, and not the file that they left at the build")
+      ->group("");
   auto* laws = cli.add_subcommand("laws", "Print the contact laws of the program, as Markdown");
 
   std::string list_of;
   auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
-  list->add_option("WHAT", list_of, "curves, fields, fires, units, keys, cases or laws")->required();
+  list->add_option("WHAT", list_of, "cases, curves, fields, fires, keys, laws or units");
 
   auto* manual = cli.add_subcommand("manual", "Print the manual page, for man");
-  auto* completion = cli.add_subcommand("completion", "Print the completion of bash for this program");
+  std::string shell = "bash";
+  auto* completion = cli.add_subcommand("completion", "Print the completion of a shell for this program");
+  completion->add_option("SHELL", shell, "bash or zsh")->capture_default_str();
+  auto* commands = cli.add_subcommand("commands", "Print all of this as JSON")->group("");
 
   try {
     cli.parse(argc, argv);
@@ -260,11 +269,12 @@ int command_line(int argc, char** argv) {
     if (*figures) return app::figures(figures->remaining());
     if (*watch) app::watch(watch->remaining());
     if (*study) app::study(study->remaining());
-    if (*keys) return app::print_keys();
+    if (*keys) return app::print_keys(keys_options);
     if (*laws) return app::print_laws();
     if (*list) return app::print_list(list_of);
-    if (*manual) return app::print_manual(cli);
-    if (*completion) return app::print_completion(cli);
+    if (*manual) app::manual();
+    if (*completion) return app::completion(shell);
+    if (*commands) return app::print_commands(cli);
     return app::make_deck(name, from);
   }();
   if (std::fflush(stdout) != 0)

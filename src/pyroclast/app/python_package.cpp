@@ -4,6 +4,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 
@@ -14,6 +15,7 @@
 #include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/own_program.hpp"
 
 extern char** environ;
 
@@ -26,7 +28,7 @@ namespace {
 std::filesystem::path package_folder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  const fs::path prefix = own_prefix();
   if (fs::exists(prefix / PYROCLAST_INSTALLED_PYTHON)) return prefix / PYROCLAST_INSTALLED_PYTHON;
   for (const auto& python : fs::directory_iterator(prefix / "lib", ignored))
     if (fs::exists(python.path() / "site-packages" / "pyroclast")) return python.path() / "site-packages";
@@ -48,17 +50,32 @@ class Strings {
   std::vector<char*> pointers_;
 };
 
-/// Python code that runs a module as a program. While the module loads, Ctrl-C ends it as it ends any
-/// program; from then on the module may hear Ctrl-C itself.
-constexpr auto kStart =
-    "import runpy, signal\n"
-    "if signal.getsignal(signal.SIGINT) is signal.default_int_handler:\n"
-    "    signal.signal(signal.SIGINT, signal.SIG_DFL)\n"
-    "runpy.run_module('{}', run_name='__main__', alter_sys=True)\n";
+/// Python code that runs a module as a program. Python takes no module from the current folder. While the
+/// module loads, Ctrl-C ends it as it ends any program; from then on the module may hear Ctrl-C itself.
+constexpr auto kStart = R"(import sys
+if sys.path[:1] == ['']:
+    del sys.path[0]
+another = 'PYROCLAST_PYTHON in the environment names another Python'
+if sys.version_info < (3, 9):
+    sys.exit('error: %s is Python %d.%d; 3.9 or later is needed. ' % ((sys.executable,) + sys.version_info[:2]) + another)
+import runpy, signal
+if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+try:
+    runpy.run_module('@', run_name='__main__', alter_sys=True)
+except ModuleNotFoundError as error:
+    if error.name == 'pyroclast._core':
+        sys.exit('error: studies and runs in Python need the compiled part of the package, which is not here for %s; '
+                 'the Debian package has it, and a build' % sys.executable)
+    if error.name not in ('numpy', 'h5py', 'matplotlib'):
+        raise
+    sys.exit('error: %s has no %s; NumPy, h5py and Matplotlib are needed. ' % (sys.executable, error.name) + another)
+)";
 
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
-  // -P: Python takes no module from the current folder
-  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-P", "-c", fmt::format(kStart, module)};
+  std::string start = kStart;
+  start.replace(start.find('@'), 1, module);
+  std::vector<std::string> arguments{python(), "-c", start};
   arguments.insert(arguments.end(), words.begin(), words.end());
   return Strings(std::move(arguments));
 }
@@ -76,6 +93,11 @@ constexpr std::chrono::milliseconds kPatience{50};
 
 }  // namespace
 
+std::string python() {
+  const char* named = std::getenv("PYROCLAST_PYTHON");
+  return named != nullptr && *named != '\0' ? named : PYROCLAST_PYTHON;
+}
+
 std::optional<pid_t> start_package(const std::string& module, const std::vector<std::string>& words,
                                    const Companion& companion) {
   posix_spawn_file_actions_t files;
@@ -87,8 +109,8 @@ std::optional<pid_t> start_package(const std::string& module, const std::vector<
   if (!companion.hears_ctrl_c) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   std::fflush(stdout);
   pid_t child = 0;
-  const int error = posix_spawn(&child, PYROCLAST_PYTHON, &files, &attributes,
-                                arguments_of(module, words).data(), environment().data());
+  const int error = posix_spawnp(&child, python().c_str(), &files, &attributes,
+                                 arguments_of(module, words).data(), environment().data());
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
   return error == 0 ? std::optional(child) : std::nullopt;
@@ -96,8 +118,8 @@ std::optional<pid_t> start_package(const std::string& module, const std::vector<
 
 void become_package(const std::string& module, const std::vector<std::string>& words) {
   std::fflush(stdout);
-  execve(PYROCLAST_PYTHON, arguments_of(module, words).data(), environment().data());
-  throw Error(fmt::format("{}: cannot be run ({})", PYROCLAST_PYTHON, std::strerror(errno)));
+  execvpe(python().c_str(), arguments_of(module, words).data(), environment().data());
+  throw Error(fmt::format("{}: cannot be run ({})", python(), std::strerror(errno)));
 }
 
 int wait_for(pid_t child, const std::function<bool()>& skip) {

@@ -16,6 +16,10 @@ struct Companion {
   bool prints = true;  ///< true where it prints on standard output
 };
 
+/// Returns the Python that runs the package, a path or a name that PATH has: the one that PYROCLAST_PYTHON
+/// names in the environment, or else that of the build.
+std::string python();
+
 /// Starts a module of the Python package as another process. Returns its id, or none where it cannot run.
 std::optional<pid_t> start_package(const std::string& module, const std::vector<std::string>& words,
                                    const Companion& companion);

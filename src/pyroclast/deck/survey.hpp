@@ -56,6 +56,8 @@ struct DeckTable {
   /// twice.
   std::vector<DeckKey> keys;
   std::vector<KeyCondition> conditions;  ///< conditions of all keys of the table
+
+  bool operator==(const DeckTable&) const = default;
 };
 
 /// Everything that a reader asks of a deck.
@@ -67,6 +69,8 @@ struct DeckSchema {
   std::vector<std::string> undocumented() const;
 
   std::vector<std::string> never_read;  ///< full paths of keys that are known but read with no settings
+
+  bool operator==(const DeckSchema&) const = default;
 };
 
 /// Function that reads a deck.

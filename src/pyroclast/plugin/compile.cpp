@@ -20,6 +20,7 @@
 
 #include "pyroclast/base/child_process.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/own_program.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/plugin/build_settings.hpp"
@@ -118,9 +119,7 @@ fs::path own_module() {
 /// Returns flags with the folders that hold the headers of this program: beside an installed program, above
 /// an installed module, or in the source tree of a built program.
 std::vector<std::string> include_flags() {
-  std::error_code ignored;
-  const auto program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = program.parent_path().parent_path() / build_settings::kInstalledInclude;
+  const fs::path installed = own_prefix() / build_settings::kInstalledInclude;
   std::vector<std::vector<fs::path>> places{{installed}};
   for (fs::path above = own_module().parent_path(); above.has_relative_path(); above = above.parent_path())
     places.push_back({above / build_settings::kInstalledInclude});

@@ -1,12 +1,18 @@
-#include "pyroclast/app/manual.hpp"
+#include "pyroclast/app/command_names.hpp"
 
 #include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include "pyroclast/app/cases.hpp"
+#include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/python_package.hpp"
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/base/own_program.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast::app {
@@ -44,35 +50,23 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// Returns a text in which roff finds no commands.
-std::string roff(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '\\')
-      result += "\\e";
-    else if (c == '-')
-      result += "\\-";
-    else
-      result += c;
-  }
-  return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
+nlohmann::ordered_json described(const CLI::Option& option) {
+  nlohmann::ordered_json names = nlohmann::json::array();
+  for (const auto& name : option.get_snames()) names.push_back("-" + name);
+  for (const auto& name : option.get_lnames()) names.push_back("--" + name);
+  const bool has_value = option.get_positional() || option.get_items_expected_max() > 0;
+  return {{"names", names},
+          {"meaning", option.get_description()},
+          {"value", !has_value                ? ""
+                    : option.get_positional() ? option.get_name(true)
+                                              : "VALUE"}};
 }
 
-std::string roff_of(const CLI::Option& option) {
-  std::string head = option.get_positional() ? option.get_name(true) : "";
-  for (const auto& name : option.get_snames()) head += "-" + name + ", ";
-  for (const auto& name : option.get_lnames()) head += "--" + name + ", ";
-  if (head.ends_with(", ")) head.resize(head.size() - 2);
-  head = roff(head);
-  if (!option.get_positional() && option.get_items_expected_max() > 0) head += " \\fIVALUE\\fR";
-  return fmt::format(".TP\n\\fB{}\\fR\n{}.\n", head, roff(option.get_description()));
-}
-
-std::string roff_of(const CLI::App& command) {
-  std::string text = fmt::format(".SS {}\n{}.\n", roff(command.get_name()), roff(command.get_description()));
+nlohmann::ordered_json described(const CLI::App& command) {
+  nlohmann::ordered_json options = nlohmann::json::array();
   for (const CLI::Option* option : command.get_options())
-    if (option != command.get_help_ptr()) text += roff_of(*option);
-  return text;
+    if (option != command.get_help_ptr()) options.push_back(described(*option));
+  return {{"name", command.get_name()}, {"meaning", command.get_description()}, {"options", options}};
 }
 
 }  // namespace
@@ -104,40 +98,31 @@ std::string what_is_wrong(const CLI::App& cli, const CLI::ParseError& error,
                      command->get_name());
 }
 
-int print_manual(const CLI::App& cli) {
+int print_commands(const CLI::App& cli) {
   const std::string description = cli.get_description();
-  std::string text = fmt::format(".TH PYROCLAST 1 \"\" \"pyroclast {}\"\n", kVersion);
-  text += fmt::format(".SH NAME\npyroclast \\- {}\n", roff(description.substr(description.find(": ") + 2)));
-  text += ".SH SYNOPSIS\n\\fBpyroclast\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH COMMANDS\n";
-  for (const CLI::App* command : commands(cli)) text += roff_of(*command);
-  text += ".SH EXIT STATUS\n";
-  for (const auto& [code, meaning] : kExitCodes) text += fmt::format(".TP\n{}\n{}\n", code, roff(meaning));
-  text +=
-      ".SH ENVIRONMENT\n.TP\nPYROCLAST_LAW_PATH\nFolders with contact laws of one\\(aqs own, separated by "
-      "colons.\n";
-  fmt::print("{}", text);
+  nlohmann::ordered_json exit_codes, listed = nlohmann::json::array(), cases = listed;
+  for (const auto& [code, meaning] : kExitCodes) exit_codes[std::to_string(code)] = meaning;
+  for (const CLI::App* command : commands(cli))
+    if (!command->get_group().empty()) listed.push_back(described(*command));
+  for (const CaseDeck& deck : kCases) cases.push_back(deck.name);
+  const nlohmann::ordered_json all = {{"version", kVersion},
+                                      {"meaning", description.substr(description.find(": ") + 2)},
+                                      {"commands", listed},
+                                      {"exit_codes", exit_codes},
+                                      {"deck_keys", key_paths(true)},
+                                      {"lists", names_of_lists()},
+                                      {"cases", cases}};
+  fmt::print("{}\n", all.dump(1));
   return 0;
 }
 
-int print_completion(const CLI::App& cli) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands(cli)) names.push_back(command->get_name());
-  std::string text = "_pyroclast() {\n  local word=${COMP_WORDS[COMP_CWORD]} options=\n";
-  text += "  if ((COMP_CWORD == 1)); then\n";
-  text +=
-      fmt::format("    COMPREPLY=($(compgen -W \"{} --help --version\" -- \"$word\"))\n    return\n  fi\n",
-                  fmt::join(names, " "));
-  text += "  case ${COMP_WORDS[1]} in\n";
-  for (const CLI::App* command : commands(cli))
-    text += fmt::format("    {}) options=\"{}\" ;;\n", command->get_name(),
-                        fmt::join(option_names(*command), " "));
-  text +=
-      "  esac\n  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n  "
-      "else\n";
-  text +=
-      "    COMPREPLY=($(compgen -f -- \"$word\"))\n  fi\n}\ncomplete -o filenames -F _pyroclast pyroclast\n";
-  fmt::print("{}", text);
-  return 0;
+int manual() {
+  become_package("pyroclast.manual", {own_program(), "manual"});
+}
+
+int completion(const std::string& shell) {
+  if (shell != "bash" && shell != "zsh") throw Error(fmt::format("completion {}: shells: bash, zsh", shell));
+  become_package("pyroclast.manual", {own_program(), shell});
 }
 
 }  // namespace pyroclast::app
