@@ -7,14 +7,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .libraries import library
 
 if TYPE_CHECKING:
     import pandas
+    from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+    Array = NDArray[np.float64]
+else:
+    Array = np.ndarray  # figures run with a NumPy that has no types yet
 
 _IN_SI = {"s": 1.0, "m": 1.0, "N": 1.0, "J": 1.0, "degC": 1.0, "MPa": 1e6}  # units of the program's columns
 

@@ -99,7 +99,7 @@ def compare_total_strain(runs: Sequence[Results]) -> Figure:
     """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
     _demand_heated(runs)
     figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
     bands, timed = [], _timed(runs)
     over, label = _axis(runs)
     for group in _by_load(runs):
@@ -126,7 +126,7 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
     _demand_heated(runs)
     over, label = _axis(runs)
     figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
     if len(runs) > MANY:
         draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
     else:

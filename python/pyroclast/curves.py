@@ -144,7 +144,7 @@ def compare(runs: Sequence[Results]) -> Figure:
     if heated := [run for run in runs if run.ends_heated]:
         raise Error(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
     curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
     if len(runs) > MANY:
         draw_spread(axes, curves, style.BLUE)

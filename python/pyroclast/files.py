@@ -290,7 +290,7 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
     if not isinstance(values, h5py.Dataset):
         raise Error(f"{file.filename}: has no dataset /{name}")
     # A damaged header may ask for more memory than there is.
-    if values.nbytes > _TIGHTEST_PACKING * Path(file.filename).stat().st_size:
+    if values.size * values.dtype.itemsize > _TIGHTEST_PACKING * Path(file.filename).stat().st_size:
         raise Error(f"{file.filename}: /{name} is larger than the file; the file is damaged")
     if values.dtype.kind not in "iuf" or values.shape is None:
         raise Error(f"{file.filename}: /{name} does not hold numbers")

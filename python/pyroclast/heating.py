@@ -46,7 +46,7 @@ def total_strain(run: Results) -> Figure:
     upper.set_ylabel(TOTAL_STRAIN_LABEL)
     _mark_unconverged(upper, run, over, strain)
     _mark_failure(upper, run, over)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=2)
     return figure
 
 
@@ -66,7 +66,7 @@ def thrust(run: Results) -> Figure:
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, over, stress)
     _mark_failure(upper, run, over)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=2)
     return figure
 
 
@@ -84,7 +84,7 @@ def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axe
     """
     over = heating_minutes(run) if run.timed else run.heated_history("temperature_degC")
     figure = style.new_figure(5.2)
-    upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 0.5, 0.26])
+    upper, lower, below = figure.subplots(3, 1, gridspec_kw={"height_ratios": [1.0, 0.5, 0.26]})
     upper.set_title(style.title_of(run))
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
@@ -153,7 +153,7 @@ def convergence(run: Results) -> Figure:
     exchanged = course["exchange"] > 0
     over, converged = course.over[exchanged], course["converged"][exchanged] > 0
     figure = style.new_figure(4.2)
-    upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.14])
+    upper, lower, below = figure.subplots(3, 1, gridspec_kw={"height_ratios": [1.0, 1.0, 0.14]})
     lower.sharex(upper)
     upper.set_title(style.title_of(run))
     for axes, name, label in ((upper, "cycles", "Cycles after\nthe exchange"),
@@ -172,7 +172,7 @@ def convergence(run: Results) -> Figure:
     lower.set_yscale("log")
     lower.set_xlabel(course.label)
     upper.tick_params(labelbottom=False)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=3,
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=3,
                        title=f"{np.nansum(course['cycles'][exchanged]):,.0f} cycles in all")
     return figure
 
@@ -182,7 +182,7 @@ def temperature_history(run: Results) -> Figure:
     """Least, mean and greatest temperature of the specimen, its probes and records of temperature, over the time."""
     minutes = run.history["heating_time_s"] / 60.0
     figure = style.new_figure(3.8)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.3])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.3]})
     axes.set_title(style.title_of(run))
     axes.fill_between(minutes, run.history["temperature_min_degC"], run.history["temperature_max_degC"],
                       color=style.FAINT, alpha=0.25, linewidth=0.0, label="least to greatest")

@@ -56,7 +56,7 @@ def figure_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> Figure
     beside the section.
     """
     figure = style.new_figure(3.6, dpi=_DPI)
-    curve, section = figure.subplots(1, 2, width_ratios=[1.5, 1.0])
+    curve, section = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.5, 1.0]})
     _draw_curve(curve, run)
     draw_section(section, run)
     figure.suptitle(style.plain(_headline(run)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
-from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from . import style
@@ -117,11 +117,12 @@ def _write(path: Path, header: tuple[str, ...], rows: list[tuple[float, ...]]) -
 def temperature_profile(run: Results, profile: Profile) -> Figure:
     """Temperature over the depth at up to eight times, evenly among the frames, the last among them."""
     figure = style.new_figure(3.8)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.2])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.2]})
     axes.set_title(style.title_of(run))
     chosen = sorted({round(i) for i in np.linspace(0, len(profile.time) - 1, min(_CURVES, len(profile.time)))})
+    shades = ScalarMappable(cmap="inferno").cmap
     for number, i in enumerate(chosen):
-        colour = colormaps["inferno"](0.85 * number / max(len(chosen) - 1, 1))
+        colour = shades(0.85 * number / max(len(chosen) - 1, 1))
         axes.plot(style.MILLI * profile.depth, profile.temperature[i], color=colour,
                   label=f"{profile.time[i] / 60.0:.3g} min")
     axes.set_xlim(0.0, style.MILLI * profile.depth[-1])

@@ -82,7 +82,7 @@ def cracks(run: Results) -> Figure:
     """Cracked contact points by mode and interface over strain, the stress curve behind."""
     modes = list(run.crack_modes) or ["tension"]
     figure = style.new_figure(1.2 + 1.8 * len(modes))
-    *panels, below = figure.subplots(len(modes) + 1, 1, height_ratios=[1.0] * len(modes) + [0.3])
+    *panels, below = figure.subplots(len(modes) + 1, 1, gridspec_kw={"height_ratios": [1.0] * len(modes) + [0.3]})
     panels[0].set_title(style.title_of(run))
     course = loading_course(run)
     run.history.known("strain", run.loaded)
@@ -93,7 +93,7 @@ def cracks(run: Results) -> Figure:
         axes.tick_params(labelbottom=axes is panels[-1])
     panels[0].set_xlim(left=0.0)
     panels[-1].set_xlabel(course.label)
-    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2, title=_COUNTS_NOTE, title_fontsize=7.0)
+    style.legend_alone(below, *_legends(*panels), loc="center", ncol=2, title=_COUNTS_NOTE, title_fontsize=7.0)
     return figure
 
 
@@ -124,7 +124,7 @@ def heating_cracks(run: Results) -> Figure:
         axes.set_xlim(course.start, np.nanmax(course.over))
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(course.label)
-    style.legend_alone(figure.add_subplot(rows[2]), *_legends(*counts), loc="center", ncols=2, title=_COUNTS_NOTE,
+    style.legend_alone(figure.add_subplot(rows[2]), *_legends(*counts), loc="center", ncol=2, title=_COUNTS_NOTE,
                        title_fontsize=7.0)
     return figure
 
@@ -193,7 +193,7 @@ def energy(course: Course) -> Figure:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
-    style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left", alignment="left",
+    style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left",
                        title="at the end, share of\nthe energy turned over")
 
     lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)

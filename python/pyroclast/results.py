@@ -7,7 +7,7 @@ only `Results.total_strain` is positive in expansion.
 from __future__ import annotations
 
 import re
-import tomllib
+import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,11 @@ from .files import LARGEST, GrowingTable, Lock, Table, Writer, read_array, read_
 from .libraries import library
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # the tarball brings it along
 
 if TYPE_CHECKING:
     import pandas

@@ -10,9 +10,10 @@ import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PatchCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 
 from . import style
 from .crack_styles import count_cracks, crack_legend, cracked, cracks_of, material_legend
@@ -115,7 +116,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     figure.suptitle(heading, fontsize=9.0)
     handles = fracture_legend(rows[0][1][0].run)
     below = figure.add_subplot(grid[-1, :])
-    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4,
+    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncol=4 if columns < 5 else 3,
                        title_fontsize=7.0, title=note)
     below.get_legend().set_in_layout(False)  # it is as wide as the page, and would make the panels narrower
     return figure
@@ -274,7 +275,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
     blocks, circles = specimen.mesh.blocks, specimen.aggregates
     low, high = _panel_box(blocks)
     figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
-    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
+    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.32]})
     draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
     if blocks.dimension == 3:
         frame_section(axes, blocks)
@@ -296,11 +297,9 @@ def morphology(specimen: SpecimenFolder) -> Figure:
 
 
 def _draw_circles(axes: Axes, circles: Table) -> None:
-    diameters = style.MILLI * circles["diameter_m"]
-    axes.add_collection(EllipseCollection(
-        diameters, diameters, np.zeros(circles.rows), units="xy", facecolors="none", edgecolors=style.BLUE,
-        linewidths=0.9, offsets=style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
-        offset_transform=axes.transData))
+    places = style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]])
+    outlines = [Circle(place, radius) for place, radius in zip(places, 0.5 * style.MILLI * circles["diameter_m"])]
+    axes.add_collection(PatchCollection(outlines, facecolors="none", edgecolors=style.BLUE, linewidths=0.9))
 
 
 def _shares(specimen: SpecimenFolder) -> str:
@@ -329,7 +328,8 @@ def gradation(specimen: SpecimenFolder) -> Figure:
               marker="o", markersize=3.5, label="placed")
     axes.set_xscale("log")
     ticks = [d for d in (1, 2, 4, 4.75, 8, 12.5, 16, 20, 25, 32, 63) if diameter.min() <= d <= diameter.max()]
-    axes.set_xticks(ticks, [f"{d:g}" for d in ticks])
+    axes.set_xticks(ticks)
+    axes.set_xticklabels([f"{d:g}" for d in ticks])
     axes.set_xticks([], minor=True)
     axes.set_ylim(0.0, 102.0)
     axes.set_xlabel("Aggregate diameter [mm]")

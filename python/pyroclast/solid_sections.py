@@ -287,7 +287,8 @@ def _draw_rose(axes: Axes, faces: CrackFaces) -> None:
     axes.bar(edges[:-1], sums / max(sums.max(), 1e-300), width=np.diff(edges), align="edge", color=style.BLUE,
              edgecolor="white", linewidth=0.3)
     axes.set_yticks([])
-    axes.set_xticks(np.radians([0, 90, 180, 270]), ["x", "z", "−x", "−z"], fontsize=6.5)
+    axes.set_xticks(np.radians([0, 90, 180, 270]))
+    axes.set_xticklabels(["x", "z", "−x", "−z"], fontsize=6.5)
     axes.set_title("normals around the vertical, by area", fontsize=7.0)
 
 
@@ -333,7 +334,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     shown = cut.corners[..., [across, up]]
     low, high = shown.reshape(-1, 2).min(axis=0), shown.reshape(-1, 2).max(axis=0)
     figure = style.new_figure(1.6 + 4.0 * min((high - low)[1] / (high - low)[0], 2.2), width=5.0)
-    axes, below = figure.subplots(2, 1, height_ratios=[1.0, 0.16])
+    axes, below = figure.subplots(2, 1, gridspec_kw={"height_ratios": [1.0, 0.16]})
     axes.add_collection(PolyCollection(style.MILLI * shown, facecolors=fills, edgecolors=fills, linewidths=0.15,
                                        rasterized=True))
     cells = (contacts.points + magnification * plane.along(run.contact_displacement(frame)))[contacts.cells]
@@ -347,7 +348,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     axes.grid(False)
     axes.set_xlabel(f"{'xyz'[across]} [mm]")
     axes.set_ylabel(f"{'xyz'[up]} [mm]")
-    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=2)
+    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncol=2)
     at_strain = f", strain {style.PER_MILLE * frame.strain:.2f}×10⁻³" if np.isfinite(frame.strain) else ""
     axes.set_title(f"{style.title_of(run)}\n{axis} = {style.MILLI * plane.offset:.4g} mm, frame {frame.number}{at_strain}, "
                    f"displacements ×{magnification:g}", fontsize=8.0)

@@ -77,7 +77,9 @@ def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> F
 def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> None:
     """Makes the axes hold nothing but a legend, so that it covers no curve."""
     axes.axis("off")
-    axes.legend(handles, labels, borderaxespad=0.0, **options)
+    legend = axes.legend(handles, labels, borderaxespad=0.0, **options)
+    if options.get("loc") == "upper left" and hasattr(legend, "set_alignment"):  # since Matplotlib 3.6
+        legend.set_alignment("left")
 
 
 def plain(text: str) -> str:

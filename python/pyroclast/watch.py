@@ -274,7 +274,7 @@ class Watch:
             magnification = draw_specimen(axes, self.run, frame)
             axes.set_title(f"{self._place_of(frame)}displacements ×{magnification:g}", fontsize=8.0)
             handles = fracture_legend(self.run)
-            style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4)
+            style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncol=4)
 
     def _place_of(self, frame: Frame) -> str:
         """At what state a frame was saved."""

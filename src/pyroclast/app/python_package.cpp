@@ -63,8 +63,8 @@ if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 try:
     runpy.run_module('@', run_name='__main__', alter_sys=True)
-except ModuleNotFoundError as error:
-    if error.name == 'pyroclast._core':
+except ImportError as error:
+    if "'_core'" in str(error) or error.name == 'pyroclast._core':
         sys.exit('error: studies and runs in Python need the compiled part of the package, which is not here for %s; '
                  'the Debian package has it, and a build' % sys.executable)
     if error.name not in ('numpy', 'h5py', 'matplotlib'):

@@ -172,7 +172,7 @@ def grey_patch(label: str = "not told from the seeds") -> Patch:
 
 def legend_above(figure: Figure, handles: Sequence[Any]) -> None:
     """In one row over all axes, which make room for it."""
-    figure.legend(handles=list(handles), loc="upper left", ncols=len(handles), handlelength=1.4, columnspacing=1.4,
+    figure.legend(handles=list(handles), loc="upper left", ncol=len(handles), handlelength=1.4, columnspacing=1.4,
                   borderaxespad=0.3, borderpad=0.0)
     figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - _LEGEND / figure.get_figheight()))
 
