@@ -106,6 +106,17 @@ class CommandLine(unittest.TestCase):
         if shutil.which("zsh"):
             subprocess.run(["zsh", "-n"], input=zsh, capture_output=True, text=True, check=True)
 
+    def test_doctor_tells_what_is_there_and_what_is_missing(self):
+        told = self.pyroclast("doctor").stdout
+        for what in ("pyroclast", "program", "system", "processor", "instructions", "threads", "memory", "disk", "compiler",
+                     "Slurm", "Python", "  numpy", "  h5py", "  matplotlib", "  compiled part"):
+            self.assertRegex(told, rf"(?m)^{what} +\S")
+        self.assertNotRegex(told, "(?m)^(memory|disk|system) +unknown")
+        elsewhere = subprocess.run([PROGRAM, "doctor"], capture_output=True, text=True, check=True,
+                                   env=os.environ | {"PYROCLAST_PYTHON": "/nowhere/python3", "PATH": "/nowhere"}).stdout
+        for what in ("compiler", "Slurm", "Python"):
+            self.assertRegex(elsewhere, rf"(?m)^{what} +missing: ")
+
     def test_exit_codes_speech_and_fields(self):
         self.pyroclast("new", "mine")
         small = ["run", "mine.toml", "--no-figures", "--set", "blocks.count=60", "--set", "stages[1].stop_strain=2e-4"]

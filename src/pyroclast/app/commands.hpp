@@ -98,6 +98,9 @@ std::vector<std::string> names_of_lists();
 /// \param what  one of names_of_lists
 int print_list(const std::string& what);
 
+/// Prints what is there and what is missing, as a report of a bug needs it.
+int doctor();
+
 struct KeysOptions {
   bool json = false;
   bool survey = false;  ///< true to ask the readers of decks, false for what they left at the build

@@ -247,6 +247,9 @@ int command_line(int argc, char** argv) {
   auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
   list->add_option("WHAT", list_of, "cases, curves, fields, fires, keys, laws or units");
 
+  auto* doctor =
+      cli.add_subcommand("doctor", "Say what is there and what is missing; a report of a bug needs it");
+
   auto* manual = cli.add_subcommand("manual", "Print the manual page, for man");
   std::string shell = "bash";
   auto* completion = cli.add_subcommand("completion", "Print the completion of a shell for this program");
@@ -272,6 +275,7 @@ int command_line(int argc, char** argv) {
     if (*keys) return app::print_keys(keys_options);
     if (*laws) return app::print_laws();
     if (*list) return app::print_list(list_of);
+    if (*doctor) return app::doctor();
     if (*manual) app::manual();
     if (*completion) return app::completion(shell);
     if (*commands) return app::print_commands(cli);

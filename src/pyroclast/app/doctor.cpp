@@ -1,0 +1,109 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/python_package.hpp"
+#include "pyroclast/base/child_process.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/own_program.hpp"
+#include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/processors.hpp"
+#include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/plugin/compile.hpp"
+#include "pyroclast/version.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void tell(const char* what, const std::string& found) {
+  fmt::print("{:<16}{}\n", what, found);
+}
+
+/// Returns the rest of the first line of a file that begins with a name, without `=`, `:`, blanks and quotes
+/// around it; "unknown" without one.
+std::string entry(const fs::path& file, const std::string& name) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with(name)) continue;
+    const auto begin = line.find_first_not_of("=:\t \"", name.size());
+    const auto end = line.find_last_not_of(" \"");
+    if (begin != std::string::npos && end >= begin) return line.substr(begin, end - begin + 1);
+  }
+  return "unknown";
+}
+
+std::string gigabytes(double bytes) {
+  return fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+std::string memory() {
+  const auto kilobytes = [](const char* name) { return std::atof(entry("/proc/meminfo", name).c_str()); };
+  return fmt::format("{}, {} of it free", gigabytes(1024.0 * kilobytes("MemTotal")),
+                     gigabytes(1024.0 * kilobytes("MemAvailable")));
+}
+
+std::string disk() {
+  std::error_code error;
+  const auto space = fs::space(".", error);
+  return error ? "unknown: " + error.message()
+               : gigabytes(static_cast<double>(space.available)) + " free here";
+}
+
+/// Returns the first line that a program prints for --version, or none where it cannot run.
+std::optional<std::string> version_of(const std::string& program) {
+  const fs::path output = fs::temp_directory_path() / fmt::format("pyroclast-doctor-{}", getpid());
+  std::optional<std::string> first;
+  try {
+    std::string line;
+    const bool runs = run_program({program, "--version"}, output);
+    std::ifstream stream(output);
+    if (runs) std::getline(stream, line);
+    if (!line.empty()) first = line;
+  } catch (const Error&) {
+    // that it cannot run is what is asked
+  }
+  std::error_code ignored;
+  fs::remove(output, ignored);
+  return first;
+}
+
+}  // namespace
+
+int doctor() {
+  tell("pyroclast", fmt::format("{} ({}), physics version {}", kVersion, kCommit, kPhysicsVersion));
+  tell("program", own_program().string());
+  utsname system{};
+  uname(&system);
+  tell("system", fmt::format("{}; {} {}, {}", entry("/etc/os-release", "PRETTY_NAME"), system.sysname,
+                             system.release, system.machine));
+  tell("processor", entry("/proc/cpuinfo", "model name"));
+  tell("instructions",
+       fmt::format("{} here, of {}", name(best_instruction_set()), describe_built_instruction_sets()));
+  tell("threads", fmt::format("{} at most", free_processors()));
+  tell("memory", memory());
+  tell("disk", disk());
+  const std::string compiler = LawCompiler{}.program;
+  tell("compiler", version_of(compiler).value_or(
+                       fmt::format("missing: no {}; contact laws in headers need g++", compiler)));
+  tell("Slurm", version_of("sbatch").value_or("missing: no sbatch; studies run on this machine"));
+  const auto child = start_package("pyroclast.doctor", {}, {});
+  if (!child)
+    tell("Python",
+         fmt::format("missing: no {}; figures need Python 3.9 or later with NumPy, h5py and Matplotlib",
+                     python()));
+  else
+    wait_for(*child, [] { return false; });
+  return 0;
+}
+
+}  // namespace pyroclast::app
