@@ -36,8 +36,9 @@ constexpr ExitCode kExitCodes[] = {
     {130, "Ended by Ctrl-C or another signal; results so far and a checkpoint are kept."},
 };
 
+/// Returns the commands that users see.
 std::vector<const CLI::App*> commands(const CLI::App& cli) {
-  return cli.get_subcommands([](const CLI::App*) { return true; });
+  return cli.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 /// Returns the long and short names of options, "--out" and "-o".
@@ -102,8 +103,7 @@ int print_commands(const CLI::App& cli) {
   const std::string description = cli.get_description();
   nlohmann::ordered_json exit_codes, listed = nlohmann::json::array(), cases = listed;
   for (const auto& [code, meaning] : kExitCodes) exit_codes[std::to_string(code)] = meaning;
-  for (const CLI::App* command : commands(cli))
-    if (!command->get_group().empty()) listed.push_back(described(*command));
+  for (const CLI::App* command : commands(cli)) listed.push_back(described(*command));
   for (const CaseDeck& deck : kCases) cases.push_back(deck.name);
   const nlohmann::ordered_json all = {{"version", kVersion},
                                       {"meaning", description.substr(description.find(": ") + 2)},
