@@ -199,6 +199,14 @@ TEST(Control, OfTheWrongSenseEndsTheRun) {
   // the opening that ends it is that of the whole stage, 60 um
   const auto stretch = run.history().values("stretch_m", run.courses()[0].rows);
   EXPECT_LT(std::abs(stretch.back()), 1e-3);
+
+  // an opening that ran away fulfils no condition, though it passes its value
+  const std::string until =
+      fmt::format("direction = [-1, 0]\n\n[[stages.until]]\nrecord = \"stretch\"\nbelow = \"{} m\"",
+                  0.999 * stretch.back());
+  pyroclast::Setup ends = pyroclast::read(with(bar("0.04 mm/s"), "direction = [1, 0]", until.c_str()));
+  const auto again = make_simulation(ends, grid(kLength, kDepth, 20, 1));
+  EXPECT_EQ(pyroclast::Run(*again, std::move(ends.stages)).run(), Outcome::control_lost);
 }
 
 // Promise: however fast the opening grows, the strength lies between the largest load and that with the pair.

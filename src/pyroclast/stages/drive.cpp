@@ -787,7 +787,8 @@ Verdict Drive::judge(Simulation& simulation) {
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) {
-      verdict.over = true;
+      // a record that ran away from its control passes any value
+      verdict.over = !kept_.is_lost || keys_.until[i].record != keys_.control->record || verdict.over;
       if (keys_.until[i].kind == Until::Kind::share_of_peak)
         for (RecordPeak& peak : kept_.record_peaks) peak.end();
     }
