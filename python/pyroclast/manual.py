@@ -132,16 +132,21 @@ def bash(line: CommandLine) -> str:
     """The completion of bash."""
     cases = []
     for command in line.commands:
-        cases.append(f'    {command.name}) options="{_words(command)}" ;;')
+        second = [below.name for below in command.commands] or [
+            choice for option in command.options if not option.names for choice in option.choices]
+        lines = [f"    {command.name})"]
+        if second:
+            lines.append(f'      if ((COMP_CWORD == 2)); then words="{" ".join(second)}"; fi')
         if command.commands:
-            below = " ".join(below.name for below in command.commands)
-            inner = "\n".join(f'        {below.name}) options="{_words(below)}" ;;' for below in command.commands)
-            cases[-1] = (f"    {command.name})\n      if ((COMP_CWORD == 2)); then words=\"{below}\"; fi\n"
-                         f"      case ${{COMP_WORDS[2]}} in\n{inner}\n      esac ;;")
+            lines.append("      case ${COMP_WORDS[2]} in")
+            lines += [f'        {below.name}) options="{_words(below)}" ;;' for below in command.commands]
+            lines.append("      esac ;;")
+        else:
+            lines.append(f'      options="{_words(command)}" ;;')
+        cases += lines
     values = {name: option.choices for command in line.commands for part in (command, *command.commands)
               for option in part.options for name in option.names if option.choices}
     chosen = "\n".join(f'    {name}) words="{" ".join(choices)}" ;;' for name, choices in values.items())
-    lists = f'    list) if ((COMP_CWORD == 2)); then words="{" ".join(line.lists)}"; fi ;;'
     return f"""# Completion of bash for pyroclast
 _pyroclast() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} options= words=
@@ -160,9 +165,6 @@ _pyroclast() {{
   esac
   case $before in
 {chosen}
-  esac
-  case ${{COMP_WORDS[1]}} in
-{lists}
   esac
   if [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$options --help" -- "$word"))

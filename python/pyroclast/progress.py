@@ -193,7 +193,7 @@ def energy(course: Course) -> Figure:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
-    style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left",
+    style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left", alignment="left",
                        title="at the end, share of\nthe energy turned over")
 
     lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)

@@ -74,12 +74,12 @@ def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> F
     return Figure(figsize=(width, height), dpi=dpi or DPI)
 
 
-def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> None:
-    """Makes the axes hold nothing but a legend, so that it covers no curve."""
+def legend_alone(axes: Axes, handles: list, labels: list[str], alignment: str = "center", **options) -> None:
+    """Makes the axes hold nothing but a legend, so that it covers no curve; `alignment` is that of its title."""
     axes.axis("off")
     legend = axes.legend(handles, labels, borderaxespad=0.0, **options)
-    if options.get("loc") == "upper left" and hasattr(legend, "set_alignment"):  # since Matplotlib 3.6
-        legend.set_alignment("left")
+    if hasattr(legend, "set_alignment"):  # since Matplotlib 3.6
+        legend.set_alignment(alignment)
 
 
 def plain(text: str) -> str:

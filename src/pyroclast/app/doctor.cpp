@@ -12,6 +12,7 @@
 #include "pyroclast/app/python_package.hpp"
 #include "pyroclast/base/child_process.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/memory.hpp"
 #include "pyroclast/base/own_program.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/processors.hpp"
@@ -47,9 +48,8 @@ std::string gigabytes(double bytes) {
 }
 
 std::string memory() {
-  const auto kilobytes = [](const char* name) { return std::atof(entry("/proc/meminfo", name).c_str()); };
-  return fmt::format("{}, {} of it free", gigabytes(1024.0 * kilobytes("MemTotal")),
-                     gigabytes(1024.0 * kilobytes("MemAvailable")));
+  const double kilobytes = std::atof(entry("/proc/meminfo", "MemTotal").c_str());
+  return fmt::format("{}, {} of it free", gigabytes(1024.0 * kilobytes), gigabytes(available_memory()));
 }
 
 std::string disk() {

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/memory.hpp"
 #include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/solid_model.hpp"
@@ -26,25 +24,6 @@ constexpr double kBytesPerBlock = 6000.0, kBytesPerSolidBlock = 60000.0;
 constexpr double kBytesFixed = 40e6;
 
 constexpr const char* kUpperPlaten = "top_platen";
-
-/// Returns the memory that this process may still take, bytes: the free memory of the machine, or the process
-/// limit if smaller.
-double available_memory() {
-  double available = std::numeric_limits<double>::infinity();
-  std::ifstream file("/proc/meminfo");
-  for (std::string name; file >> name;) {
-    double kilobytes = 0.0;
-    if (name == "MemAvailable:" && file >> kilobytes) {
-      available = 1024.0 * kilobytes;
-      break;
-    }
-    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    available = std::min(available, static_cast<double>(limit.rlim_cur));
-  return available;
-}
 
 bool has_platens(const std::optional<MotionParameters>& motion) {
   const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };

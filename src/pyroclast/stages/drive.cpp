@@ -741,6 +741,8 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   const double value = simulation.record(until.record).read(simulation);
   const double rate = std::abs(value - last) / (time(simulation) - kept_.last_look);
   last = value;
+  // a record that ran away from its control passes any value
+  if (kept_.is_lost && until.record == keys_.control->record) return false;
   switch (until.kind) {
     case Until::Kind::above:
       return value > until.value;
@@ -787,8 +789,7 @@ Verdict Drive::judge(Simulation& simulation) {
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) {
-      // a record that ran away from its control passes any value
-      verdict.over = !kept_.is_lost || keys_.until[i].record != keys_.control->record || verdict.over;
+      verdict.over = true;
       if (keys_.until[i].kind == Until::Kind::share_of_peak)
         for (RecordPeak& peak : kept_.record_peaks) peak.end();
     }
