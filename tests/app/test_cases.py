@@ -1,6 +1,7 @@
 """Cases beyond the paper's, in their small forms: what they show follows from what their decks say.
 
-PYROCLAST names the program.
+PYROCLAST names the program, SMALL_FORMS the folder of runs that `validation/reference check --cases small --keep FOLDER`
+left.
 """
 
 import csv
@@ -24,20 +25,12 @@ HALF_COHESION = "contacts.mortar_mortar.c_o=1.9 MPa"
 
 
 class Finished:
-    """A small form that was run, with more changes."""
+    """Results of a run."""
 
-    def __init__(self, case: str, *changes: str):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name) / "run"
-            words = [word for change in (*SMALL[case], *changes) for word in ("--set", change)]
-            done = subprocess.run([os.environ["PYROCLAST"], "run", ROOT / "cases" / f"{case}.toml", "--out", folder,
-                                   "--no-figures", "--quiet", *words], capture_output=True, text=True, timeout=200,
-                                  check=False)
-            if done.returncode != 0:
-                raise AssertionError(f"{case}: {done.stdout}{done.stderr}")
-            self.summary = json.loads((folder / "summary.json").read_text())
-            with open(folder / "history.csv", newline="") as file:
-                self.rows = list(csv.DictReader(file))
+    def __init__(self, folder: pathlib.Path):
+        self.summary = json.loads((folder / "summary.json").read_text())
+        with open(folder / "history.csv", newline="") as file:
+            self.rows = list(csv.DictReader(file))
 
     def of(self, result: str) -> float:
         """Of the last stage."""
@@ -50,7 +43,18 @@ class Finished:
 
 @functools.cache
 def finished(case: str, *changes: str) -> Finished:
-    return Finished(case, *changes)
+    """A small form, with more changes."""
+    if not changes:
+        return Finished(pathlib.Path(os.environ["SMALL_FORMS"]) / case)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name) / "run"
+        words = [word for change in (*SMALL[case], *changes) for word in ("--set", change)]
+        done = subprocess.run([os.environ["PYROCLAST"], "run", ROOT / "cases" / f"{case}.toml", "--out", folder,
+                               "--no-figures", "--quiet", *words], capture_output=True, text=True, timeout=200,
+                              check=False)
+        if done.returncode != 0:
+            raise AssertionError(f"{case}: {done.stdout}{done.stderr}")
+        return Finished(folder)
 
 
 class Cases(unittest.TestCase):

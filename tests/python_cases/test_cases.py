@@ -1,17 +1,19 @@
-"""Every case in its small form: a run of the package writes what the program writes, byte by byte."""
+"""Every case in its small form: a run of the package writes what the program writes, byte by byte.
+
+SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+"""
 
 import json
 import os
 import pathlib
 import shutil
-import subprocess
 import tempfile
 import tomllib
 import unittest
 
 import pyroclast
 
-PROGRAM = os.environ["PYROCLAST"]
+OF_THE_PROGRAM = pathlib.Path(os.environ["SMALL_FORMS"])
 ROOT = pathlib.Path(__file__).parents[2]
 SMALL = tomllib.loads((ROOT / "validation" / "reference.toml").read_text())["small"]
 
@@ -33,18 +35,14 @@ class Cases(unittest.TestCase):
         for case, changes in SMALL.items():
             with self.subTest(case):
                 file = ROOT / "cases" / f"{case}.toml"
-                program, script = folder / f"{case}-program", folder / f"{case}-script"
-                words = [word for change in changes for word in ("--set", change)]
-                # bodies this small gain nothing by more threads
-                beside = subprocess.Popen([PROGRAM, "run", file, "--out", program, "--no-figures", "--quiet",
-                                           "--threads", "1", *words])
+                script = folder / case
                 deck = pyroclast.Deck(file)
                 for change in changes:
                     key, value = change.split("=", 1)
                     deck[key.strip()] = tomllib.loads(f"v = {value}")["v"] if _is_toml(value) else value.strip()
+                # bodies this small gain nothing by more threads
                 pyroclast.Run(deck, out=script, threads=1).finish()
-                beside.wait()
-                of_program, of_script = results(program), results(script)
+                of_program, of_script = results(OF_THE_PROGRAM / case), results(script)
                 self.assertEqual(of_program.keys(), of_script.keys())
                 for name, contents in of_program.items():
                     self.assertEqual(contents == of_script[name], True, name)
