@@ -991,7 +991,10 @@ class Running(UserTest):
 
     def test_new_writes_a_deck_that_is_valid_and_never_overwrites_one(self):
         self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
-        self.assertEqual((self.folder / "mine.toml").read_text(), STARTER)
+        line, rest = (self.folder / "mine.toml").read_text().split("\n", 1)
+        self.assertEqual(rest, STARTER)
+        schema = json.loads(pathlib.Path(line.removeprefix("#:schema ")).read_text())
+        self.assertIn("specimen", schema["properties"])
         check = self.pyroclast("check", "mine.toml")
         self.assertEqual(check.returncode, 0, check.stderr)
         for word in ("zones", "contacts", "shortest edge", "time step", "set by gridpoint", "E about", "memory"):

@@ -112,7 +112,7 @@ TEST(Survey, KeepsWhatTheReaderSaysOfAKey) {
     EXPECT_EQ(read[i].key, expected[i].key);
     EXPECT_EQ(read[i].value, expected[i].value) << read[i].key;
     EXPECT_EQ(read[i].unit, expected[i].unit) << read[i].key;
-    EXPECT_EQ(read[i].allowed, expected[i].allowed) << read[i].key;
+    EXPECT_EQ(read[i].range.describe(), expected[i].allowed) << read[i].key;
     EXPECT_EQ(read[i].fallback, expected[i].fallback) << read[i].key;
     EXPECT_EQ(read[i].meaning, expected[i].meaning) << read[i].key;
     EXPECT_FALSE(read[i].optional) << read[i].key;

@@ -140,6 +140,15 @@ TEST(Warnings, AnAggregateWiderThanTheSpecimenIsAnError) {
 
 // Promise: blocks are asked for by their number or by their size, and the outline is made for blocks of that
 // size.
+// Regression: what the figures draw was looked up in the last stage.
+TEST(Setup, ADeckWithReferencesAndWithoutStagesIsRefused) {
+  const std::string whole = paper_deck();
+  const std::string deck =
+      whole.substr(0, whole.find("[[stages]]")) + "[[output.references]]\nbuiltin = \"compression\"\n";
+  EXPECT_NE(message(deck).find("stages: missing; at least one table [[stages]] is needed"),
+            std::string::npos);
+}
+
 TEST(Setup, TakesTheSizeOfBlocksInThePlaceOfTheirNumber) {
   const std::string deck = paper_deck();
   EXPECT_EQ(read(with(deck, "count = 5000", "size = \"3 mm\"")).specimen.blocks.count, 5000);

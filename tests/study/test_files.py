@@ -1,8 +1,11 @@
 """Study files: what is wrong is refused before the first run, with its place."""
 
+import json
 import subprocess
+import tomllib
 import unittest
 
+import jsonschema
 from pyroclast.errors import DeckError, Error
 from pyroclast.study.file import read_setup
 from pyroclast.study.points import Points
@@ -215,6 +218,15 @@ class Reference(unittest.TestCase):
         self.assertEqual((CASES.parent / "docs" / "study-reference.md").read_text(), printed)
         for word in ("`[study]`", "`seeds`", "`trajectories`", "`uniform`", "[parameters.", "[targets."):
             self.assertIn(word, printed)
+
+    def test_the_schema_takes_what_the_readers_take(self) -> None:
+        printed = subprocess.run([PROGRAM, "study", "keys", "--schema"], capture_output=True, text=True, check=True).stdout
+        editor = jsonschema.Draft4Validator(json.loads(printed))
+        for file in (CASES.parent / "validation" / "studies").glob("*.toml"):
+            study = tomllib.loads(file.read_text())
+            self.assertEqual([error.message for error in editor.iter_errors(study)], [], file.name)
+            for wrong in ({"seed": 3}, {"seeds": "three"}, {"seeds": 0}):
+                self.assertFalse(editor.is_valid(study | {"study": study["study"] | wrong}), wrong)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from ..interrupts import hear_ctrl_c
 from .command_line import parser
 from .driver import NOT_RUN, duration
 from .executors.commands import Commands
-from .file import reference
+from .file import reference, schema
 from .study import Study
 
 _INTRODUCTION = """# Study reference
@@ -159,7 +159,7 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _keys(options: argparse.Namespace) -> int:
-    print(f"{_INTRODUCTION}{reference()}", end="")
+    print(schema() if options.schema else f"{_INTRODUCTION}{reference()}", end="")
     return 0
 
 

@@ -39,7 +39,9 @@ def parser() -> argparse.ArgumentParser:
     report = command("report", "Draw the figures of a study, and one page that gathers them")
     report.add_argument("-o", "--out", type=Path, metavar="FOLDER",
                         help="where they go (default: report in the folder of the study, which is then written to)")
-    command("keys", "Print every key that a study file may hold, as Markdown")
+    keys = command("keys", "Print every key that a study file may hold, as Markdown")
+    keys.add_argument("--schema", action="store_true",
+                      help="as a JSON Schema (draft 4), with which editors complete and check study files")
     return study
 
 

@@ -115,6 +115,11 @@ def reference() -> str:
     return _core.reference_of(lambda toml: _read(toml, Path("study.toml")))
 
 
+def schema() -> str:
+    """JSON Schema (draft 4) of study files, for editors."""
+    return _core.schema_of(lambda toml: _read(toml, Path("study.toml")), "Study file of Pyroclast")
+
+
 def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> StudySetup:
     root = toml.root()
     title = root.text("title", "What figures and the report are headed with; without it the file's name.", file.stem)

@@ -103,12 +103,15 @@ int doctor();
 
 struct KeysOptions {
   bool json = false;
+  bool schema = false;
   bool survey = false;  ///< true to ask the readers of decks, false for what they left at the build
 };
-/// Prints all keys that a deck may have, as Markdown or JSON.
+/// Prints all keys that a deck may have, as Markdown, JSON, or a JSON Schema for editors.
 int print_keys(const KeysOptions& options);
 /// Returns all keys that a deck may have, from the file that the build left where it is there.
 DeckSchema known_deck_schema();
+/// Returns the JSON Schema of decks that the build left; empty where there is none.
+std::filesystem::path editor_schema_file();
 int print_laws();
 
 /// Draws figures of present results, by the command of the Python package: `run`, `compare`, `levels` ...

@@ -1,10 +1,12 @@
 #include <filesystem>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/own_program.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/deck/editor_schema.hpp"
 #include "pyroclast/deck/reference.hpp"
 #include "pyroclast/deck/schema_json.hpp"
 #include "pyroclast/setup/setup.hpp"
@@ -27,22 +29,29 @@ stages are.
 
 )";
 
-/// File that the build leaves beside the program: to find all keys takes some 15 s.
-constexpr auto kFile = "deck_keys.json";
+/// Finds a file that the build leaves beside the program; empty where there is none.
+std::filesystem::path file_of_build(std::string_view name) {
+  for (const auto* folder : {PYROCLAST_DATA, "generated"})
+    if (auto file = own_prefix() / folder / name; std::filesystem::exists(file)) return file;
+  return {};
+}
 
 }  // namespace
 
 DeckSchema known_deck_schema() {
-  for (const auto* folder : {PYROCLAST_DATA, "generated"}) {
-    const auto file = own_prefix() / folder / kFile;
-    if (std::filesystem::exists(file)) return schema_of(read_file(file));
-  }
-  return deck_schema();
+  const auto file = file_of_build("deck_keys.json");  // to find all keys takes some 15 s
+  return file.empty() ? deck_schema() : schema_of(read_file(file));
+}
+
+std::filesystem::path editor_schema_file() {
+  return file_of_build("deck.schema.json");
 }
 
 int print_keys(const KeysOptions& options) {
   const DeckSchema schema = options.survey ? deck_schema() : known_deck_schema();
-  if (options.json)
+  if (options.schema)
+    fmt::print("{}", editor_schema(schema, "Deck of Pyroclast"));
+  else if (options.json)
     fmt::print("{}", json_of(schema));
   else
     fmt::print("{}{}", kKeysIntroduction, deck_reference(schema));

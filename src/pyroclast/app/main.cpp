@@ -237,6 +237,8 @@ int command_line(int argc, char** argv) {
   app::KeysOptions keys_options;
   auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
   keys->add_flag("--json", keys_options.json, "As JSON");
+  keys->add_flag("--schema", keys_options.schema,
+                 "As a JSON Schema (draft 4), with which editors complete and check decks");
   keys->add_flag(
           "--survey", keys_options.survey,
           "Ask the readers of decks, which takes a while, and not the file that they left at the build")

@@ -24,7 +24,10 @@ int make_deck(const std::string& name, const std::string& from) {
   if (std::filesystem::exists(file))
     throw Error(
         fmt::format("{}: exists already, so it is not overwritten; choose another name", file.string()));
-  write_text_file(file, std::string(found->text));
+  const auto schema = editor_schema_file();  // an editor that finds none there does without
+  write_text_file(
+      file,
+      fmt::format("{}{}", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string()), found->text));
   fmt::print("{} is written. Next:\n  pyroclast check {}\n  pyroclast run {}\n", file.string(), file.string(),
              file.string());
   return 0;

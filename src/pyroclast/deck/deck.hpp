@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -46,16 +47,33 @@ struct Choice {
   Meaning meaning;
 };
 
+/// Form of the value of a key, of which a list may have any number.
+enum class ValueForm : std::uint8_t {
+  anything,
+  text,
+  word,          ///< one of several words
+  word_or_text,  ///< one of several words, or any other text
+  flag,
+  integer,
+  quantity,        ///< number with its unit; without unit where it is dimensionless
+  place,           ///< [x, y], of one kind of quantity
+  place_in_space,  ///< [x, y] or [x, y, z]
+  points,          ///< [[x, y], ...], of two kinds of quantity
+  table
+};
+
 /// Description, for the deck reference, of a key that is read in several forms.
 struct KeyForms {
   /// Written form of the value, such as "curve over the temperature: stress".
   std::string value;
+  ValueForm form = ValueForm::anything;    ///< form of a value that is no table
   const Unit& unit = unit::dimensionless;  ///< unit of the range and the fallback
   Range range = Range::any();
   std::optional<double> fallback = {};
   /// Name under which the tables at and below the key are described, once for all keys; empty if there are no
   /// such tables.
   std::string name = {};
+  bool optional = false;  ///< true for a key that may be left out where it has no fallback
 };
 
 /// Place as a deck states it, in the unit of its reader.
@@ -211,6 +229,12 @@ class Section {
   /// Makes keys known that are read with other settings only: a deck that holds one is told that the key has
   /// no effect, and not that there is no such key.
   void know(std::initializer_list<std::string_view> keys) const;
+  /// Says that the deck itself names tables in this one, for which the reader asks as texts of the deck say.
+  void take_names_of_deck() const;
+  /// Says that the deck itself names the keys of this table.
+  void take_any_keys() const;
+  /// Says that this table has further keys where a key holds none of its words but the name of code.
+  void take_keys_of_code(std::string_view key) const;
   /// Tells whether the key is written and holds a table; otherwise works like `has`.
   bool is_table(std::string_view key) const;
   /// Describes, for the deck reference, a key that is read in several forms. The call comes before the key is

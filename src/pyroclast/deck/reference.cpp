@@ -92,6 +92,13 @@ std::string when(const std::vector<KeyCondition>& conditions, const std::string&
   return paragraph(all);
 }
 
+/// Describes a range in words, without unit; the usual values stand behind the allowed ones.
+std::string allowed(const Range& range) {
+  const std::string must = range.describe(), usual = range.describe_usual();
+  if (usual.empty()) return must;
+  return fmt::format("{}{}usually {}", must, must.empty() ? "" : "; ", usual);
+}
+
 /// Returns a text that ends no cell of a table.
 std::string cell(const std::string& text) {
   std::string result;
@@ -110,8 +117,8 @@ std::string row(const DeckTable& table, const DeckKey& key) {
   }
   const std::string fallback = !key.fallback.empty() ? code(key.fallback) : key.optional ? "–" : "needed";
   const std::string value = words.empty() ? key.value : fmt::format("one of {}", fmt::join(words, ", "));
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.key, cell(value), key.unit, key.allowed,
-                     fallback, cell(paragraph(meaning)));
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.key, cell(value), key.unit,
+                     allowed(key.range), fallback, cell(paragraph(meaning)));
 }
 
 /// Returns the rows of keys that are read with one word of the key `decisive`.
@@ -177,7 +184,8 @@ std::string introduction(const DeckTable& table) {
 
 std::string deck_reference(const DeckSchema& schema) {
   std::vector<const DeckTable*> open;
-  for (const DeckTable& table : schema.tables) open.push_back(&table);
+  for (const DeckTable& table : schema.tables)
+    if (!table.keys.empty()) open.push_back(&table);
   std::string text;
   while (!open.empty()) {
     const DeckTable& first = *open.front();

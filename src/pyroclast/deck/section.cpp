@@ -302,36 +302,48 @@ std::string fallback_text(double value, const Unit& unit) {
   return fmt::format("{}{}{}", value, unit == unit::dimensionless ? "" : " ", suffix(unit));
 }
 
-/// Describes a range in words, without unit; the usual values stand behind the allowed ones.
-std::string allowed(const Range& range) {
-  const std::string must = range.describe(), usual = range.describe_usual();
-  if (usual.empty()) return must;
-  return fmt::format("{}{}usually {}", must, must.empty() ? "" : "; ", usual);
-}
-
-DeckKey key_of(std::string_view key, std::string value) {
+DeckKey key_of(std::string_view key, ValueForm form, std::string value) {
   DeckKey result;
   result.key = key;
+  result.form = form;
   result.value = std::move(value);
   return result;
 }
 
 DeckKey quantity_key(std::string_view key, const Unit& unit, const Range& range) {
-  DeckKey result = key_of(key, unit == unit::dimensionless ? "number" : unit.name);
+  DeckKey result = key_of(key, ValueForm::quantity, unit == unit::dimensionless ? "number" : unit.name);
+  result.kinds = {unit.name};
   result.unit = suffix(unit);
-  result.allowed = allowed(range);
+  result.range = range;
   return result;
 }
 
 DeckKey quantities_key(std::string_view key, const Unit& unit, const Range& range) {
   DeckKey result = quantity_key(key, unit, range);
+  result.is_list = true;
   result.value = fmt::format("list of {}", result.value);
   return result;
 }
 
 DeckKey integer_key(std::string_view key, const Range& range) {
-  DeckKey result = key_of(key, "whole number");
-  result.allowed = allowed(range);
+  DeckKey result = key_of(key, ValueForm::integer, "whole number");
+  result.range = range;
+  return result;
+}
+
+DeckKey places_key(std::string_view key, ValueForm form, bool is_list, const Unit& unit) {
+  DeckKey result =
+      key_of(key, form,
+             fmt::format("{} [x, y]{}, {}", is_list ? "list of places" : "place",
+                         form == ValueForm::place_in_space ? ", in a solid [x, y, z]" : "", unit.name));
+  result.is_list = is_list;
+  result.kinds = {unit.name};
+  return result;
+}
+
+DeckKey texts_key(std::string_view key) {
+  DeckKey result = key_of(key, ValueForm::text, "list of texts");
+  result.is_list = true;
   return result;
 }
 
@@ -366,8 +378,10 @@ std::vector<TableReading*> read_tables(const Entry& entry) {
 }  // namespace
 
 Section Section::section(std::string_view key, Meaning meaning) const {
-  if (auto* survey = deck_->survey())
+  if (auto* survey = deck_->survey()) {
+    survey->need_table(table_->path, key);
     return {*deck_, &survey->table(table_->path_of(key), false, meaning.text())};
+  }
   const auto entry = require(*deck_, table_, key, header(table_, key, "the table [{}] is needed"));
   return {*deck_, entry ? read_table(*entry) : nullptr};
 }
@@ -384,8 +398,10 @@ std::optional<Section> Section::optional_section(std::string_view key, Meaning m
 }
 
 std::vector<Section> Section::sections(std::string_view key, Meaning meaning) const {
-  if (auto* survey = deck_->survey())
+  if (auto* survey = deck_->survey()) {
+    survey->need_table(table_->path, std::string(key) + "[]");
     return {Section(*deck_, &survey->table(table_->path_of(key) + "[]", false, meaning.text()))};
+  }
   const std::string needed = header(table_, key, "at least one table [[{}]] is needed");
   if (!require(*deck_, table_, key, needed)) return {};
   return optional_sections(key);
@@ -412,7 +428,9 @@ std::vector<Section> Section::optional_sections(std::string_view key, Meaning me
 
 std::vector<std::pair<std::string, Section>> Section::named_sections(std::string_view placeholder,
                                                                      Meaning meaning) const {
-  if (deck_->survey()) return {{std::string(placeholder), section(placeholder, meaning)}};
+  if (auto* survey = deck_->survey())
+    return {{std::string(placeholder),
+             Section(*deck_, &survey->table(table_->path_of(placeholder), false, meaning.text()))}};
   std::vector<std::pair<std::string, Section>> result;
   if (!table_) return result;
   for (const auto& [key, node] : table_->table)
@@ -428,6 +446,7 @@ Section Section::with_defaults_of(std::string_view table) const {
 
 double Section::quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const {
   note(quantity_key(key, unit, range), meaning);
+  if (deck_->survey()) return range.any_value();
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
   return (entry ? read_quantity(*entry, unit, range) : std::nullopt).value_or(range.any_value());
 }
@@ -442,6 +461,7 @@ double Section::quantity(std::string_view key, const Unit& unit, const Range& ra
 std::vector<double> Section::quantities(std::string_view key, const Unit& unit, const Range& range,
                                         Meaning meaning) const {
   note(quantities_key(key, unit, range), meaning);
+  if (deck_->survey()) return {};
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
   return entry ? read_quantities(*entry, unit, range) : std::vector<double>{};
 }
@@ -469,7 +489,11 @@ std::vector<double> Section::numbers(std::string_view key, const Range& range, M
 
 std::vector<std::pair<double, double>> Section::points(std::string_view key, const Unit& x_unit,
                                                        const Unit& y_unit, Meaning meaning) const {
-  note(key_of(key, fmt::format("list of points, {} and {}", x_unit.name, y_unit.name)), meaning);
+  DeckKey described =
+      key_of(key, ValueForm::points, fmt::format("list of points, {} and {}", x_unit.name, y_unit.name));
+  described.kinds = {x_unit.name, y_unit.name};
+  note(std::move(described), meaning);
+  if (deck_->survey()) return {};
   const auto entry = require(
       *deck_, table_, key,
       fmt::format("a list of points, [[\"{}\", \"{}\"], ...], is needed", x_unit.example, y_unit.example));
@@ -478,7 +502,8 @@ std::vector<std::pair<double, double>> Section::points(std::string_view key, con
 
 std::optional<std::pair<double, double>> Section::place(std::string_view key, const Unit& unit,
                                                         Meaning meaning) const {
-  note(key_of(key, fmt::format("place [x, y], {}", unit.name)), meaning);
+  note(places_key(key, ValueForm::place, false, unit), meaning);
+  if (deck_->survey()) return std::nullopt;
   const auto entry = require(*deck_, table_, key,
                              fmt::format("a place [\"{}\", \"{}\"] is needed", unit.example, unit.example));
   return entry ? read_point(*entry, unit, unit) : std::nullopt;
@@ -486,7 +511,8 @@ std::optional<std::pair<double, double>> Section::place(std::string_view key, co
 
 std::vector<std::pair<double, double>> Section::places(std::string_view key, const Unit& unit,
                                                        std::size_t least, Meaning meaning) const {
-  note(key_of(key, fmt::format("list of places [x, y], {}", unit.name)), meaning);
+  note(places_key(key, ValueForm::place, true, unit), meaning);
+  if (deck_->survey()) return {};
   const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
   if (!entry) return {};
   return read_places(*entry, unit, least, [&](const Entry& one) { return read_point(one, unit, unit); });
@@ -494,7 +520,8 @@ std::vector<std::pair<double, double>> Section::places(std::string_view key, con
 
 std::optional<StatedPlace> Section::place(std::string_view key, const Unit& unit,
                                           const Coordinates& coordinates, Meaning meaning) const {
-  note(key_of(key, fmt::format("place [x, y], in a solid [x, y, z], {}", unit.name)), meaning);
+  note(places_key(key, ValueForm::place_in_space, false, unit), meaning);
+  if (deck_->survey()) return std::nullopt;
   const auto entry = require(*deck_, table_, key,
                              fmt::format("a place [\"{}\", \"{}\"] is needed", unit.example, unit.example));
   return entry ? read_stated_place(*entry, key, unit, coordinates) : std::nullopt;
@@ -502,7 +529,8 @@ std::optional<StatedPlace> Section::place(std::string_view key, const Unit& unit
 
 std::vector<StatedPlace> Section::places(std::string_view key, const Unit& unit, std::size_t least,
                                          const Coordinates& coordinates, Meaning meaning) const {
-  note(key_of(key, fmt::format("list of places [x, y], in a solid [x, y, z], {}", unit.name)), meaning);
+  note(places_key(key, ValueForm::place_in_space, true, unit), meaning);
+  if (deck_->survey()) return {};
   const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
   if (!entry) return {};
   return read_places(*entry, unit, least,
@@ -511,11 +539,12 @@ std::vector<StatedPlace> Section::places(std::string_view key, const Unit& unit,
 
 long long Section::integer(std::string_view key, const Range& range, Meaning meaning) const {
   note(integer_key(key, range), meaning);
+  const auto stand_in = static_cast<long long>(range.any_value());
+  if (deck_->survey()) return stand_in;
   const std::string words = range.describe();
   const auto entry =
       require(*deck_, table_, key,
               words.empty() ? "a whole number is needed" : "a whole number is needed; it must be " + words);
-  const auto stand_in = static_cast<long long>(range.any_value());
   return (entry ? read_integer(*entry, range) : std::nullopt).value_or(stand_in);
 }
 
@@ -527,27 +556,27 @@ long long Section::integer(std::string_view key, const Range& range, long long f
 }
 
 bool Section::flag(std::string_view key, Meaning meaning) const {
-  note(key_of(key, "true or false"), meaning);
+  note(key_of(key, ValueForm::flag, "true or false"), meaning);
   if (auto* survey = deck_->survey()) return survey->is_set(table_->path, key, false);
   const auto entry = require(*deck_, table_, key, "true or false is needed");
   return (entry ? read_flag(*entry) : std::nullopt).value_or(false);
 }
 
 bool Section::flag_or(std::string_view key, bool fallback, Meaning meaning) const {
-  note(with_fallback(key_of(key, "true or false"), fmt::format("{}", fallback)), meaning);
+  note(with_fallback(key_of(key, ValueForm::flag, "true or false"), fmt::format("{}", fallback)), meaning);
   if (auto* survey = deck_->survey()) return survey->is_set(table_->path, key, fallback);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_flag(*entry) : std::nullopt).value_or(fallback);
 }
 
 std::string Section::text(std::string_view key, Meaning meaning) const {
-  note(key_of(key, "text"), meaning);
+  note(key_of(key, ValueForm::text, "text"), meaning);
   const auto entry = require(*deck_, table_, key, "a string is needed");
   return (entry ? read_text(*entry) : std::nullopt).value_or("");
 }
 
 std::string Section::text(std::string_view key, std::string fallback, Meaning meaning) const {
-  note(with_fallback(key_of(key, "text"), fmt::format("\"{}\"", fallback)), meaning);
+  note(with_fallback(key_of(key, ValueForm::text, "text"), fmt::format("\"{}\"", fallback)), meaning);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_text(*entry) : std::nullopt).value_or(std::move(fallback));
 }
@@ -558,7 +587,7 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<Word>&
   std::vector<std::string> words;
   for (const Word& option : options) words.push_back(option.word);
   if (auto* survey = deck_->survey()) {
-    DeckKey read = key_of(key, "word");
+    DeckKey read = key_of(key, ValueForm::word, "word");
     for (const Word& option : options)
       read.words.push_back({fmt::format("\"{}\"", option.word), std::string(option.meaning.text())});
     if (fallback) read.fallback = fmt::format("\"{}\"", fallback_word);
@@ -576,7 +605,7 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<Word>&
 std::string Section::word_or_text(std::string_view key, const std::vector<Choice<int>>& options,
                                   Meaning other, Meaning meaning) const {
   if (auto* survey = deck_->survey()) {
-    DeckKey read = key_of(key, "word or text");
+    DeckKey read = key_of(key, ValueForm::word_or_text, "word or text");
     std::vector<std::string> asked;
     for (const auto& option : options) {
       asked.emplace_back(option.word);
@@ -616,12 +645,12 @@ std::vector<std::string> texts_of(const Entry& entry) {
 }  // namespace
 
 std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) const {
-  note(key_of(key, "list of texts"), meaning);
+  note(texts_key(key), meaning);
   return texts_of(require(*deck_, table_, key, "a list of texts is needed"));
 }
 
 std::vector<std::string> Section::optional_texts(std::string_view key, Meaning meaning) const {
-  note(with_fallback(key_of(key, "list of texts"), "[]"), meaning);
+  note(with_fallback(texts_key(key), "[]"), meaning);
   return texts_of(read(*deck_, table_, key));
 }
 
@@ -636,20 +665,21 @@ std::string json_of(const toml::node& node) {
 }  // namespace
 
 std::string Section::json(std::string_view key, std::string_view value, Meaning meaning) const {
-  note(key_of(key, std::string(value)), meaning);
+  note(key_of(key, ValueForm::anything, std::string(value)), meaning);
   const auto entry = require(*deck_, table_, key, fmt::format("{} is needed", value));
   return entry ? json_of(entry->node) : "null";
 }
 
 std::string Section::json(std::string_view key, std::string_view value, const std::string& fallback,
                           Meaning meaning) const {
-  note(with_fallback(key_of(key, std::string(value)), fallback), meaning);
+  note(with_fallback(key_of(key, ValueForm::anything, std::string(value)), fallback), meaning);
   const auto entry = read(*deck_, table_, key);
   return entry ? json_of(entry->node) : fallback;
 }
 
 std::vector<std::string> Section::keys() const {
   std::vector<std::string> all;
+  if (auto* survey = deck_->survey()) survey->openness(table_->path).may_lack_all = true;
   if (!table_ || deck_->survey()) return all;
   for (const auto& [key, node] : table_->table) all.emplace_back(key.str());
   return all;
@@ -680,6 +710,18 @@ bool Section::is_table(std::string_view key) const {
   return node && node->is_table();
 }
 
+void Section::take_names_of_deck() const {
+  if (auto* survey = deck_->survey()) survey->openness(table_->path).names_of_deck = true;
+}
+
+void Section::take_any_keys() const {
+  if (auto* survey = deck_->survey()) survey->openness(table_->path).any_keys = true;
+}
+
+void Section::take_keys_of_code(std::string_view key) const {
+  if (auto* survey = deck_->survey()) survey->openness(table_->path).code_key = key;
+}
+
 void Section::leave_open() const {
   if (table_) table_->undecided = true;
 }
@@ -687,9 +729,12 @@ void Section::leave_open() const {
 void Section::describe(std::string_view key, const KeyForms& forms, Meaning meaning) const {
   auto* survey = deck_->survey();
   if (!survey) return;
-  DeckKey read = key_of(key, forms.value);
+  DeckKey read = key_of(key, forms.form, forms.value);
+  if (forms.form == ValueForm::quantity) read.kinds = {forms.unit.name};
+  read.forms = forms.name;
+  read.optional = forms.optional;
   read.unit = suffix(forms.unit);
-  read.allowed = allowed(forms.range);
+  read.range = forms.range;
   if (forms.fallback) read.fallback = fallback_text(*forms.fallback, forms.unit);
   read.meaning = meaning.text();
   survey->read_in_forms(table_->path, std::move(read), forms.name);

@@ -4,6 +4,7 @@
 #include <deque>
 #include <iterator>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,16 +21,21 @@ const toml::table& no_table() {
 }
 
 std::string joined(const std::string& table, std::string_view key) {
-  return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
+  return table.empty() ? std::string(key) : std::string(table).append(1, '.').append(key);
 }
 
 /// Returns the parts in which two readings of a key must agree to be the same, one behind the other.
 std::string content(const SurveyRun::Read& r) {
   std::string all;
+  all.reserve(256);
   const auto add = [&](const std::string& part) { all.append(part).push_back('\0'); };
   for (const std::string* part :
-       {&r.key.key, &r.table, &r.key.value, &r.key.unit, &r.key.allowed, &r.key.fallback, &r.key.meaning})
+       {&r.key.key, &r.table, &r.key.value, &r.key.unit, &r.key.fallback, &r.key.meaning})
     add(*part);
+  const Range& range = r.key.range;
+  for (const double end : {range.lower, range.upper, range.usual_lower, range.usual_upper})
+    all.append(reinterpret_cast<const char*>(&end), sizeof end);
+  all.push_back(static_cast<char>(r.key.form));
   for (const DeckWord& w : r.key.words) {
     add(w.word);
     add(w.meaning);
@@ -38,17 +44,17 @@ std::string content(const SurveyRun::Read& r) {
 }
 
 /// Numbers of things in the order of meeting them.
-template <class Thing>
+template <class Map>
 class Numbers {
  public:
   /// Returns the number of a thing, and whether the thing is new.
-  std::pair<int, bool> of(const Thing& thing) {
+  std::pair<int, bool> of(const typename Map::key_type& thing) {
     const auto [known, is_new] = numbers_.emplace(thing, static_cast<int>(numbers_.size()));
     return {known->second, is_new};
   }
 
  private:
-  std::map<Thing, int> numbers_;
+  Map numbers_;
 };
 
 constexpr std::size_t kNotAsked = -1;
@@ -107,17 +113,31 @@ class Surveyor {
     DeckSchema schema{.tables = tables_, .never_read = {}};
     put_parts_together(schema.tables);
     for (const Found& f : found_) {
-      std::vector<DeckKey>& keys = find_table(schema.tables, f.what.table)->keys;
       DeckKey key = described(f);
+      DeckTable& table = *find_table(schema.tables, f.what.table);
+      std::vector<DeckKey>& keys = key.form == ValueForm::table ? table.needed_tables : table.keys;
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(std::move(key));
+    }
+    for (const auto& [path, openness] : openness_) {
+      DeckTable& table = *find_table(schema.tables, path);
+      table.has_names_of_deck = openness.names_of_deck;
+      table.has_any_keys = openness.any_keys;
+      table.may_lack_all = openness.may_lack_all;
+      table.code_key = openness.code_key;
     }
     for (const auto& [table, key] : known_) {
       const std::string path = joined(table, key);
       if (!is_read(table, key) && !is_table(path) && !is_table(path + "[]"))
         schema.never_read.push_back(path);
     }
-    std::erase_if(schema.tables, [](const DeckTable& t) { return t.keys.empty(); });
-    for (DeckTable& table : schema.tables) take_common_conditions(table);
+    std::erase_if(schema.tables, [](const DeckTable& t) { return t.keys.empty() && !t.has_any_keys; });
+    for (DeckTable& table : schema.tables) {
+      take_common_conditions(table);
+      // Of a table that other answers let be left out, answers together may decide.
+      std::erase_if(table.needed_tables, [&](const DeckKey& needed) {
+        return once_optional_.contains(joined(table.path, needed.key));
+      });
+    }
     return schema;
   }
 
@@ -156,6 +176,7 @@ class Surveyor {
     Told& told = told_[given];
     visited_.push_back(given);
     for (const DeckTable& t : run.tables()) merge(t);
+    for (const auto& [path, openness] : run.openness()) openness_[path] = openness;
     for (const auto& k : run.known())
       if (is_known_.insert(k).second) known_.push_back(k);
     bool is_new = false;
@@ -187,6 +208,7 @@ class Surveyor {
   }
 
   void merge(const DeckTable& table) {
+    if (table.optional) once_optional_.insert(table.path);
     const auto known = find_table(tables_, table.path);
     if (known == tables_.end()) {
       tables_.push_back(table);
@@ -331,6 +353,7 @@ class Surveyor {
 
   /// Moves conditions from outside that all keys share to the table.
   static void take_common_conditions(DeckTable& table) {
+    if (table.keys.empty()) return;
     for (const KeyCondition& condition : std::vector(table.keys.front().conditions)) {
       if (condition.table == table.path) continue;
       const auto has_it = [&](const DeckKey& k) {
@@ -347,9 +370,9 @@ class Surveyor {
   std::set<SurveyAnswers> planned_;
   std::map<SurveyAnswers, Told> told_;
   std::vector<SurveyAnswers> visited_;  ///< answers of each run, about from the fewest changed to the most
-  Numbers<SurveyQuestion> questions_;
+  Numbers<std::map<SurveyQuestion, int>> questions_;
   std::vector<SurveyQuestion> asked_;  ///< questions, by number
-  Numbers<std::string> keys_;
+  Numbers<std::unordered_map<std::string, int>> keys_;
   std::vector<SurveyRun::Read> key_texts_;       ///< keys, by number
   std::set<std::vector<std::string>> possible_;  ///< lists of answers
   std::vector<Found> found_;
@@ -357,6 +380,8 @@ class Surveyor {
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;
   std::set<std::pair<std::string, std::string>> is_known_;
+  std::map<std::string, SurveyRun::Openness> openness_;
+  std::set<std::string> once_optional_;  ///< paths of tables that a run asked for as optional
 };
 
 }  // namespace
@@ -390,7 +415,7 @@ bool SurveyRun::is_set(const std::string& table, std::string_view key, bool usua
 std::size_t SurveyRun::chosen(const std::string& table, std::string_view key,
                               const std::vector<std::string>& words) {
   std::vector<std::string> possible;
-  for (const std::string& word : words) possible.push_back(fmt::format("\"{}\"", word));
+  for (const std::string& word : words) possible.push_back('"' + word + '"');
   return answer(table, key, SurveyQuestion::Kind::word, std::move(possible), 0);
 }
 
@@ -398,8 +423,15 @@ void SurveyRun::know(const std::string& table, std::string_view key) {
   known_.emplace_back(described(table), key);
 }
 
+void SurveyRun::need_table(const std::string& table, std::string_view name) {
+  DeckKey needed;
+  needed.key = name;
+  needed.form = ValueForm::table;
+  read(table, std::move(needed));
+}
+
 void SurveyRun::read(const std::string& table, DeckKey key) {
-  if (forms_.contains(joined(table, key.key))) return;
+  if (!forms_.empty() && forms_.contains(joined(table, key.key))) return;
   read_.push_back({described(table), std::move(key), answered_.size()});
 }
 
@@ -414,6 +446,8 @@ TableReading& SurveyRun::table(const std::string& path, bool optional, std::stri
                   .optional = optional,
                   .meaning = std::string(meaning),
                   .keys = {},
+                  .needed_tables = {},
+                  .code_key = {},
                   .conditions = {}};
   table.is_form = table.path != path;
   tables_.push_back(std::move(table));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/base/range.hpp"
 #include "pyroclast/deck/deck.hpp"
 
 namespace pyroclast {
@@ -32,9 +33,14 @@ struct KeyCondition {
 /// Contents that a deck may have under one key.
 struct DeckKey {
   std::string key;
-  std::string value;    ///< written form of the value, such as "length"
-  std::string unit;     ///< unit of `allowed` and `fallback`; may be empty
-  std::string allowed;  ///< allowed range in words; empty if everything is allowed
+  std::string value;  ///< written form of the value in words, such as "length"
+  ValueForm form = ValueForm::anything;
+  bool is_list = false;
+  /// Names of the kinds of quantity that the value holds, as Unit has them; two for points.
+  std::vector<std::string> kinds;
+  std::string forms;  ///< name of the forms of a table that the value may be; empty if it may be none
+  std::string unit;   ///< unit of `range` and `fallback`; may be empty
+  Range range;        ///< allowed and usual values
   /// Value of a key that is left out; empty if the key has to be there, or is optional.
   std::string fallback;
   bool optional = false;  ///< true for a key that may be left out and has no fallback
@@ -55,6 +61,15 @@ struct DeckTable {
   /// Keys in the order of reading; a key that is read in two ways, or under either of two conditions, stands
   /// twice.
   std::vector<DeckKey> keys;
+  /// Tables in this one that must be there, with the conditions of each; an array's name ends with "[]".
+  std::vector<DeckKey> needed_tables;
+  /// True where further tables like those below may stand, whose names the deck chooses.
+  bool has_names_of_deck = false;
+  bool has_any_keys = false;  ///< true where the deck chooses the names of keys
+  /// True where the reader asks which keys there are, and may need none where there is no other.
+  bool may_lack_all = false;
+  /// Key whose other texts stand for code, which has further keys of its own; empty if there is none.
+  std::string code_key;
   std::vector<KeyCondition> conditions;  ///< conditions of all keys of the table
 
   bool operator==(const DeckTable&) const = default;

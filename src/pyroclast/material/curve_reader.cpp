@@ -69,13 +69,14 @@ CurveReader::CurveReader(std::filesystem::path folder, CurveAxis axis, Interval 
 
 Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
                         Meaning meaning) {
-  section.describe(key, {or_curve(unit), unit, range, std::nullopt, forms_name()}, meaning);
+  section.describe(key, {or_curve(unit), ValueForm::quantity, unit, range, std::nullopt, forms_name()},
+                   meaning);
   return read_described(section, key, unit, range);
 }
 
 Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
                         double fallback, Meaning meaning) {
-  section.describe(key, {or_curve(unit), unit, range, fallback, forms_name()}, meaning);
+  section.describe(key, {or_curve(unit), ValueForm::quantity, unit, range, fallback, forms_name()}, meaning);
   return section.has(key) ? read_described(section, key, unit, range) : Curve::constant(fallback);
 }
 
@@ -140,9 +141,11 @@ std::optional<Curve> CurveReader::read_form(const Section& forms, const std::str
 
 std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit& unit) const {
   forms.describe("value", {.value = kQuantity}, "what the ratio `times` is multiplied with");
-  forms.describe(
-      "times", {.value = fmt::format("name of a built-in ratio, or {}", forms_name()), .name = forms_name()},
-      "ratio; over the temperature it is 1 at 20 °C");
+  forms.describe("times",
+                 {.value = fmt::format("name of a built-in ratio, or {}", forms_name()),
+                  .form = ValueForm::text,
+                  .name = forms_name()},
+                 "ratio; over the temperature it is 1 at 20 °C");
   const double value = forms.quantity("value", unit, Range::any(), "");
   const std::optional<Curve> ratio =
       forms.is_table("times") ? read_forms(*forms.optional_section("times"), unit::dimensionless, false)
@@ -211,7 +214,8 @@ std::optional<Curve> CurveReader::read_builtin(const Section& section, std::stri
 std::optional<Curve> CurveReader::read_expression(const Section& forms, const Unit& unit) const {
   const std::string formula = forms.text(
       "expression", axis_ == time_axis() ? Meaning("formula in t, in s") : Meaning("formula in T, in °C"));
-  forms.describe("unit", {.value = "text"}, "unit of the formula's value; a ratio needs none");
+  forms.describe("unit", {.value = "text", .form = ValueForm::text, .optional = true},
+                 "unit of the formula's value; a ratio needs none");
   const std::string given =
       unit == unit::dimensionless ? forms.text("unit", unit.si, "") : forms.text("unit", "");
   const auto range = forms.quantities("range", abscissa(), Range::any(),

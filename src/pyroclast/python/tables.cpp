@@ -15,6 +15,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/deck/editor_schema.hpp"
 #include "pyroclast/deck/reference.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/errors.hpp"
@@ -121,7 +122,11 @@ void bind_table(py::module_& m) {
             return named;
           },
           arg("placeholder"), arg("meaning"))
-      .def("keys", [](const Table& t) { return t.section.keys(); })
+      .def("keys",
+           [](const Table& t) {
+             t.section.take_any_keys();
+             return t.section.keys();
+           })
       .def("quantity", &quantity, arg("key"), arg("unit"), arg("meaning"), arg("least") = none,
            arg("most") = none, arg("fallback") = none)
       .def("number", &number, arg("key"), arg("meaning"), arg("least") = none, arg("most") = none,
@@ -220,14 +225,20 @@ void bind_tables(py::module_& m) {
              return Table{file.deck, file.deck->root()};
            })
       .def("finish", [](const TomlFile& file) { file.deck->finish(); });
+  const auto survey = [](const py::function& read) {
+    return survey_deck([&](const Deck& deck) {
+      read(TomlFile{File(&deck, [](const Deck*) {})});  // lives as long as this call
+    });
+  };
   m.def(
-      "reference_of",
-      [](const py::function& read) {
-        return deck_reference(survey_deck([&](const Deck& deck) {
-          read(TomlFile{File(&deck, [](const Deck*) {})});  // lives as long as this call
-        }));
-      },
+      "reference_of", [survey](const py::function& read) { return deck_reference(survey(read)); },
       py::arg("read"), "All that a reader of a TomlFile asks for, as Markdown.");
+  m.def(
+      "schema_of",
+      [survey](const py::function& read, const std::string& title) {
+        return editor_schema(survey(read), title);
+      },
+      py::arg("read"), py::arg("title"), "The same as a JSON Schema (draft 4).");
   m.def(
       "did_you_mean",
       [](const std::string& text, const std::vector<std::string>& words) {

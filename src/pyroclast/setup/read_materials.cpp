@@ -442,6 +442,7 @@ class InterfaceReader {
       words.push_back({law->name, static_cast<int>(words.size()), Meaning(law->meaning)});
     const std::string stated =
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
+    s.take_keys_of_code("law");
     try {
       const LawTable& law = find_law_(stated, s.is_changed("law"));
       for (const OpenedLaw* opened : opened_laws())
@@ -588,6 +589,7 @@ std::vector<BlockMaterial> read_block_materials(const Section& root, const std::
                                                 const MaterialRules& rules, const ReadConcrete& concrete,
                                                 CurveReader& curves) {
   const Section s = root.section("materials");
+  s.take_names_of_deck();
   std::vector<BlockMaterial> block_materials;
   for (const auto& phase : phases)
     block_materials.push_back(read_phase(s.section(phase, kMaterialOfPhase), rules, concrete, curves));
@@ -605,6 +607,7 @@ std::vector<BlockMaterial> read_conducting_materials(const Section& root,
                                                      const std::vector<std::string>& phases,
                                                      CurveReader& curves) {
   const Section s = root.section("materials");
+  s.take_names_of_deck();
   s.know({"expansion_reading", "on_cooling", "platen"});
   std::vector<BlockMaterial> block_materials;
   for (const auto& phase : phases)

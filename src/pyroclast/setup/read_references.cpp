@@ -81,6 +81,7 @@ void add_records(const Setup& setup, bool heats, std::vector<Drawn>& drawn) {
 
 /// Returns the curves that figures draw, by the rules of figures.py.
 std::vector<Drawn> drawn_by_figures(const Setup& setup) {
+  if (setup.stages.empty()) return {};  // an error of the deck, which is told at its place
   const auto needs = [](const auto& stage) { return stage->needs().exchanges; };
   const auto heated = std::ranges::find_if(setup.stages, needs);
   const bool exchanges = heated != setup.stages.end();

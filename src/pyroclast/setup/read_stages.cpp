@@ -45,6 +45,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
   const Range range = Range::at_least(absolute_zero).usually(-30.0, 80.0);
   s.describe("stress_free",
              {.value = "temperature, or { frame = file }",
+              .form = ValueForm::quantity,
               .unit = unit::temperature,
               .range = range,
               .name = "stress_free"},

@@ -121,6 +121,22 @@ std::string lower(std::string text) {
 
 }  // namespace
 
+std::vector<std::string> unit_spellings() {
+  std::vector<std::string> all;
+  for (const Spelling& spelling : spellings()) {
+    all.emplace_back(spelling.unit);
+    all.insert(all.end(), spelling.others.begin(), spelling.others.end());
+  }
+  return all;
+}
+
+std::vector<std::string_view> usual_units(const Unit& unit) {
+  std::vector<std::string_view> units;
+  for (const Spelling& spelling : spellings())
+    if (spelling.of == unit) units.push_back(spelling.unit);
+  return units;
+}
+
 std::string_view meant_spelling(std::string_view given, const Unit& unit) {
   const std::string written = compact(given);
   std::vector<std::string_view> units;
