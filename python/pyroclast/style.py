@@ -187,9 +187,8 @@ def thin(figure: Figure) -> Figure:
 
 @contextmanager
 def _laid_out_once(figure: Figure) -> Iterator[None]:
-    """Saving draws twice, first without ink for the layout: the second time would find the same at a quarter of the cost.
-    """
-    engine = figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # Matplotlib 3.6
+    """Saving draws twice, first without ink for the layout. The second layout would find the same again."""
+    engine = figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # since Matplotlib 3.6
     if engine is None:
         yield
         return

@@ -46,4 +46,10 @@ std::string Range::describe_usual(std::string_view unit) const {
   return Range{.lower = usual_lower, .upper = usual_upper}.describe(unit);
 }
 
+std::string Range::describe_all(std::string_view unit) const {
+  const std::string must = describe(unit), usual = describe_usual(unit);
+  if (usual.empty()) return must;
+  return fmt::format("{}{}usually {}", must, must.empty() ? "" : "; ", usual);
+}
+
 }  // namespace pyroclast

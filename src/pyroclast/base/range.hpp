@@ -52,6 +52,8 @@ struct Range {
   std::string describe(std::string_view unit = {}) const;
   /// Describes the usual values in the same way.
   std::string describe_usual(std::string_view unit = {}) const;
+  /// Describes both, the usual values behind the allowed ones.
+  std::string describe_all(std::string_view unit = {}) const;
 
   bool operator==(const Range&) const = default;
 };

@@ -119,10 +119,8 @@ Json value_of(const DeckKey& key) {
 /// Returns the meaning of a key, its range and its words, for the window that an editor shows.
 std::string description(const DeckKey& key) {
   std::string text = key.meaning;
-  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
-  const std::string allowed = key.range.describe(key.unit), usual = key.range.describe_usual(key.unit);
-  if (!allowed.empty()) add(allowed);
-  if (!usual.empty()) add("usually " + usual);
+  if (const std::string range = key.range.describe_all(key.unit); !range.empty())
+    text += (text.empty() ? "" : "; ") + range;
   for (const DeckWord& word : key.words)
     if (!word.meaning.empty()) text += fmt::format("\n{}: {}", word.word, word.meaning);
   return text;
@@ -142,8 +140,8 @@ Json property(const std::vector<DeckKey>& ways) {
   if (result.contains("$ref")) result = {{"allOf", {result}}};  // whose neighbours draft 4 ignores
   if (!meaning.empty()) result["description"] = meaning;
   const std::string& fallback = ways.front().fallback;
-  const bool is_told = fallback.empty() || fallback.starts_with("as in [") || fallback == "none";
-  if (!is_told && std::ranges::all_of(ways, [&](const DeckKey& k) { return k.fallback == fallback; }))
+  const bool is_no_value = fallback.empty() || fallback.starts_with("as in [") || fallback == "none";
+  if (!is_no_value && std::ranges::all_of(ways, [&](const DeckKey& k) { return k.fallback == fallback; }))
     result["default"] = value_in_deck(fallback);
   return result;
 }
@@ -158,12 +156,6 @@ std::vector<std::string> steps_of(std::string_view path) {
   return steps;
 }
 
-bool is_array(std::string_view step) {
-  return step.ends_with("[]");
-}
-std::string name_of(std::string_view step) {
-  return std::string(is_array(step) ? step.substr(0, step.size() - 2) : step);
-}
 /// Tells whether a step, such as "NAME", stands for tables of any name.
 bool is_placeholder(std::string_view step) {
   return std::ranges::all_of(step, [](char c) { return c >= 'A' && c <= 'Z'; });
@@ -172,11 +164,11 @@ bool is_placeholder(std::string_view step) {
 /// Returns a condition on a table some steps below, where there is one: on each element of an array.
 Json wherever(const std::vector<std::string>& steps, std::size_t from, std::size_t to, Json inner) {
   for (std::size_t i = to; i-- > from;) {
-    if (is_array(steps[i])) inner = {{"items", std::move(inner)}};
+    if (is_array_path(steps[i])) inner = {{"items", std::move(inner)}};
     if (is_placeholder(steps[i]))
       inner = {{"additionalProperties", std::move(inner)}};
     else
-      inner = {{"properties", {{name_of(steps[i]), std::move(inner)}}}};
+      inner = {{"properties", {{without_brackets(steps[i]), std::move(inner)}}}};
   }
   return inner;
 }
@@ -184,8 +176,8 @@ Json wherever(const std::vector<std::string>& steps, std::size_t from, std::size
 /// Returns a condition that holds where a table below is there and meets another: of an array, one element.
 Json somewhere(const std::vector<std::string>& steps, std::size_t from, Json inner) {
   for (std::size_t i = steps.size(); i-- > from;) {
-    const std::string name = name_of(steps[i]);
-    if (is_array(steps[i])) inner = {{"not", {{"items", {{"not", std::move(inner)}}}}}};
+    const std::string name = without_brackets(steps[i]);
+    if (is_array_path(steps[i])) inner = {{"not", {{"items", {{"not", std::move(inner)}}}}}};
     inner = {{"required", {name}}, {"properties", {{name, std::move(inner)}}}};
   }
   return inner;
@@ -228,15 +220,21 @@ class EditorSchema {
     }
   };
 
-  Node& node_of(const DeckTable& table) {
-    if (table.is_form) return forms_[table.path];
-    Node* node = &root_;
-    for (const std::string& step : steps_of(table.path)) node = &Node::in(node->tables, step);
+  /// Returns the steps to a table from the object that holds it: the deck, or a form itself.
+  static std::vector<std::string> steps_to(const DeckTable& table) {
+    return table.is_form ? std::vector<std::string>{} : steps_of(table.path);
+  }
+
+  /// Returns the node some steps along the way to a table.
+  Node& node_at(const DeckTable& table, const std::vector<std::string>& steps, std::size_t count) {
+    Node* node = table.is_form ? &forms_[table.path] : &root_;
+    for (std::size_t i = 0; i < count; ++i) node = &Node::in(node->tables, steps[i]);
     return *node;
   }
 
   void add(const DeckTable& table) {
-    Node& node = node_of(table);
+    const std::vector<std::string> steps = steps_to(table);
+    Node& node = node_at(table, steps, steps.size());
     node.table = &table;
     for (const DeckKey& key : table.keys) {
       Node::in(node.keys, key.key).push_back(key);
@@ -246,14 +244,14 @@ class EditorSchema {
 
   void require_all(const DeckTable& table) {
     for (const DeckKey& key : table.keys) {
-      if (key.optional || !key.fallback.empty()) continue;
+      if (!key.is_needed()) continue;
       std::vector<KeyCondition> conditions = table.conditions;
       conditions.insert(conditions.end(), key.conditions.begin(), key.conditions.end());
       require(table, key.key, conditions);
     }
     if (table.has_names_of_deck) return;  // which it needs only where the deck says so
     for (const DeckKey& needed : table.needed_tables)
-      if (!needed.optional) require(table, name_of(needed.key), needed.conditions);
+      if (!needed.optional) require(table, without_brackets(needed.key), needed.conditions);
   }
 
   /// Returns a condition for a table that has a key, or, where it may, none of those that it needs.
@@ -262,13 +260,13 @@ class EditorSchema {
     if (!table.may_lack_all) return has;
     std::vector<Json> has_one;
     for (const DeckKey& other : table.keys)
-      if (!other.optional && other.fallback.empty()) has_one.push_back({{"required", {other.key}}});
+      if (other.is_needed()) has_one.push_back({{"required", {other.key}}});
     return any_of({has, {{"not", any_of(std::move(has_one))}}});
   }
 
   /// Adds a rule that a table has a key under conditions, to the least table that holds all of them.
   void require(const DeckTable& table, const std::string& key, const std::vector<KeyCondition>& conditions) {
-    const std::vector<std::string> steps = table.is_form ? std::vector<std::string>{} : steps_of(table.path);
+    const std::vector<std::string> steps = steps_to(table);
     // by the number of steps to the table that holds the key and the condition
     std::map<std::size_t, std::vector<Json>> failing;
     failing[steps.size()];
@@ -289,9 +287,8 @@ class EditorSchema {
       at->second.push_back(std::move(rule));
       rule = any_of(std::move(at->second));
     }
-    Node* node = table.is_form ? &forms_[table.path] : &root_;
-    for (std::size_t i = 0; i < level; ++i) node = &Node::in(node->tables, steps[i]);
-    if (std::ranges::find(node->rules, rule) == node->rules.end()) node->rules.push_back(std::move(rule));
+    std::vector<Json>& rules = node_at(table, steps, level).rules;
+    if (std::ranges::find(rules, rule) == rules.end()) rules.push_back(std::move(rule));
   }
 
   /// Returns a condition for the table that holds its key.
@@ -320,23 +317,17 @@ class EditorSchema {
     if (node.table && !node.table->meaning.empty()) result["description"] = node.table->meaning;
     Json& properties = result["properties"] = Json::object();
     for (const auto& [key, ways] : node.keys) properties[key] = property(ways);
-    std::vector<Json> named, others;
+    std::vector<Json> of_any_name;
+    const bool takes_names = node.table && node.table->has_names_of_deck;
     for (const auto& [step, table] : node.tables) {
       Json object = object_of(table);
-      if (is_array(step)) object = list_of(object, 1);
-      others.push_back(object);
-      if (is_placeholder(name_of(step)))
-        named.push_back(std::move(object));
-      else if (const std::string name = name_of(step); properties.contains(name))
-        properties[name] = any_of({properties[name], std::move(object)});
-      else
-        properties[name] = std::move(object);
+      if (is_array_path(step)) object = list_of(object, 1);
+      const std::string name = without_brackets(step);
+      if (takes_names || is_placeholder(name)) of_any_name.push_back(object);
+      if (is_placeholder(name)) continue;
+      properties[name] = properties.contains(name) ? any_of({properties[name], object}) : object;
     }
-    if (node.table && node.table->has_names_of_deck) named = others;
-    if (named.empty())
-      result["additionalProperties"] = false;
-    else
-      result["additionalProperties"] = any_of(std::move(named));
+    result["additionalProperties"] = of_any_name.empty() ? Json(false) : any_of(std::move(of_any_name));
     if (node.table && node.table->has_any_keys) result.erase("additionalProperties");
     for (const Json& rule : node.rules) result["allOf"].push_back(rule);
     if (!node.table || node.table->code_key.empty()) return result;

@@ -127,7 +127,7 @@ std::vector<std::string> TableReading::known_keys() const {
 }
 
 std::string TableReading::path_of(std::string_view key) const {
-  return path.empty() ? std::string(key) : std::string(path).append(1, '.').append(key);
+  return joined_path(path, key);
 }
 
 DeckReading::DeckReading(std::string text, DeckSource from, std::vector<std::string> changed)

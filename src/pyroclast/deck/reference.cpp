@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/deck/key_path.hpp"
+
 namespace pyroclast {
 namespace {
 
@@ -37,10 +39,6 @@ std::string paragraph(const std::vector<std::string>& sentences) {
   return fmt::format("{}", fmt::join(said, " "));
 }
 
-bool is_array(const DeckTable& table) {
-  return table.path.ends_with("[]");
-}
-
 /// Breaks a text into lines.
 std::string wrapped(const std::string& text) {
   std::string result;
@@ -62,8 +60,8 @@ std::string wrapped(const std::string& text) {
 std::string header(const DeckTable& table) {
   if (table.is_form) return capitalised(table.path);
   if (table.path.empty()) return "At the top of the deck";
-  return is_array(table) ? fmt::format("`[[{}]]`", table.path.substr(0, table.path.size() - 2))
-                         : fmt::format("`[{}]`", table.path);
+  return is_array_path(table.path) ? fmt::format("`[[{}]]`", without_brackets(table.path))
+                                   : fmt::format("`[{}]`", table.path);
 }
 
 /// Returns a setting as it stands in a deck, with its table if that is another one.
@@ -92,13 +90,6 @@ std::string when(const std::vector<KeyCondition>& conditions, const std::string&
   return paragraph(all);
 }
 
-/// Describes a range in words, without unit; the usual values stand behind the allowed ones.
-std::string allowed(const Range& range) {
-  const std::string must = range.describe(), usual = range.describe_usual();
-  if (usual.empty()) return must;
-  return fmt::format("{}{}usually {}", must, must.empty() ? "" : "; ", usual);
-}
-
 /// Returns a text that ends no cell of a table.
 std::string cell(const std::string& text) {
   std::string result;
@@ -115,10 +106,10 @@ std::string row(const DeckTable& table, const DeckKey& key) {
     words.push_back(code(word.word));
     if (!word.meaning.empty()) meaning.push_back(fmt::format("`{}`: {}", word.word, sentence(word.meaning)));
   }
-  const std::string fallback = !key.fallback.empty() ? code(key.fallback) : key.optional ? "–" : "needed";
+  const std::string fallback = key.is_needed() ? "needed" : key.fallback.empty() ? "–" : code(key.fallback);
   const std::string value = words.empty() ? key.value : fmt::format("one of {}", fmt::join(words, ", "));
   return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.key, cell(value), key.unit,
-                     allowed(key.range), fallback, cell(paragraph(meaning)));
+                     key.range.describe_all(), fallback, cell(paragraph(meaning)));
 }
 
 /// Returns the rows of keys that are read with one word of the key `decisive`.

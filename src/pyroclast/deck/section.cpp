@@ -679,8 +679,11 @@ std::string Section::json(std::string_view key, std::string_view value, const st
 
 std::vector<std::string> Section::keys() const {
   std::vector<std::string> all;
-  if (auto* survey = deck_->survey()) survey->openness(table_->path).may_lack_all = true;
-  if (!table_ || deck_->survey()) return all;
+  if (auto* survey = deck_->survey()) {
+    survey->described_table(table_->path).may_lack_all = true;
+    return all;
+  }
+  if (!table_) return all;
   for (const auto& [key, node] : table_->table) all.emplace_back(key.str());
   return all;
 }
@@ -711,15 +714,15 @@ bool Section::is_table(std::string_view key) const {
 }
 
 void Section::take_names_of_deck() const {
-  if (auto* survey = deck_->survey()) survey->openness(table_->path).names_of_deck = true;
+  if (auto* survey = deck_->survey()) survey->described_table(table_->path).has_names_of_deck = true;
 }
 
 void Section::take_any_keys() const {
-  if (auto* survey = deck_->survey()) survey->openness(table_->path).any_keys = true;
+  if (auto* survey = deck_->survey()) survey->described_table(table_->path).has_any_keys = true;
 }
 
 void Section::take_keys_of_code(std::string_view key) const {
-  if (auto* survey = deck_->survey()) survey->openness(table_->path).code_key = key;
+  if (auto* survey = deck_->survey()) survey->described_table(table_->path).code_key = key;
 }
 
 void Section::leave_open() const {

@@ -20,10 +20,6 @@ const toml::table& no_table() {
   return none;
 }
 
-std::string joined(const std::string& table, std::string_view key) {
-  return table.empty() ? std::string(key) : std::string(table).append(1, '.').append(key);
-}
-
 /// Returns the parts in which two readings of a key must agree to be the same, one behind the other.
 std::string content(const SurveyRun::Read& r) {
   std::string all;
@@ -118,15 +114,8 @@ class Surveyor {
       std::vector<DeckKey>& keys = key.form == ValueForm::table ? table.needed_tables : table.keys;
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(std::move(key));
     }
-    for (const auto& [path, openness] : openness_) {
-      DeckTable& table = *find_table(schema.tables, path);
-      table.has_names_of_deck = openness.names_of_deck;
-      table.has_any_keys = openness.any_keys;
-      table.may_lack_all = openness.may_lack_all;
-      table.code_key = openness.code_key;
-    }
     for (const auto& [table, key] : known_) {
-      const std::string path = joined(table, key);
+      const std::string path = joined_path(table, key);
       if (!is_read(table, key) && !is_table(path) && !is_table(path + "[]"))
         schema.never_read.push_back(path);
     }
@@ -135,7 +124,7 @@ class Surveyor {
       take_common_conditions(table);
       // Of a table that other answers let be left out, answers together may decide.
       std::erase_if(table.needed_tables, [&](const DeckKey& needed) {
-        return once_optional_.contains(joined(table.path, needed.key));
+        return once_optional_.contains(joined_path(table.path, needed.key));
       });
     }
     return schema;
@@ -176,7 +165,6 @@ class Surveyor {
     Told& told = told_[given];
     visited_.push_back(given);
     for (const DeckTable& t : run.tables()) merge(t);
-    for (const auto& [path, openness] : run.openness()) openness_[path] = openness;
     for (const auto& k : run.known())
       if (is_known_.insert(k).second) known_.push_back(k);
     bool is_new = false;
@@ -216,6 +204,10 @@ class Surveyor {
     }
     known->optional = known->optional && table.optional;
     if (known->meaning.empty()) known->meaning = table.meaning;
+    known->has_names_of_deck = known->has_names_of_deck || table.has_names_of_deck;
+    known->has_any_keys = known->has_any_keys || table.has_any_keys;
+    known->may_lack_all = known->may_lack_all || table.may_lack_all;
+    if (known->code_key.empty()) known->code_key = table.code_key;
   }
 
   /// Compares the findings with all runs: narrows a finding that a run contradicts, and adds a finding for a
@@ -329,7 +321,7 @@ class Surveyor {
         return;
       }
       // That a key's own table is there goes without saying.
-      const std::string path = joined(question.table, question.key);
+      const std::string path = joined_path(question.table, question.key);
       if (present && is_at_or_below(f.what.table, path)) return;
       condition.kind = present ? KeyCondition::Kind::present : KeyCondition::Kind::absent;
     }
@@ -380,7 +372,6 @@ class Surveyor {
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;
   std::set<std::pair<std::string, std::string>> is_known_;
-  std::map<std::string, SurveyRun::Openness> openness_;
   std::set<std::string> once_optional_;  ///< paths of tables that a run asked for as optional
 };
 
@@ -431,12 +422,12 @@ void SurveyRun::need_table(const std::string& table, std::string_view name) {
 }
 
 void SurveyRun::read(const std::string& table, DeckKey key) {
-  if (!forms_.empty() && forms_.contains(joined(table, key.key))) return;
+  if (!forms_.empty() && forms_.contains(joined_path(table, key.key))) return;
   read_.push_back({described(table), std::move(key), answered_.size()});
 }
 
 void SurveyRun::read_in_forms(const std::string& table, DeckKey key, const std::string& forms) {
-  const std::string path = joined(table, key.key);
+  const std::string path = joined_path(table, key.key);
   read(table, std::move(key));
   forms_.emplace(path, forms.empty() ? path : forms);
 }
@@ -456,6 +447,10 @@ TableReading& SurveyRun::table(const std::string& path, bool optional, std::stri
   return *reading;
 }
 
+DeckTable& SurveyRun::described_table(const std::string& path) {
+  return *find_table(tables_, described(path));
+}
+
 std::string SurveyRun::described(const std::string& path) const {
   const auto known = std::find_if(forms_.rbegin(), forms_.rend(),  // the one with the longest path
                                   [&](const auto& f) { return is_at_or_below(path, f.first); });
@@ -471,7 +466,7 @@ std::vector<std::string> DeckSchema::undocumented() const {
   for (const DeckTable& table : tables) {
     if (table.meaning.empty() && !table.path.empty()) paths.push_back(table.path);
     for (const DeckKey& key : table.keys) {
-      const std::string path = joined(table.path, key.key);
+      const std::string path = joined_path(table.path, key.key);
       if (key.meaning.empty()) paths.push_back(path);
       for (const DeckWord& word : key.words)
         if (word.meaning.empty()) paths.push_back(fmt::format("{} = {}", path, word.word));

@@ -48,6 +48,9 @@ struct DeckKey {
   std::string meaning;
   std::vector<KeyCondition> conditions;  ///< conditions, all of which must hold
 
+  /// Tells whether the key has to be there where its conditions hold.
+  bool is_needed() const { return !optional && fallback.empty(); }
+
   bool operator==(const DeckKey&) const = default;
 };
 

@@ -58,12 +58,8 @@ class SurveyRun {
   void read_in_forms(const std::string& table, DeckKey key, const std::string& forms);
   /// Notes a table that must be there, by its table and its name, which ends with "[]" for an array.
   void need_table(const std::string& table, std::string_view name);
-  /// Notes how a table takes keys and tables that no reader names.
-  struct Openness {
-    bool names_of_deck = false, any_keys = false, may_lack_all = false;
-    std::string code_key;
-  };
-  Openness& openness(const std::string& table) { return openness_[described(table)]; }
+  /// Returns the description of a table that was asked for.
+  DeckTable& described_table(const std::string& path);
   /// Returns the table at a path; array elements have the path of their array with "[]".
   TableReading& table(const std::string& path, bool optional, std::string_view meaning);
 
@@ -71,7 +67,6 @@ class SurveyRun {
   const std::vector<Read>& keys_read() const { return read_; }
   const std::vector<DeckTable>& tables() const { return tables_; }
   const std::vector<std::pair<std::string, std::string>>& known() const { return known_; }
-  const std::map<std::string, Openness>& openness() const { return openness_; }
 
  private:
   /// \param usual  answer where none was given
@@ -86,8 +81,7 @@ class SurveyRun {
   std::vector<Read> read_;
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;  ///< table and key of each known key
-  std::map<std::string, Openness> openness_;
-  std::map<std::string, std::string> forms_;  ///< name of the forms, by the path of the key
+  std::map<std::string, std::string> forms_;                ///< name of the forms, by the path of the key
   std::map<std::string, std::unique_ptr<TableReading>> readings_;
 };
 
