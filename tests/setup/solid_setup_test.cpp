@@ -157,6 +157,12 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
   EXPECT_EQ(message(cylinder()), "no Error was thrown");
 }
 
+TEST(SolidDeck, AnUnknownShapeIsTheOnlyError) {
+  const std::string complaint = message(with(cylinder(), "shape = \"cylinder\"", "shape = \"cone\""));
+  expect_in("specimen.shape = \"cone\": must be one of", complaint);
+  EXPECT_EQ(std::ranges::count(complaint, '\n'), 0) << complaint;
+}
+
 TEST(SolidDeck, FormulasKnowADepthButNoThicknessOfACylinder) {
   const std::string drive =
       "[[stages]]\nkind = \"drive\"\nduration = \"1 ms\"\n[[stages.drives]]\nset = \"front\"\n"

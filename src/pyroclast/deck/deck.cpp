@@ -105,6 +105,10 @@ std::vector<Diagnostic> Deck::warnings() const {
   return in_file_order(reading_->warnings());
 }
 
+void Deck::finish_early() const {
+  if (!reading_->reported().empty()) throw DeckError(reading_->reported());
+}
+
 void Deck::finish() const {
   reading_->root();  // so that a deck of which nothing was read is not taken for a good one
   std::vector<Diagnostic> diagnostics = reading_->diagnostics();

@@ -340,6 +340,9 @@ class Deck {
   /// added.
   std::string with(const std::vector<std::pair<std::string, std::string>>& values) const;
 
+  /// Ends the reading before its end where an error was recorded: of a value on which all others depend.
+  /// @throws DeckError with every error recorded.
+  void finish_early() const;
   /// Ends the reading; call it once everything is read.
   /// @throws DeckError with every error recorded, and every key that was not read.
   void finish() const;

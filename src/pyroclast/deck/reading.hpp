@@ -94,6 +94,7 @@ class DeckReading {
   /// Returns the place of a value as "file:line", or "--set".
   std::string where(const TableReading& table, std::string_view key, const toml::node& node) const;
 
+  const std::vector<Diagnostic>& reported() const { return diagnostics_; }
   /// Returns everything that was reported, and a report of each key that nobody read.
   std::vector<Diagnostic> diagnostics() const;
 

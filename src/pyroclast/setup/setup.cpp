@@ -335,6 +335,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   Setup setup;
   setup.title = root.text("title", "name of the run, for figures and summary");
   const DeckSpace space = read_space(root);
+  deck.finish_early();  // without a space, every place and every block would be a second error
   const std::vector<RecordParameters> records = read_records(root, space);
   auto read = read_stages(root, kinds, records, space, folder);
   setup.stages = std::move(read.stages);
