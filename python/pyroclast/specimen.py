@@ -313,6 +313,20 @@ class SolidSpecimen:
         """
         return self._core.sides
 
+    def to_meshio(self) -> meshio.Mesh:
+        """As polyhedra, with the cell data `phase`; meshio writes them as VTU. Blocks stand in the order of their
+        number of vertices.
+        """
+        faces, own, phase = self.faces, self.cells, self.phase
+        by_size: dict[int, list[int]] = {}
+        for block, cell in enumerate(own):
+            by_size.setdefault(len(np.unique(np.concatenate([faces[i] for i in cell]))), []).append(block)
+        cells = [(f"polyhedron{size}", [[faces[i] for i in own[block]] for block in some])
+                 for size, some in sorted(by_size.items())]
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            self.vertices, cells, cell_data={"phase": [phase[some] for _, some in sorted(by_size.items())]})
+        return mesh
+
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
         return f"<SolidSpecimen of {len(self._core.phase)} blocks: {shares}>"
