@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -224,6 +226,38 @@ TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
     const double exact = kStrength * kDepth, with_pair = number("largest_load_with_control_N");
     EXPECT_GT(with_pair, 0.998 * exact) << rate;
     EXPECT_LT(with_pair / (1.0 + number("control_error_of_largest_load")), 1.002 * exact) << rate;
+  }
+}
+
+// Promise: a pair of any stiffness either holds its opening, the stiffer the closer, or is refused before the
+// run with the largest that would.
+TEST(Control, ThePairMayBeAsStiffAsTheErrorSays) {
+  const auto stiffened = [](double stiffness) {
+    return with(bar("0.04 mm/s"), "\"16 GN/m\"", fmt::format("\"{:.17g} N/m\"", stiffness));
+  };
+  const auto run_of = [](pyroclast::Setup& setup, auto& simulation) {
+    simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
+    return pyroclast::Run(*simulation, std::move(setup.stages));
+  };
+  std::unique_ptr<Simulation> simulation;
+  double most = 0.0;
+  pyroclast::Setup too_stiff = pyroclast::read(stiffened(1e16));
+  try {
+    run_of(too_stiff, simulation);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    const auto number = text.find("at most ");
+    ASSERT_NE(number, std::string::npos) << text;
+    EXPECT_NE(text.find("stages[0].control"), std::string::npos) << text;
+    most = 1e9 * std::stod(text.substr(number + 8));
+  }
+  ASSERT_GT(most, 16e9);
+  for (const double share : {0.05, 0.2, 0.5, 0.95}) {
+    pyroclast::Setup setup = pyroclast::read(stiffened(share * most));
+    pyroclast::Run run = run_of(setup, simulation);
+    EXPECT_EQ(run.run(), Outcome::completed) << share;
+    const auto load = run.history().values("load_N", run.courses()[0].rows);
+    EXPECT_NEAR(*std::ranges::max_element(load), kStrength * kDepth, 0.05 * kStrength * kDepth) << share;
   }
 }
 

@@ -55,6 +55,7 @@ class MotionTotals {
   virtual Vec<3> total_applied_force(const GridpointSet& set) const = 0;
   virtual Vec<3> total_weight(const GridpointSet& set) const = 0;
   virtual double total_moving_mass(const GridpointSet& set) const = 0;
+  virtual double mobility(const GridpointSet& set, std::span<const double> weights) const = 0;
   virtual Vec<3> net_force() const = 0;
   virtual EnergyLedger energy() const = 0;
   virtual double unbalanced_ratio() const = 0;
@@ -203,6 +204,9 @@ class MotionOf final : public Motion {
     }
     double total_moving_mass(const GridpointSet& set) const override {
       return totals_.total_moving_mass(set);
+    }
+    double mobility(const GridpointSet& set, std::span<const double> weights) const override {
+      return totals_.mobility(set, weights);
     }
     Vec<3> net_force() const override { return resized<3>(totals_.net_force()); }
     EnergyLedger energy() const override { return totals_.energy(); }

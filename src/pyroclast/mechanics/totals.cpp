@@ -49,6 +49,12 @@ double Totals<Dim>::total_moving_mass(const GridpointSet& set) const {
 }
 
 template <int Dim>
+double Totals<Dim>::mobility(const GridpointSet& set, std::span<const double> weights) const {
+  return chunked_sum(set.chunks,
+                     [&](int i) { return weights[i] * weights[i] / body_.mass[set.gridpoints[i]]; });
+}
+
+template <int Dim>
 Dissipation Totals<Dim>::dissipated() const {
   struct Sums {
     std::array<double, Body<Dim>::kMostDissipations> energy{};

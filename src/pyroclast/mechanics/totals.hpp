@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "pyroclast/mechanics/body.hpp"
 #include "pyroclast/mechanics/energy_ledger.hpp"
 #include "pyroclast/mechanics/reader.hpp"
@@ -17,6 +19,9 @@ class Totals {
   Vec<Dim> total_applied_force(const GridpointSet& set) const;  ///< N
   Vec<Dim> total_weight(const GridpointSet& set) const;         ///< N, weight of the real mass
   double total_moving_mass(const GridpointSet& set) const;      ///< kg
+  /// Returns the acceleration of a set's mean by a force of 1 N on the set, 1/kg.
+  /// \param weights  share of each gridpoint in the mean and in the force
+  double mobility(const GridpointSet& set, std::span<const double> weights) const;
   /// Sums the forces on all free components: weight, loads and reactions together, N. The sum is zero when
   /// the body as a whole is in equilibrium.
   Vec<Dim> net_force() const;

@@ -144,6 +144,12 @@ T Record::Mean::of(Value value) const {
   return chunked_sum<T>(set.chunks, [&](int i, T& sum) { sum += weights[i] * value(set.gridpoints[i]); });
 }
 
+double Record::mobility(const Simulation& simulation) const {
+  const MotionTotals& totals = simulation.motion().totals();
+  return totals.mobility(mean_.set, mean_.weights) +
+         totals.mobility(mean_of_other_.set, mean_of_other_.weights);
+}
+
 /// Returns the force of the record's set. A set that loads, holds or drives the body has its own load, and of
 /// each reaction an even share among the sets that hold the component. Any other set has all forces from
 /// outside on its gridpoints.

@@ -67,9 +67,8 @@ class Record {
   void set_zero(const Simulation& simulation) {
     if (counts_from_zero()) zero_ += read(simulation);
   }
-  /// Returns the first set; of an opening, `other` returns the second, and a control pulls both apart.
-  const GridpointSet& set() const { return mean_.set; }
-  const GridpointSet& other() const { return mean_of_other_.set; }
+  /// Returns the acceleration of an opening by a pair of forces of 1 N that pulls its sets apart, 1/kg.
+  double mobility(const Simulation& simulation) const;
 
   void visit_state(StateVisitor& visitor) { visitor.visit(parameters_.name, zero_); }
 

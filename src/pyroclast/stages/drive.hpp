@@ -104,7 +104,8 @@ class Drive : public Stage {
   void steer(const Simulation& simulation, double time, ChangedLoads& loads);
   double unit_force() const;
   double total_load(double factor) const;
-  std::int64_t steps_per_adjustment() const;
+  std::int64_t steps_per_adjustment(const Simulation& simulation) const;
+  static double largest_stiffness(const Simulation& simulation, const Control& control);
   std::int64_t duration_in_steps(const Simulation& simulation) const;
   std::int64_t steps_to_come(const Simulation& simulation) const;
   void act(Simulation& simulation);
