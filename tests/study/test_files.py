@@ -71,6 +71,14 @@ class WrongFiles(StudyTest):
         text = of_deck('kind = "calibrate"', F_T) + "[targets.E]\nvalue = 20\nsd = 1\n"
         self.refused(text, "[targets.E]", "f_c")
 
+    def test_secant_without_a_target_for_each_parameter(self) -> None:
+        of_f_c = 'kind = "secant"', F_T
+        target = "[targets.f_c]\nvalue = 30\nsd = 1\n"
+        self.refused(of_deck(*of_f_c) + target, "[targets.f_c]", "targets.f_c.by: missing")
+        self.refused(of_deck(*of_f_c) + target + 'by = "other"\n', "[targets.f_c]", "for each parameter one target", "other", "f_t")
+        self.refused(of_deck(*of_f_c) + target.replace("30", "0") + 'by = "f_t"\n', "value = 0", "greater than 0")
+        self.refused(of_deck('kind = "calibrate"', F_T) + target + 'by = "f_t"\n', 'by = "f_t"', "no effect")
+
     def test_criterion_that_is_none(self) -> None:
         self.refused(of_deck('kind = "morris"\nuntil = "good enough"', F_T), "until", "widest interval < 0.05")
 

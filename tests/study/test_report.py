@@ -45,6 +45,8 @@ METHODS = {
     "sobol": ('kind = "sobol"\nsamples = 16', XY + DULL, ""),
     "chaos": ('kind = "chaos"\nsamples = 30', XY, ""),
     "calibrate": ('kind = "calibrate"\ngenerations = 4', XY + DULL, TARGETS),
+    "secant": ('kind = "secant"', XY.replace('"0 MPa"', '"0.1 MPa"'),
+               TARGETS.replace("sd = 0.5", 'sd = 0.5\nby = "x"').replace("sd = 0.2", 'sd = 0.2\nby = "y"')),
     "posterior": ('kind = "posterior"\nsamples = 30\nsteps = 400\nchecks = 2', XY, TARGETS),
 }
 FIGURES = {
@@ -55,6 +57,7 @@ FIGURES = {
     "sobol": ["E-curves", "E-indices", "f_c-curves", "f_c-indices"],
     "chaos": ["E-curves", "E-indices", "f_c-curves", "f_c-indices"],
     "calibrate": ["directions", "misfit", "parameters", "search", "targets"],
+    "secant": ["rounds", "targets"],
     "posterior": ["check", "posterior", "spread"],
 }
 
@@ -157,6 +160,9 @@ class Pages(ReportTest):
 
     def test_calibrate(self) -> None:
         self.check("calibrate")
+
+    def test_secant(self) -> None:
+        self.check("secant")
 
     def test_posterior(self) -> None:
         self.check("posterior", 2)

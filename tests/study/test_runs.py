@@ -667,6 +667,35 @@ strength = "strength"
         self.assertGreater(inside, 0.97)
 
 
+class Secant(StudyTest):
+    """By its command, on a deck: E by the stiffness of the mortar."""
+
+    def run_for(self, modulus: float) -> subprocess.CompletedProcess:
+        self.text = self.file(of_deck(
+            'kind = "secant"', '[parameters.stiffness]\nkey = "materials.mortar.E"\nvary = "scale"\n'
+            'log_uniform = [0.7, 1.43]\n', outputs='E = "E_GPa"')
+            + f'[targets.E]\nvalue = {modulus}\nsd = 0.1\nby = "stiffness"\n')
+        return subprocess.run([PROGRAM, "study", "run", str(self.text)], capture_output=True, text=True, check=False)
+
+    def test_its_best_deck_gives_what_it_says(self) -> None:
+        done = self.run_for(19.0)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = re.search(r"E (\S+), wanted 19: ([+-]\d\.\d) %", done.stdout)
+        self.assertLess(abs(float(said[1]) - 19.0), 0.1)
+        best = Study(self.text, program=PROGRAM).setup.folder / "best.toml"
+        self.assertIn(str(best), done.stdout)
+        subprocess.run([PROGRAM, "run", str(best), "--out", self.folder / "best", "--no-figures", "--quiet"], check=True)
+        stages = json.loads((self.folder / "best/summary.json").read_text())["stages"]
+        self.assertAlmostEqual(stages[-1]["results"]["E_GPa"], float(said[1]), delta=5e-3)
+
+    def test_a_target_out_of_reach_is_an_error_with_the_nearest(self) -> None:
+        done = self.run_for(60.0)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the targets are not met", done.stderr)
+        self.assertIn("stiffness = 1.43: at the end of the range", done.stderr)
+        self.assertIn("best.toml", done.stdout)
+
+
 class KeptApart(StudyTest):
     METHOD = 'kind = "chaos"\nsamples = 20\nheld = 30'
 

@@ -8,6 +8,7 @@ import math
 import os
 import shutil
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from .. import _core
 from ..errors import CodeNotAllowed, Error
 from ..interrupts import hear_ctrl_c
 from .command_line import parser
-from .driver import NOT_RUN, duration
+from .driver import NOT_RUN, WITH_A_BEST, duration
 from .executors.commands import Commands
 from .file import reference, schema
 from .study import Study
@@ -79,8 +80,31 @@ def _run(options: argparse.Namespace) -> int:
         reasons = {str(row["reason"]) for row in study.rows()}
         print(f"error: no run gave a value: {'; '.join(sorted(reasons)[:3])}", file=sys.stderr)
         return 1
+    is_met = _say_best(study, say) if study.setup.method.kind in WITH_A_BEST else True
     say(f"to draw it      pyroclast study report {options.study}")
-    return 0
+    return 0 if is_met else 1
+
+
+def _say_best(study: Study, say: Callable[[str], None]) -> bool:
+    """Says which point comes nearest to the targets, and writes its deck; whether a secant met them."""
+    setup = study.setup
+    try:
+        found = study.findings
+    except Error as error:
+        print(f"error: {error}", file=sys.stderr)
+        return False
+    values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
+    say("best point      " + ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
+    for target, y in zip(setup.targets, found["best"]["y"]):
+        say(f"                {target.output} {y:.4g}, wanted {target.value:g}: {100.0 * (y / target.value - 1.0):+.1f} %")
+    if deck := study.write_best():
+        say(f"its deck        {deck}")
+    if found.get("is_met", True):
+        return True
+    at_end = [f"{p.name} = {v:g}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
+    print(f"error: the targets are not met: {found['finished']}" +
+          (f"; {' and '.join(at_end)}: at the end of the range" if at_end else ""), file=sys.stderr)
+    return False
 
 
 def _checked(study: Study) -> None:

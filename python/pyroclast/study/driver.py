@@ -32,6 +32,8 @@ from .store import DONE, FAILED, NO_VALUE, RunResult, Store
 from .work import Job, made
 
 NOT_RUN = "not run"
+WITH_A_BEST = ("calibrate", "secant")
+"""Methods that look for the point nearest to the targets."""
 
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
@@ -192,6 +194,16 @@ class Driver:
         writer.writeheader()
         writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
         return text.getvalue()
+
+    def write_best(self) -> Path | None:
+        """best.toml in the folder of the study: the deck with the parameters that come nearest to the targets. None
+        where the method has no such point, or runs have no deck. Raises Error where there is no such point yet.
+        """
+        if self.study.method.kind not in WITH_A_BEST or self.study.runner.kind != "pyroclast":
+            return None
+        file = self.store.folder / "best.toml"
+        write_text(file, self.points.text(self.values(self.findings()["best"]["u"])))
+        return file
 
     def findings(self) -> dict[str, Any]:
         """What the method makes of the results; numbers, texts, lists and dicts only."""

@@ -24,11 +24,12 @@ _DISTRIBUTIONS = ("uniform", "log_uniform", "normal", "integer", "choice")
 
 @dataclass(frozen=True)
 class Target:
-    """What an output should be, and how well the experiment knows it."""
+    """What an output should be, and how well the experiment knows it. by: parameter that a secant meets it by."""
 
     output: str
     value: float
     sd: float
+    by: str = ""
 
 
 @dataclass(frozen=True)
@@ -185,6 +186,8 @@ def _runner(own: _core.Table, folder: Path) -> Runner:
     return Runner(kind, deck=deck, changes=tuple(changes))
 
 
+_TO_TARGETS = ("calibrate", "secant", "posterior")
+
 _METHODS = [
     ("ensemble", "one point with many seeds: how much the specimen scatters"),
     ("grid", "all combinations of the levels of parameters"),
@@ -193,6 +196,7 @@ _METHODS = [
     ("sobol", "shares of the variance, directly from runs"),
     ("chaos", "shares of the variance by a polynomial chaos surrogate with its own error"),
     ("calibrate", "parameters that meet targets, by CMA-ES"),
+    ("secant", "a parameter for each target, changed until it is met: some four rounds"),
     ("posterior", "what targets tell of parameters, by MCMC on a surrogate"),
 ]
 
@@ -204,7 +208,7 @@ def _method(table: _core.Table) -> Method:
     def integer(key: str, meaning: str, least: int, fallback: int) -> None:
         settings[key] = table.integer(key, meaning, least, None, fallback)
 
-    if kind != "ensemble" and kind != "grid":
+    if kind not in ("ensemble", "grid", "secant"):
         integer("seed", "Of the method's own draws; not that of specimens.", 0, 1)
     if kind == "lhs":
         integer("samples", "Points.", 2, 100)
@@ -227,6 +231,8 @@ def _method(table: _core.Table) -> Method:
         settings["least_gain"] = table.number("least_gain", "... or when the best misfit, in squares of standard "
                                               "deviations, gains no more than this ...", 0.0, None, 0.1)
         integer("patience", "... in as many generations.", 1, 8)
+    elif kind == "secant":
+        integer("rounds", "At most; each is one point with all seeds.", 1, 10)
     if kind == "posterior":
         integer("steps", "Of each walker of the ensemble sampler, at most; it ends when it has converged.", 100, 50000)
         integer("checks", "Draws of the posterior that are run to check the surrogate.", 0, 5)
@@ -395,7 +401,7 @@ def _choice(value: Any) -> tuple[Distribution, str]:
 
 
 def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Target]:
-    if method not in ("calibrate", "posterior"):
+    if method not in _TO_TARGETS:
         root.know(["targets"])
         return []
     targets = []
@@ -405,9 +411,17 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
         sd = table.number("sd", "Standard deviation by which the experiment is uncertain.", 0.0)
         if name not in [o.name for o in outputs] and name != "OUTPUT":
             tables.error(name, f"no output is called so; there are {', '.join(o.name for o in outputs)}")
+        by = ""
+        if method == "secant":
+            by = table.text("by", "Parameter that is changed until the output is within `sd` of the value, each of one "
+                            "target.")
+            if table.ok() and value <= 0.0:
+                table.error("value", "must be greater than 0, as its logarithm is approached")
+        else:
+            table.know(["by"])
         if table.ok() and sd <= 0.0:
             table.error("sd", "must be greater than 0")
-        targets.append(Target(name, value, sd))
+        targets.append(Target(name, value, sd, by))
     return targets
 
 
@@ -420,7 +434,7 @@ def _correlations(root: _core.Table, names: list[str], method: str) -> list[tupl
             table.error("between", f"two of {', '.join(names)} are needed")
         elif table.ok():
             found.append((between[0], between[1], rank))
-        if method in ("morris", "sobol", "calibrate"):
+        if method in ("morris", "sobol", "calibrate", "secant"):
             table.error("", f"{method} takes parameters to be independent; with correlation there are lhs, chaos and "
                         "posterior")
     return found
@@ -453,9 +467,18 @@ def _check_together(root: _core.Table, own: _core.Table, method: Method, paramet
     for output in outputs:
         if output.name in names:
             root.error("outputs", f"{output.name!r} is a parameter too")
-    if method.kind in ("calibrate", "posterior"):
+    if method.kind in _TO_TARGETS:
         if not targets:
             root.error("targets", f'kind = "{method.kind}" needs one target at least')
         for p in parameters:
             if p.distribution.kind == "choice":
                 root.error("parameters", f'{p.name} is a choice, which kind = "{method.kind}" cannot vary')
+    if method.kind == "secant":
+        for name in [p.name for p in parameters if p.distribution.kind not in ("uniform", "log_uniform")]:
+            root.error(f"parameters.{name}", 'must be uniform or log_uniform with kind = "secant"')
+        for p in parameters:
+            if p.distribution.kind == "uniform" and p.distribution.numbers[0] <= 0.0:
+                root.error(f"parameters.{p.name}", 'must be greater than 0 with kind = "secant"')
+        if sorted(t.by for t in targets) != sorted(names):
+            root.error("targets", f'kind = "secant" needs for each parameter one target that it is to meet; "by" names '
+                       f"{', '.join(t.by for t in targets)}, the parameters are {', '.join(names)}")

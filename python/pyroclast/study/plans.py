@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import Error
 from .file import StudySetup
-from .methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds, sobol, surrogate)
+from .methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, secant, seeds, sobol, surrogate)
 
 Array = NDArray[np.float64]
 _OF_HELD = 1  # beside the method's seed: the points that a surrogate is tried on are another sequence
@@ -63,7 +63,8 @@ class Plan(Protocol):
 def plan_of(study: StudySetup) -> Plan:
     """The plan of the study's method."""
     kinds: dict[str, type[_Plan]] = {"ensemble": _Ensemble, "grid": _Grid, "lhs": _LatinHypercube, "morris": _Morris,
-                                     "sobol": _Sobol, "chaos": _Chaos, "calibrate": _Calibrate, "posterior": _Posterior}
+                                     "sobol": _Sobol, "chaos": _Chaos, "calibrate": _Calibrate, "secant": _Secant,
+                                     "posterior": _Posterior}
     return kinds[study.method.kind](study)
 
 
@@ -345,6 +346,52 @@ class _Calibrate(_ToTargets):
         except Error as error:
             result["uncertainty"] = {"none_because": str(error)}
         return _plain(result)
+
+
+class _Secant(_ToTargets):
+    """Parameters and targets are in the order of the parameters."""
+
+    draws_as_it_goes = True
+
+    def propose(self, ask: Ask) -> Proposal:
+        found = self._approach(ask)
+        return Proposal(found.points, self.study.seeds, bool(found.finished))
+
+    @property
+    def _order(self) -> list[int]:
+        """The target of each parameter."""
+        by = [t.by for t in self.study.targets]
+        return [by.index(p.name) for p in self.study.parameters]
+
+    def _approach(self, ask: Ask) -> secant.Approach:
+        targets, order = self._targets, self._order
+        ordered = calibration.Targets(tuple(targets.names[i] for i in order), targets.values[order], targets.sd[order])
+        slopes = []
+        for p in self.study.parameters:  # an output that goes with its parameter, in the middle of the range
+            low, high = p.distribution.numbers
+            slopes.append(math.log(high / low) if p.distribution.kind == "log_uniform"
+                          else 2.0 * (high - low) / (high + low))
+
+        def answer(u: Array) -> calibration.Answer:
+            answers = ask(u[None, :], self.study.seeds)
+            if not answers.is_feasible[0]:
+                return calibration.Infeasible()
+            return self._of_targets(answers)[0][:, order] if answers.has_all() else None
+
+        return secant.approach(ordered, np.full(self.k, 0.5), np.array(slopes), int(self.settings["rounds"]), answer)
+
+    def findings(self, ask: Ask) -> dict[str, Any]:
+        found = self._approach(ask)
+        if found.best is None:
+            raise Error("no point has all targets yet" if not found.finished else found.finished)
+        best = found.points[found.best]
+        y = self._of_targets(ask(best[None, :], self.study.seeds))[0]
+        n = len(y)
+        error = y.std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else np.full(y.shape[1], math.nan)
+        back = np.argsort(self._order)  # from the order of the parameters to that of the targets
+        return _plain({"finished": found.finished, "is_met": found.is_met, "targets": self._targets,
+                       "rounds": {"u": found.points, "y": found.means[:, back]},
+                       "best": {"u": best, "y": y.mean(axis=0), "round": found.best, "error": error}})
 
 
 class _Posterior(_OnSurrogate, _ToTargets):

@@ -77,6 +77,10 @@ class Points:
         """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
         return _core.resolve(self._deck_text(values))
 
+    def text(self, values: Sequence[Value]) -> str:
+        """The deck of a point."""
+        return _core.written(self._deck_text(values))
+
     def _deck_text(self, values: Sequence[Value]) -> _core.DeckText:
         changes = [f"{path}={value}" for path, value in self.changes(values)]
         deck = self._study.runner.deck

@@ -148,6 +148,13 @@ class Study:
             return None
         return self._driver().points.seconds_of_run(self.setup.seeds[0])
 
+    def write_best(self) -> Path | None:
+        """best.toml in the folder of the study: the deck with the parameters that come nearest to the targets, of
+        `calibrate` and `secant`; None of other methods, and where runs have no deck. File names in it are taken from
+        the place of the study's deck. Raises Error where no point has all targets yet.
+        """
+        return self._driver().write_best()
+
     def write_table(self) -> Path:
         """table.csv in the folder of the study."""
         return self._driver().write_table()

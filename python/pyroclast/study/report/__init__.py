@@ -9,7 +9,7 @@ from pathlib import Path
 from ...style import save
 from ...writing import make_folder, write_text
 from ..study import Study
-from . import calibration, ensemble, indices, posterior, responses
+from . import calibration, ensemble, indices, posterior, responses, secant
 from .page import page_of
 from .section import Section
 from .seen import Seen, seen
@@ -20,7 +20,7 @@ _FORMATS = ("pdf", "png")
 _SECTIONS: dict[str, Callable[[Seen], list[Section]]] = {
     "ensemble": ensemble.sections, "grid": responses.sections, "lhs": responses.sections, "morris": indices.sections,
     "sobol": indices.sections, "chaos": indices.sections, "calibrate": calibration.sections,
-    "posterior": posterior.sections}
+    "secant": secant.sections, "posterior": posterior.sections}
 
 
 def write_report(study: Study, out: Path | None = None) -> Path:

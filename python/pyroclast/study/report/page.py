@@ -61,6 +61,7 @@ def _head(seen: Seen) -> Markup:
     meaning = {"ensemble": "One point with many seeds", "grid": "Grid of parameters", "lhs": "Latin hypercube",
                "morris": "Elementary effects (Morris)", "sobol": "Shares of the variance (Sobol')",
                "chaos": "Shares of the variance by polynomial chaos", "calibrate": "Calibration (CMA-ES)",
+               "secant": "Calibration (secant)",
                "posterior": "Posterior by MCMC on surrogates"}[seen.method]
     seeds = len({row["seed"] for row in seen.rows})
     return together(element("h1", seen.setup.title),
