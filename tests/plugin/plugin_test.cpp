@@ -314,6 +314,16 @@ TEST_F(LawInAHeader, WhatDoesNotCompileIsRefusedWithTheLineOfTheLaw) {
                                              "does not compile as the contact law small::Law"}));
 }
 
+TEST_F(LawInAHeader, ACompilerThatIsTooOldIsNamed) {
+  write("mine.hpp", small());
+  write("old",
+        "#!/bin/sh\necho 'c++ (Debian 10.2.1-6) 10.2.1 20210110'\n"
+        "echo 'Copyright (C) 2020 Free Software Foundation, Inc.'\n");
+  fs::permissions(folder_ / "old", fs::perms::owner_all);
+  sources_.compiler.program = folder_ / "old";
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"(Debian 10.2.1-6) 10.2.1", "too old", "GCC 11 or later"}));
+}
+
 TEST_F(LawInAHeader, CompilingCanBeForbidden) {
   write("mine.hpp", small());
   sources_.may_compile = false;

@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -143,6 +144,17 @@ std::vector<std::string> flags_of(InstructionSet set) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
+/// Throws Error where the version of a compiler is that of a GCC before 11, which lacks parts of C++20.
+void require_new(const std::string& version) {
+  constexpr int kOldest = 11;
+  const auto number = version.find(") ");  // c++ (Debian 12.2.0-14) 12.2.0
+  if (version.find("Free Software Foundation") == std::string::npos || number == std::string::npos) return;
+  const int major = std::atoi(version.c_str() + number + 2);
+  if (major > 0 && major < kOldest)
+    throw Error(fmt::format("{}: too old for contact laws, which need GCC {} or later",
+                            version.substr(0, version.find('\n')), kOldest));
+}
+
 std::string source_of(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
   const auto set = static_cast<std::size_t>(compiler.instructions);
   const auto dimensions = compiler.dimension == 2 ? "plane" : "space";
@@ -240,6 +252,7 @@ fs::path compile_law(const fs::path& header, const std::string& type, const LawC
   if (!run_program({compiler.program, "--version"}, messages, compiler.poll))
     throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
   const std::string version = read_file(messages);
+  require_new(version);
   const fs::path preprocessed = in_cache("law.ii");
   // without -P the text would hold the places of its headers, and a run that goes on has copies of its own
   attempt(with({"-E", "-P", source.string(), "-o", preprocessed.string()}));
