@@ -88,6 +88,20 @@ int plot_properties(const PropertiesOptions& options);
 /// Writes a new deck.
 /// \param from  a case, see kCases
 int make_deck(const std::string& name, const std::string& from);
+
+struct ConcreteOptions {
+  // quantities as typed; empty where they are not stated
+  std::string strength, modulus, rock, fraction, stones, d_max, hot;
+  std::string d_min = "4.75 mm", width = "150 mm", height = "300 mm";
+  std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %"
+  std::int64_t blocks = 0;           ///< 0: by the largest aggregate
+  std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
+  std::filesystem::path out;
+  std::string command;  ///< command as typed, for the deck
+};
+/// Writes the deck of a concrete with first guesses, a study that calibrates it, and a deck of a hot test.
+int write_concrete(const ConcreteOptions& options);
+
 /// Returns the places of all keys that a deck may have, such as "stages[].kind"; NAME stands for a name of
 /// one's own.
 /// \param of_tables  true to leave out forms of values, which are in several tables

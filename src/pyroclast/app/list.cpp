@@ -10,6 +10,7 @@
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/material/rocks.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/fields.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
@@ -51,6 +52,21 @@ void print_fields() {
     fmt::print("{:<24} {:<8} {:<12} {}\n", field.name, field.unit.si, name_of(field.item), field.meaning);
 }
 
+void print_rocks() {
+  for (const Rock& each : rocks()) {
+    fmt::print("{}\n", each.name);
+    const auto print = [](const char* what, const SourcedNumber& of, const char* unit) {
+      fmt::print("  {:<24} {:>6g} {:<7} {}\n", what, of.value, unit, of.source);
+    };
+    print("Young's modulus", each.modulus, "GPa");
+    print("Poisson's ratio", each.poisson, "");
+    print("density", each.density, "kg/m3");
+    print("expansion near 20 degC", each.expansion, "1e-6/K");
+    print("over that of its concrete", each.expansion_ratio, "");
+    fmt::print("  {:<24} {} ({})\n", "strain of its concrete", each.concrete_curve, each.curve_source);
+  }
+}
+
 struct List {
   std::string_view name;
   void (*print)();
@@ -60,7 +76,7 @@ constexpr List kLists[] = {
     {"cases", print_cases},    {"curves", [] { print_curves(builtin_curves()); }},
     {"fields", print_fields},  {"fires", [] { print_curves(fire_curves()); }},
     {"keys", print_key_paths}, {"laws", print_law_names},
-    {"units", print_units},
+    {"rocks", print_rocks},    {"units", print_units},
 };
 
 }  // namespace

@@ -234,6 +234,47 @@ int command_line(int argc, char** argv) {
   starter->add_option("--from", from, "Case that it is a copy of, see `pyroclast list cases`")
       ->capture_default_str();
 
+  app::ConcreteOptions concrete_options;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = i == 0 ? "pyroclast" : argv[i];
+    const bool is_plain = word.find_first_of(" '\"%$\\\n") == std::string::npos;
+    concrete_options.command +=
+        fmt::format("{}{}", i == 0 ? "" : " ", is_plain ? word : fmt::format("'{}'", word));
+  }
+  auto* concrete = cli.add_subcommand(
+      "concrete",
+      "Write the deck of a concrete by its strength and stiffness, and a study that calibrates it");
+  concrete->add_option("--f_c", concrete_options.strength, "Its mean strength: --f_c '45 MPa'")->required();
+  concrete->add_option("--E", concrete_options.modulus, "Its Young's modulus: --E '32 GPa'")->required();
+  concrete->add_option("--aggregate", concrete_options.rock, "Its rock, see `pyroclast list rocks`")
+      ->required();
+  concrete->add_option("--fraction", concrete_options.fraction,
+                       "Area of coarse aggregate over that of a section");
+  concrete->add_option(
+      "--stones", concrete_options.stones,
+      "Instead: mass of the aggregate in the mix, '1100 kg/m3'; with --passing, of all of it");
+  concrete->add_option("--d_max", concrete_options.d_max, "Largest aggregate, graded by Fuller's curve");
+  concrete
+      ->add_option(
+          "--passing", concrete_options.passing,
+          "Instead: what passes each sieve, by mass: --passing '4 mm=38 %' '8 mm=55 %' '20 mm=100 %'")
+      ->take_all();
+  concrete
+      ->add_option("--d_min", concrete_options.d_min,
+                   "Smallest coarse aggregate; the mortar has what is smaller")
+      ->capture_default_str();
+  concrete->add_option("--width", concrete_options.width, "Of the specimen")->capture_default_str();
+  concrete->add_option("--height", concrete_options.height, "Of the specimen")->capture_default_str();
+  concrete
+      ->add_option("--blocks", concrete_options.blocks,
+                   "Number of blocks (default: 5 in the largest aggregate)")
+      ->check(whole_number(100, 1000000));
+  concrete->add_option("--hot", concrete_options.hot,
+                       "Write a test at this temperature too: --hot '400 degC'");
+  concrete->add_option("--from", concrete_options.from,
+                       "With --hot: take mortar and contacts from this deck, such as the calibrated one");
+  concrete->add_option("-o,--out", concrete_options.out, "The deck will be this file")->required();
+
   app::KeysOptions keys_options;
   auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
   keys->add_flag("--json", keys_options.json, "As JSON");
@@ -247,7 +288,7 @@ int command_line(int argc, char** argv) {
 
   std::string list_of;
   auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
-  list->add_option("WHAT", list_of, "cases, curves, fields, fires, keys, laws or units");
+  list->add_option("WHAT", list_of, "cases, curves, fields, fires, keys, laws, rocks or units");
 
   auto* doctor =
       cli.add_subcommand("doctor", "Say what is there and what is missing; a report of a bug needs it");
@@ -274,6 +315,7 @@ int command_line(int argc, char** argv) {
     if (*figures) return app::figures(figures->remaining());
     if (*watch) app::watch(watch->remaining());
     if (*study) app::study(study->remaining());
+    if (*concrete) return app::write_concrete(concrete_options);
     if (*keys) return app::print_keys(keys_options);
     if (*laws) return app::print_laws();
     if (*list) return app::print_list(list_of);

@@ -793,6 +793,15 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
         "mean size of a block, the root of its area, in a solid of its volume, instead of `count`");
   } else {
     b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks"));
+    const auto calibrated =
+        s.integer("calibrated_count", Range::between(0.0, 1e8), 0,
+                  "number of blocks for which the strengths were calibrated, 0 where it is not "
+                  "known: `check` warns where `count` is another");
+    if (calibrated > 0 && calibrated != b.count)
+      s.warn("count",
+             fmt::format("the strengths of this deck were calibrated for {} blocks; f_c depends on the "
+                         "number of blocks (validation/block_size.md): calibrate again",
+                         calibrated));
   }
   b.relaxation =
       static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,

@@ -6,6 +6,7 @@
 
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/settle.hpp"
+#include "pyroclast/stages/strength_of_run.hpp"
 
 namespace pyroclast {
 
@@ -16,17 +17,54 @@ constexpr std::int64_t kLoadStepsPerLook = 200;
 constexpr double kFailureStrain = 0.01;
 /// Steps between two adjustments of the force of a ramp; a whole part of a look.
 constexpr std::int64_t kStepsPerForce = 20;
+/// Digits of a hash by which summaries name a deck.
+constexpr std::size_t kShortHash = 8;
+
+/// Takes the strength of a run. Returns whose it is, for the summary.
+/// \param s  table that names the run
+std::string read_run(const Section& s, const std::filesystem::path& run, Load::Keys& keys) {
+  try {
+    const StrengthOfRun found = strength_of_run(run);
+    s.names_file("run", found.summary);
+    s.needs_file(found.manifest);
+    keys.strength = found.value;
+    if (!found.is_good) s.warn("run", "is not to be believed, as its summary says: see its warnings");
+    return fmt::format("of the run of deck {}", found.deck_sha256.substr(0, kShortHash));
+  } catch (const Error& error) {
+    s.error("run", error.what());
+    return {};
+  }
+}
+
+/// Reads the strength that level is a share of: a stress, or that of another run.
+void read_strength(const Section& s, const std::filesystem::path& folder, Load::Keys& keys) {
+  const Range range = Range::positive().usually(1e6, 300e6);
+  s.describe("f_c",
+             {.value = "stress, or { run = folder }",
+              .form = ValueForm::quantity,
+              .unit = unit::stress,
+              .range = range,
+              .name = "strength of a run"},
+             "strength that level is a share of");
+  std::string of = "as the deck states it";
+  if (s.is_table("f_c")) {
+    const Section own = s.section("f_c", "the strength of another run");
+    const std::string run = own.text(
+        "run", "Folder of the run, beside the deck; its f_c is taken: best that of the same specimen.");
+    if (own.ok()) of = read_run(own, folder / run, keys);
+  } else {
+    keys.strength = s.quantity("f_c", unit::stress, range, "");
+  }
+  keys.strength_of =
+      s.text("f_c_of", of, "whose strength this is, for the summary: best that of the same specimen, 20 °C");
+}
 
 /// Reads the load: a stress, or a level, which is a fraction of a strength that is given with it.
-std::unique_ptr<Stage> read_load(const Section& s, const StageTables&) {
+std::unique_ptr<Stage> read_load(const Section& s, const StageTables& tables) {
   Load::Keys keys;
   if (s.has("level")) {
     keys.level = s.number("level", Range::non_negative(), "stress over f_c");
-    keys.strength = s.quantity("f_c", unit::stress, Range::positive().usually(1e6, 300e6),
-                               "strength that level is a share of");
-    keys.strength_of =
-        s.text("f_c_of", "as the deck states it",
-               "whose strength this is, for the summary: best that of the same specimen, 20 °C");
+    read_strength(s, tables.folder, keys);
     keys.stress = *keys.level * keys.strength;
     if (*keys.level >= 1.0)
       s.warn("level", "is the strength or more, so the specimen will probably be crushed");

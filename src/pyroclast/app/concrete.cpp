@@ -1,0 +1,459 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/concrete_template.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/material/rocks.hpp"
+#include "pyroclast/results/text_file.hpp"
+#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/units/units.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+// First guesses, from cases/starter.toml with E of the mortar from 20 to 50 GPa and strengths from 0.7 to 2
+// times the paper's, seeds 1 and 2: E within 3 %, f_c within some 10 %.
+constexpr double kModulusOverEstimate = 1.06;  // E of a run over the estimate of uniform stress
+constexpr double kStrength = 32e6;             // f_c with the paper's numbers, Pa
+constexpr double kPaperMortar = 29.4e9;        // E of the mortar there, Pa
+constexpr double kOfStiffness = 0.22;          // exponent with which f_c goes with E of the mortar
+constexpr double kOfFactor = 0.79;             // ... and with the factor on strengths and fracture energies
+
+/// Blocks in the diameter of the largest aggregate, where that gives a usual number of blocks.
+constexpr double kBlocksInAggregate = 5.0;
+constexpr int kFewestBlocks = 1000, kMostBlocks = 5000;
+/// Block size, m, and time step, s, that go together in cases/.
+constexpr double kSizeOfCases = 3e-3, kStepOfCases = 10e-6;
+
+/// Numbers of mortar and contacts that are guessed or taken from a deck, SI.
+struct Found {
+  double mortar_modulus = kPaperMortar;
+  double f_t = 2.5e6, f_cm = 31e6, c_o = 3.8e6, c_res = 0.038e6, G_f1 = 60.0, G_f2 = 240.0;
+  int blocks = 0;
+  double factor = 1.0;  ///< over the paper's strengths
+};
+
+/// Concrete as it is asked for, SI.
+struct Asked {
+  double strength = 0.0, modulus = 0.0, fraction = 0.0, width = 0.0, height = 0.0, d_min = 0.0, d_max = 0.0;
+  const Rock* rock = nullptr;
+  std::vector<std::pair<double, double>> passing;  ///< size, m, and share that passes
+  std::optional<double> hot;                       ///< °C
+};
+
+double quantity_of(const char* option, const std::string& text, const Unit& unit, double least, double most) {
+  double value = 0.0;
+  try {
+    value = parse_quantity(text, unit);
+  } catch (const QuantityError& error) {
+    throw Error(fmt::format("{}: {}", option, error.what()));
+  }
+  if (!(value >= least && value <= most))
+    throw Error(
+        fmt::format("{} \"{}\": must be between {:g} and {:g} {}", option, text, least, most, unit.si));
+  return value;
+}
+
+/// Reads points of a grading such as "8 mm=45 %", ascending.
+std::vector<std::pair<double, double>> passing_of(const std::vector<std::string>& texts) {
+  std::vector<std::pair<double, double>> points;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos)
+      throw Error(fmt::format("--passing \"{}\": must be a size and a share, such as '8 mm=45 %'", text));
+    points.emplace_back(quantity_of("--passing", text.substr(0, equals), unit::length, 1e-5, 0.2),
+                        quantity_of("--passing", text.substr(equals + 1), unit::dimensionless, 0.0, 1.0));
+  }
+  std::ranges::sort(points);
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (points[i].second < points[i - 1].second || points[i].first == points[i - 1].first)
+      throw Error("--passing: a larger sieve must let through as much or more, and each size stands once");
+  if (!points.empty() && points.back().second < 1.0)
+    throw Error("--passing: all must pass the largest sieve: its share must be 100 %");
+  return points;
+}
+
+/// Returns the share that passes a size, straight between points.
+double share_at(const std::vector<std::pair<double, double>>& passing, double size) {
+  const auto above = std::ranges::lower_bound(passing, size, {}, &std::pair<double, double>::first);
+  if (above == passing.end()) return 1.0;
+  if (above == passing.begin()) return above->first == size ? above->second : 0.0;
+  const auto& [low, at_low] = *std::prev(above);
+  return at_low + (above->second - at_low) * (size - low) / (above->first - low);
+}
+
+Asked asked_of(const ConcreteOptions& o) {
+  Asked a;
+  a.rock = &rock(o.rock);
+  a.strength = quantity_of("--f_c", o.strength, unit::stress, 5e6, 150e6);
+  a.modulus = quantity_of("--E", o.modulus, unit::stress, 5e9, 80e9);
+  a.width = quantity_of("--width", o.width, unit::length, 0.02, 2.0);
+  a.height = quantity_of("--height", o.height, unit::length, 0.02, 2.0);
+  a.d_min = quantity_of("--d_min", o.d_min, unit::length, 5e-4, 0.1);
+  a.passing = passing_of(o.passing);
+  if (a.passing.empty() && o.d_max.empty())
+    throw Error(
+        "--d_max is needed: the largest aggregate, such as --d_max '20 mm', or --passing for each sieve");
+  if (!a.passing.empty() && !o.d_max.empty())
+    throw Error("--d_max has no meaning beside --passing: all passes the largest sieve");
+  a.d_max =
+      a.passing.empty() ? quantity_of("--d_max", o.d_max, unit::length, 1e-3, 0.15) : a.passing.back().first;
+  if (a.d_max <= a.d_min)
+    throw Error(fmt::format("the largest aggregate, {:g} mm, must be larger than --d_min, {:g} mm",
+                            1e3 * a.d_max, 1e3 * a.d_min));
+  if (o.fraction.empty() == o.stones.empty())
+    throw Error(
+        "either --fraction (area of coarse aggregate over that of a section) or --stones (its mass in the "
+        "mix, such as '1100 kg/m3') is needed");
+  if (o.stones.empty()) {
+    a.fraction = quantity_of("--fraction", o.fraction, unit::dimensionless, 0.0, 0.6);
+  } else {
+    const double mass = quantity_of("--stones", o.stones, unit::density, 0.0, 3000.0);
+    const double coarse = a.passing.empty() ? 1.0 : 1.0 - share_at(a.passing, a.d_min);
+    a.fraction = mass / a.rock->density.value * coarse;
+    if (a.fraction > 0.6)
+      throw Error(
+          fmt::format("--stones \"{}\": {:.2f} of the volume would be coarse aggregate; at most 0.6 can be "
+                      "placed. Finer aggregate belongs to the mortar: state --passing, or a larger --d_min",
+                      o.stones, a.fraction));
+  }
+  if (!o.hot.empty()) a.hot = quantity_of("--hot", o.hot, unit::temperature, 20.0, 800.0);
+  return a;
+}
+
+/// Returns the number of blocks, two digits of it.
+int block_count(const Asked& asked, std::int64_t stated) {
+  if (stated > 0) return static_cast<int>(stated);
+  const double size = asked.d_max / kBlocksInAggregate;
+  const double count = std::clamp(asked.width * asked.height / (size * size),
+                                  static_cast<double>(kFewestBlocks), static_cast<double>(kMostBlocks));
+  const double digit = std::pow(10.0, std::floor(std::log10(count)) - 1.0);
+  return static_cast<int>(std::round(std::round(count / digit) * digit));
+}
+
+std::string in(double value, double scale, const char* unit) {
+  return fmt::format("{:.10g} {}", value * scale, unit);
+}
+
+std::string grading(const Asked& a) {
+  if (a.passing.empty()) {
+    std::vector<std::string> sieves;
+    for (const double size : {8.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0})
+      if (size > 1.05e3 * a.d_min && size < 0.95e3 * a.d_max)
+        sieves.push_back(fmt::format("\"{:g} mm\"", size));
+    return fmt::format(
+        "d_min = \"{}\"            # what is smaller belongs to the mortar\nd_max = \"{}\"\n"
+        "fuller_exponent = 0.45       # guess: Fuller's curve P(d) = (d / d_max)^fuller_exponent, or state "
+        "`passing`\n"
+        "sieves = [{}]  # bounds of the size intervals between d_min and d_max",
+        in(a.d_min, 1e3, "mm"), in(a.d_max, 1e3, "mm"), fmt::join(sieves, ", "));
+  }
+  std::vector<std::string> points;
+  for (const auto& [size, share] : a.passing)
+    points.push_back(fmt::format("[\"{}\", \"{}\"]", in(size, 1e3, "mm"), in(share, 100.0, "%")));
+  return fmt::format(
+      "d_min = \"{}\"            # what is smaller belongs to the mortar\npassing = [{}]\n"
+      "passing_by = \"volume\"        # of the stones, or their mass",
+      in(a.d_min, 1e3, "mm"), fmt::join(points, ", "));
+}
+
+/// Returns a text whose comments behind values stand in one column.
+std::string aligned(const std::string& text) {
+  std::istringstream lines(text);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    const auto comment = line.find("  #");
+    if (comment == std::string::npos) {
+      result += line + "\n";
+      continue;
+    }
+    const auto value = line.substr(0, line.find_last_not_of(' ', comment) + 1);
+    result += fmt::format("{:<28} {}\n", value, line.substr(line.find('#', comment)));
+  }
+  return result;
+}
+
+/// Returns the template with its places filled.
+std::string filled(const std::map<std::string, std::string>& values) {
+  std::string text;
+  std::string_view left = kConcreteTemplate;
+  for (auto at = left.find('@'); at != std::string_view::npos; at = left.find('@')) {
+    const auto end = left.find('@', at + 1);
+    text += left.substr(0, at);
+    text += values.at(std::string(left.substr(at + 1, end - at - 1)));
+    left.remove_prefix(end + 1);
+  }
+  return aligned(text.append(left));
+}
+
+/// Adds the parts of a deck that is heated; empty ones for a cold deck.
+void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool is_hot) {
+  for (const char* key :
+       {"HOT_CONCRETE", "HOT_CREEP", "HOT_STRENGTH", "HOT_HEAT", "HOT_STAGES", "HOT_COUPLING", "HOT_OUTPUT"})
+    v[key] = "";
+  if (!is_hot) return;
+  const auto over_temperature = [](std::string& value, std::string_view curve, const char* share) {
+    value =
+        fmt::format("{{ value = {}, times = \"{}\"{} }}", value.substr(0, value.find("  #")), curve, share);
+  };
+  over_temperature(v["ROCK_E"], "glasgow_modulus", ", share = 0.3");
+  v["ROCK_E"] += fmt::format("  # {}; share of the loss: a choice", a.rock->modulus.source);
+  over_temperature(v["MORTAR_E"], "glasgow_modulus", ", share = 0.87");
+  v["MORTAR_E"] += "  # the share was fitted to a siliceous concrete (validation/hot_concrete.md)";
+  for (const char* key : {"G_F1", "G_F2"}) over_temperature(v[key], "glasgow_fracture_energy", "");
+  v["HOT_CONCRETE"] = fmt::format(
+      "[concrete]                   # strains of the phases follow from those of the concrete as a whole\n"
+      "thermal_strain = {{ builtin = \"{}\" }}  # {}\n"
+      "inclusion_ratio = {:g}         # expansion of rock over that of its concrete; {}\n\n",
+      a.rock->concrete_curve, a.rock->curve_source, a.rock->expansion_ratio.value,
+      a.rock->expansion_ratio.source);
+  v["HOT_CREEP"] = fmt::format(
+      "[materials.mortar.creep]     # load-induced thermal strain: what heating under stress shortens for "
+      "good\n"
+      "k2 = 2.5                     # fitted to a siliceous concrete (validation/hot_concrete.md)\n"
+      "f_c = \"{}\"\nnu = 0.3\ntension = 1                  # as much under tension as under compression\n\n",
+      in(a.strength, 1e-6, "MPa"));
+  v["HOT_STRENGTH"] =
+      "# Of f_t, f_cm and c; fitted to a siliceous concrete (validation/hot_concrete.md).\n"
+      "temperature_ratio = { expression = \"max(1 - 0.01784*((T-20)/100)^2, 0.01)\", range = [\"20 degC\", "
+      "\"800 degC\"] }\n";
+  v["HOT_HEAT"] = "[heat]\nfield = \"uniform\"            # the whole specimen has one temperature\n\n";
+  v["HOT_STAGES"] = fmt::format(
+      "[[stages]]                   # ... is loaded, or not, ...\nkind = \"load\"\nlevel = 0\n"
+      "f_c = \"{}\"               # or {{ run = \"runs/...\" }}: that of the same specimen, crushed cold\n"
+      "ramp_time = \"200 ms\"\nunbalanced_ratio = 1e-4\nmost_steps = 100000\n\n"
+      "[[stages]]                   # ... is heated evenly, with its load held ...\nkind = \"heat\"\nto = "
+      "\"{:g} degC\"\n"
+      "rate = \"5 K/min\"\nplaten = \"force\"\n\n",
+      in(a.strength, 1e-6, "MPa"), *a.hot);
+  v["HOT_COUPLING"] =
+      "[coupling]                   # temperatures are handed over in steps\nexchange_increment = \"4 K\"\n"
+      "unbalanced_ratio = 1e-3      # each ends when the body rests: unbalanced over applied forces,\n"
+      "platen_difference = \"0.2 MPa\"  # and no more between the stresses on the platens,\n"
+      "least_cycles = 1000          # after so many steps;\nmost_cycles = 9000           # or, flagged, for "
+      "so many\n"
+      "predictor = true             # each first moves the body to where the last one foretells it to rest\n"
+      "failure_strain = 0.002       # failed when the platen sinks by this at one temperature\n\n";
+  v["HOT_OUTPUT"] = "frame_temperature = \"50 K\"   # frames while heating: at its multiples\n";
+}
+
+std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions& o, bool is_hot) {
+  const double size = std::sqrt(a.width * a.height / found.blocks);
+  const bool is_guess = o.from.empty();
+  const auto sourced = [](std::string value, const SourcedNumber& of) {
+    return fmt::format("{}  # {}", value, of.source);
+  };
+  const auto quoted = [](std::string text) { return fmt::format("\"{}\"", text); };
+  const std::string calibrate = fmt::format("{}-calibrate.toml", o.out.stem().string());
+  const auto schema = editor_schema_file();
+  std::map<std::string, std::string> v{
+      {"SCHEMA", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string())},
+      {"ADVICE",
+       is_guess
+           ? fmt::format(
+                 "# Calibrate it before you use it: `pyroclast study run {}` finds the two first guesses, "
+                 "E of the\n# mortar and one factor on all strengths, and writes the deck with them.\n",
+                 calibrate)
+           : fmt::format("# E of the mortar and the numbers of the contacts come from {}.\n",
+                         o.from.string())},
+      {"COMMAND", o.command},
+      {"TITLE", fmt::format("{} of {} concrete, {:g} MPa", is_hot ? "Hot strength" : "Compression",
+                            a.rock->name, a.strength * 1e-6)},
+      {"ROCK", std::string(a.rock->name)},
+      {"F_C", in(a.strength, 1e-6, "MPa")},
+      {"YOUNG", in(a.modulus, 1e-9, "GPa")},
+      {"WIDTH", in(a.width, 1e3, "mm")},
+      {"HEIGHT", in(a.height, 1e3, "mm")},
+      {"FRACTION", fmt::format("{:.3g}", a.fraction)},
+      {"FRACTION_SOURCE",
+       o.stones.empty()
+           ? "              # area of coarse aggregate over area of the specimen"
+           : fmt::format("  # {} of stones, {:g} kg/m3 their density; a section has the share of the "
+                         "volume (Delesse)",
+                         o.stones, a.rock->density.value)},
+      {"GRADING", grading(a)},
+      {"BLOCKS", std::to_string(found.blocks)},
+      {"SIZE", fmt::format("{:.2g}", 1e3 * size)},
+      {"ROCK_E", sourced(quoted(in(a.rock->modulus.value, 1.0, "GPa")), a.rock->modulus)},
+      {"ROCK_NU", sourced(fmt::format("{:g}", a.rock->poisson.value), a.rock->poisson)},
+      {"ROCK_DENSITY", sourced(quoted(in(a.rock->density.value, 1.0, "kg/m3")), a.rock->density)},
+      {"MORTAR_E", quoted(in(found.mortar_modulus, 1e-9, "GPa")) + (is_guess ? "  # first guess" : "")},
+      {"FACTOR", fmt::format("{:.3g}", found.factor)},
+      {"FACTOR_SOURCE", is_guess ? ": first guess" : ""},
+      {"F_T", in(found.f_t, 1e-6, "MPa")},
+      {"F_CM", in(found.f_cm, 1e-6, "MPa")},
+      {"C_O", in(found.c_o, 1e-6, "MPa")},
+      {"C_RES", in(found.c_res, 1e-6, "MPa")},
+      {"G_F1", quoted(in(found.G_f1, 1.0, "N/m"))},
+      {"G_F2", quoted(in(found.G_f2, 1.0, "N/m"))},
+      {"TIME_STEP", in(std::round(1e8 * kStepOfCases * size / kSizeOfCases) / 100.0, 1.0, "us")},
+  };
+  add_hot_parts(v, a, is_hot);
+  return filled(v);
+}
+
+/// Estimates E of a deck, Pa, as `check` does.
+double estimate(const std::string& text, const std::string& name) {
+  const Deck deck = Deck::parse(text, name);
+  const Setup setup = read_setup(deck, {});
+  const auto simulation = make_simulation(setup);
+  return estimate_modulus(simulation->model(), simulation->materials());
+}
+
+/// Guesses mortar and contacts. The estimate adds compliances up, so that its reciprocal is straight over
+/// that of the mortar's modulus.
+Found guess(const Asked& a, const ConcreteOptions& o) {
+  Found found;
+  found.blocks = block_count(a, o.blocks);
+  const auto compliance = [&](double modulus) {
+    Found tried = found;
+    tried.mortar_modulus = modulus;
+    return 1.0 / (kModulusOverEstimate * estimate(deck_text(a, tried, o, false), o.out.string()));
+  };
+  const double soft = 0.5 * kPaperMortar, stiff = 2.0 * kPaperMortar;
+  const double at_soft = compliance(soft), at_stiff = compliance(stiff);
+  const double slope = (at_soft - at_stiff) / (1.0 / soft - 1.0 / stiff);
+  const double of_rock = at_stiff - slope / stiff;
+  const double least = 3e9, most = 200e9;  // a mortar's modulus here
+  const double wanted = 1.0 / a.modulus - of_rock;
+  if (!(wanted > slope / most && wanted < slope / least))
+    throw Error(fmt::format(
+        "--E \"{}\": with {:.2g} of {} of {:g} GPa a mortar of {:g} to {:g} GPa gives {:.3g} to {:.3g} "
+        "GPa; choose E between these, another fraction, or another rock",
+        o.modulus, a.fraction, a.rock->name, a.rock->modulus.value, 1e-9 * least, 1e-9 * most,
+        1e-9 / (of_rock + slope / least), 1e-9 / (of_rock + slope / most)));
+  const auto three_digits = [](double x) {
+    const double digit = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
+    return std::round(x / digit) * digit;
+  };
+  found.mortar_modulus = three_digits(slope / wanted);
+  const double of_stiffness = std::pow(found.mortar_modulus / kPaperMortar, kOfStiffness);
+  found.factor = three_digits(std::pow(a.strength / (kStrength * of_stiffness), 1.0 / kOfFactor));
+  for (double* number : {&found.f_t, &found.f_cm, &found.c_o, &found.c_res, &found.G_f1, &found.G_f2})
+    *number *= found.factor;
+  return found;
+}
+
+/// Reads mortar and contacts from a deck.
+Found read(const std::filesystem::path& file) {
+  const Deck deck = Deck::open(file);
+  const Setup setup = read_setup(deck, file.parent_path());  // refuses what is no deck
+  const Section root = deck.root();
+  const auto value_of = [](const Section& s, const char* key, const Unit& unit) {
+    return s.is_table(key) ? s.section(key).quantity("value", unit, Range::any(), "")
+                           : s.quantity(key, unit, Range::any(), "");
+  };
+  const Section contacts = root.section("contacts").section("mortar_mortar");
+  Found found;
+  const double paper = found.f_t;
+  found.mortar_modulus = value_of(root.section("materials").section("mortar"), "E", unit::stress);
+  found.f_t = value_of(contacts, "f_t", unit::stress);
+  found.f_cm = value_of(contacts, "f_cm", unit::stress);
+  found.c_o = value_of(contacts, "c_o", unit::stress);
+  found.c_res = value_of(contacts, "c_res", unit::stress);
+  found.G_f1 = value_of(contacts, "G_f1", unit::fracture_energy);
+  found.G_f2 = value_of(contacts, "G_f2", unit::fracture_energy);
+  found.blocks = setup.specimen.blocks.count;
+  found.factor = found.f_t / paper;
+  return found;
+}
+
+std::string study_text(const Asked& a, const ConcreteOptions& o) {
+  return fmt::format(
+      R"(# Finds E of the mortar and one factor on all strengths and fracture energies, so that E and f_c of the concrete are
+# met: pyroclast study run {0}-calibrate.toml
+# One compression test fixes no more than these two: f_cm, beta, c_o and G_f2 stay in the paper's ratio.
+title = "Calibration of {1} concrete: {2:g} GPa, {3:g} MPa"
+
+[study]
+deck = "{4}"
+seeds = 3                    # means over three specimens are met
+folder = "runs/{0}-calibrate"
+
+[method]
+kind = "secant"
+
+[parameters.stiffness]
+key = "materials.mortar.E"
+vary = "scale"
+log_uniform = [0.4, 2.5]
+
+[parameters.strength]
+keys = {{ "contacts.mortar_mortar.f_t" = 1, "contacts.mortar_mortar.f_cm" = 1, "contacts.mortar_mortar.c_o" = 1, "contacts.mortar_mortar.c_res" = 1, "contacts.mortar_mortar.G_f1" = 1, "contacts.mortar_mortar.G_f2" = 1 }}
+vary = "scale"
+log_uniform = [0.33, 3]
+
+[outputs]
+E = "E_GPa"
+f_c = "f_c_MPa"
+
+[targets.E]
+value = {2:g}
+sd = {5:.3g}                    # 0.5 %
+by = "stiffness"
+
+[targets.f_c]
+value = {3:g}
+sd = {6:.3g}                    # 1 %
+by = "strength"
+)",
+      o.out.stem().string(), a.rock->name, a.modulus * 1e-9, a.strength * 1e-6, o.out.filename().string(),
+      0.005 * a.modulus * 1e-9, 0.01 * a.strength * 1e-6);
+}
+
+}  // namespace
+
+int write_concrete(const ConcreteOptions& options) {
+  ConcreteOptions o = options;
+  if (o.out.extension() != ".toml") o.out += ".toml";
+  const Asked asked = asked_of(o);
+  const auto beside = [&](const char* ending) {
+    return o.out.parent_path() / fmt::format("{}-{}.toml", o.out.stem().string(), ending);
+  };
+  const bool is_guess = o.from.empty();
+  if (!is_guess && !asked.hot)
+    throw Error("--from takes mortar and contacts for a hot test: state --hot, such as --hot '400 degC'");
+  if (!is_guess && o.blocks > 0)
+    throw Error("--blocks has no meaning beside --from, whose number of blocks is kept");
+  const Found found = is_guess ? guess(asked, o) : read(o.from);
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  if (is_guess) {
+    files.emplace_back(o.out, deck_text(asked, found, o, false));
+    files.emplace_back(beside("calibrate"), study_text(asked, o));
+  }
+  if (asked.hot) files.emplace_back(is_guess ? beside("hot") : o.out, deck_text(asked, found, o, true));
+  for (const auto& [file, text] : files)
+    if (std::filesystem::exists(file))
+      throw Error(
+          fmt::format("{}: exists already, so nothing is written; choose another name", file.string()));
+  for (const auto& [file, text] : files) {
+    write_text_file(file, text);
+    fmt::print("{} is written\n", file.string());
+  }
+  if (is_guess)
+    fmt::print(
+        "first guesses   E of the mortar {:g} GPa, strengths {:g} times the paper's; {} blocks\nNext:\n"
+        "  pyroclast study run {}\n",
+        1e-9 * found.mortar_modulus, found.factor, found.blocks, beside("calibrate").string());
+  else
+    fmt::print("Next:\n  pyroclast run {}\n", o.out.string());
+  return 0;
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,47 @@
+#include "pyroclast/stages/strength_of_run.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+nlohmann::json json_in(const std::filesystem::path& file) {
+  const auto read = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!read.is_object()) throw Error(fmt::format("{}: is no file of a run", file.string()));
+  return read;
+}
+
+}  // namespace
+
+StrengthOfRun strength_of_run(const std::filesystem::path& place) {
+  StrengthOfRun found;
+  found.summary = is_directory(place) ? place / "summary.json" : place;
+  std::string name = found.summary.filename().string();
+  const auto at = name.find("summary");
+  if (at == std::string::npos) throw Error(fmt::format("{}: is no folder of a run", place.string()));
+  found.manifest = found.summary.parent_path() / name.replace(at, std::string("summary").size(), "manifest");
+  const auto summary = json_in(found.summary);
+  found.deck_sha256 = json_in(found.manifest).value("deck_sha256", "");
+  found.is_good = summary.value("is_good", false);
+  std::string why = "no stage of it measures one";
+  for (const auto& stage : summary.value("stages", nlohmann::json::array())) {
+    if (!stage.is_object() || !stage.contains("results")) continue;
+    const auto& results = stage["results"];
+    if (const auto f_c = results.find("f_c_MPa"); f_c != results.end() && f_c->is_number()) {
+      found.value = f_c->get<double>() * 1e6;
+    } else if (const auto reason = results.find("f_c_none_because");
+               reason != results.end() && reason->is_string()) {
+      why = reason->get<std::string>();
+    }
+  }
+  if (!(found.value > 0.0))
+    throw Error(fmt::format("{}: the run has no f_c: {}", found.summary.string(), why));
+  return found;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace pyroclast {
+
+/// Strength that another run measured.
+struct StrengthOfRun {
+  double value = 0.0;       ///< f_c of the last stage that has one, Pa
+  std::string deck_sha256;  ///< hash of that run's deck
+  bool is_good = true;      ///< false where that run's summary says that it is not to be believed
+  std::filesystem::path summary, manifest;  ///< files of that run that were read
+};
+
+/// Reads f_c of a run from its summary, with the manifest beside it.
+/// \param place  folder of a run, or its summary
+/// \throws Error naming the file where there is none, it is no summary, or the run has no f_c, with the
+/// reason
+StrengthOfRun strength_of_run(const std::filesystem::path& place);
+
+}  // namespace pyroclast

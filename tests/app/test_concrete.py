@@ -1,0 +1,178 @@
+"""A concrete of one's own: its deck by `pyroclast concrete`, and a strength that is taken from a run."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+PROGRAM = os.environ["PYROCLAST"]
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+LIMESTONE = ("--f_c", "45 MPa", "--E", "32 GPa", "--aggregate", "limestone")
+FULLER = ("--fraction", "0.40", "--d_max", "20 mm")
+
+
+class Concrete(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
+        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                              check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def deck(self, name: str = "mine.toml") -> dict:
+        return tomllib.loads((self.folder / name).read_text())
+
+    def concrete(self, *words, code: int = 0) -> subprocess.CompletedProcess:
+        return self.pyroclast("concrete", *words, "-o", "mine.toml", code=code)
+
+    def test_the_first_guess_of_the_stiffness_is_that_of_check(self):
+        self.concrete(*LIMESTONE, *FULLER)
+        seen = self.pyroclast("check", "mine.toml").stdout
+        estimate = float(seen.split("E about ")[1].split()[0])
+        self.assertAlmostEqual(1.06 * estimate, 32.0, delta=0.1)
+        self.assertNotIn("warning", seen)
+        deck = self.deck()
+        contacts = deck["contacts"]["mortar_mortar"]
+        self.assertNotIn("K_n", contacts)
+        factor = float(contacts["f_t"].split()[0]) / 2.5
+        for key, paper in (("f_cm", 31.0), ("c_o", 3.8), ("c_res", 0.038), ("G_f1", 60.0), ("G_f2", 240.0)):
+            self.assertAlmostEqual(float(contacts[key].split()[0]) / paper, factor, places=9)
+        text = (self.folder / "mine.toml").read_text()
+        self.assertIn("pyroclast concrete --f_c '45 MPa' --E '32 GPa' --aggregate limestone", text)
+        for line in text.splitlines():
+            self.assertLessEqual(len(line), 150, line)
+
+    def test_every_rock_makes_a_deck_for_cold_and_hot_tests(self):
+        rocks = [line for line in self.pyroclast("list", "rocks").stdout.splitlines() if not line.startswith(" ")]
+        self.assertGreaterEqual(len(rocks), 6)
+        for rock in rocks:
+            with self.subTest(rock):
+                self.pyroclast("concrete", "--f_c", "40 MPa", "--E", "30 GPa", "--aggregate", rock, "--fraction", "0.35",
+                               "--d_max", "25 mm", "--hot", "300 degC", "-o", f"{rock}.toml")
+                for name in (rock, f"{rock}-hot"):
+                    self.pyroclast("check", f"{name}.toml", "--set", "blocks.count=200")
+                hot = self.deck(f"{rock}-hot.toml")
+                self.assertEqual([s["kind"] for s in hot["stages"]], ["settle", "load", "heat", "compress"])
+                self.assertEqual(hot["stages"][2]["to"], "300 degC")
+        self.pyroclast("study", "check", "limestone-calibrate.toml")
+
+    def test_a_mix_and_a_sieve_curve_make_fraction_and_grading(self):
+        self.concrete(*LIMESTONE, "--stones", "1800 kg/m3", "--passing", "4 mm=38 %", "8 mm=55 %", "20 mm=100 %",
+                      "--d_min", "4 mm")
+        deck = self.deck()["aggregates"]
+        self.assertAlmostEqual(deck["fraction"], 1800.0 / 2700.0 * (1.0 - 0.38), delta=5e-4)
+        self.assertEqual(deck["passing"], [["4 mm", "38 %"], ["8 mm", "55 %"], ["20 mm", "100 %"]])
+        self.assertEqual(deck["passing_by"], "volume")
+        self.pyroclast("check", "mine.toml", "--set", "blocks.count=300")
+
+    def test_a_hot_test_takes_mortar_and_contacts_from_the_calibrated_deck(self):
+        self.concrete(*LIMESTONE, *FULLER, "--blocks", "1500")
+        text = (self.folder / "mine.toml").read_text()
+        was = self.deck()["materials"]["mortar"]["E"]
+        (self.folder / "best.toml").write_text(text.replace(f'E = "{was}"', 'E = "51.25 GPa"'))
+        self.pyroclast("concrete", *LIMESTONE, *FULLER, "--hot", "400 degC", "--from", "best.toml", "-o", "hot.toml")
+        hot = self.deck("hot.toml")
+        self.assertEqual(hot["materials"]["mortar"]["E"]["value"], "51.25 GPa")
+        self.assertEqual(hot["blocks"]["count"], 1500)
+        self.assertEqual(hot["contacts"]["mortar_mortar"]["f_t"], self.deck()["contacts"]["mortar_mortar"]["f_t"])
+        self.pyroclast("check", "hot.toml")
+
+    def test_another_number_of_blocks_than_was_calibrated_is_told(self):
+        self.concrete(*LIMESTONE, *FULLER)
+        seen = self.pyroclast("check", "mine.toml", "--set", "blocks.count=1000").stdout
+        self.assertIn("blocks.count = 1000: the strengths of this deck were calibrated for 2800 blocks", seen)
+
+    def test_what_cannot_be_is_refused_and_nothing_is_written(self):
+        for words, told in (
+                ((*LIMESTONE[:3], "320 GPa", *LIMESTONE[4:], *FULLER), '--E "320 GPa": must be between'),
+                ((*LIMESTONE[:3], "70 GPa", *LIMESTONE[4:], *FULLER), "limestone of 60 GPa a mortar of 3 to 200 GPa gives"),
+                (("--f_c", "45 m", *LIMESTONE[2:], *FULLER), "--f_c"),
+                ((*LIMESTONE[:5], "limstone", *FULLER), 'did you mean "limestone"?'),
+                ((*LIMESTONE, "--d_max", "20 mm"), "--stones"),
+                ((*LIMESTONE, "--fraction", "0.4"), "--d_max is needed"),
+                ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm:45 %"), "'8 mm=45 %'"),
+                ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45 %", "16 mm=90 %"), "100 %"),
+                ((*LIMESTONE, "--stones", "1900 kg/m3", "--d_max", "20 mm"), "at most 0.6 can be placed"),
+                ((*LIMESTONE, *FULLER, "--from", "x.toml"), "--hot")):
+            with self.subTest(told):
+                self.assertIn(told, self.concrete(*words, code=1).stderr)
+                self.assertEqual(list(self.folder.iterdir()), [])
+        self.concrete(*LIMESTONE, *FULLER)
+        before = (self.folder / "mine.toml").read_bytes()
+        (self.folder / "mine-calibrate.toml").unlink()
+        self.assertIn("exists already, so nothing is written", self.concrete(*LIMESTONE, *FULLER, code=1).stderr)
+        self.assertEqual((self.folder / "mine.toml").read_bytes(), before)
+        self.assertFalse((self.folder / "mine-calibrate.toml").exists())
+
+
+class StrengthOfARun(unittest.TestCase):
+    """A load as a share of the strength that another run measured."""
+
+    SMALL = ("--set", "blocks.count=60", "--no-figures", "--quiet")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.run_deck(CASES / "starter.toml", *cls.SMALL, "--set", "stages[1].velocity=4 mm/s", "--out", "cold")
+        cls.summary = json.loads((cls.folder / "cold/summary.json").read_text())
+        hot = (CASES / "hot_strength.toml").read_text().replace('f_c = "32.8 MPa"', 'f_c = { run = "cold" }')
+        assert "{ run =" in hot
+        (cls.folder / "hot.toml").write_text(hot)
+
+    @classmethod
+    def run_deck(cls, *words, code: int = 0) -> subprocess.CompletedProcess:
+        done = subprocess.run([PROGRAM, "run", *words], cwd=cls.folder, capture_output=True, text=True, timeout=300,
+                              check=False)
+        assert done.returncode == code, done.stdout + done.stderr
+        return done
+
+    def changed(self, *changes) -> list[str]:
+        return [word for change in ("stages[1].level=0.2", "stages[2].to=60 degC", "stages[3].to=40 degC",
+                                    "coupling.exchange_increment=20 K", "stages[4].velocity=4 mm/s",
+                                    "stages[4].stop_strain=5e-4", *changes) for word in ("--set", change)]
+
+    def test_it_is_the_load_and_the_summary_and_the_manifest_say_whose(self):
+        self.run_deck("hot.toml", *self.SMALL, *self.changed(), "--out", "hot")
+        f_c = self.summary["stages"][-1]["results"]["f_c_MPa"]
+        summary = json.loads((self.folder / "hot/summary.json").read_text())
+        self.assertAlmostEqual(summary["stages"][1]["results"]["f_c_of_level_MPa"], f_c, places=9)
+        manifest = json.loads((self.folder / "cold/manifest.json").read_text())
+        self.assertEqual(summary["stages"][1]["results"]["f_c_of_level_is"],
+                         f"of the run of deck {manifest['deck_sha256'][:8]}")
+        inputs = json.loads((self.folder / "hot/manifest.json").read_text())["inputs"]
+        self.assertEqual([i["source"] for i in inputs], ["cold/summary.json", "cold/manifest.json"])
+        kept = json.loads((self.folder / "hot/inputs/manifest.json").read_text())
+        self.assertEqual(kept["deck_sha256"], manifest["deck_sha256"])
+
+        # the other run may go: a fork gives the same bytes
+        shutil.copytree(self.folder / "hot", self.folder / "alone/hot")
+        forked = subprocess.run([PROGRAM, "resume", "hot", "--from-stage", "1", "--out", "fork", "--no-figures", "--quiet"],
+                                cwd=self.folder / "alone", capture_output=True, text=True, check=False)
+        self.assertEqual(forked.returncode, 0, forked.stderr)
+        self.assertEqual((self.folder / "alone/fork/history.csv").read_bytes(),
+                         (self.folder / "hot/history.csv").read_bytes())
+
+    def test_a_run_without_one_is_refused_with_its_reason(self):
+        self.run_deck(CASES / "starter.toml", *self.SMALL, "--set", "stages[1].velocity=4 mm/s", "--set",
+                      "stages[1].stop_strain=2e-4", "--out", "short", code=0)
+        (self.folder / "empty").mkdir()
+        for run, told in (("short", "the run has no f_c: the stage ended before a peak"),
+                          ("empty", "empty/summary.json"), ("none", "none: is no folder of a run")):
+            with self.subTest(run):
+                done = self.run_deck("hot.toml", *self.SMALL, *self.changed(f'stages[1].f_c={{ run = "{run}" }}'), "--out",
+                                     "no", code=1)
+                self.assertIn("stages[1].f_c.run", done.stderr)
+                self.assertIn(told, done.stderr)
+                self.assertFalse((self.folder / "no").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
