@@ -39,6 +39,14 @@ def compare_runs(runs: Sequence[Results], what: str | None = None) -> Figure:
     return KINDS[what or _common_kind(runs)](runs)
 
 
+def compare_seeds(runs: Sequence[Results]) -> Figure:
+    """Runs that differ in the seed alone: the range of their curves and their mean."""
+    if not runs:
+        raise Error("compare: no runs were given")
+    kind = _common_kind(runs)
+    return compare(runs, are_seeds=True) if kind == "stress-strain" else KINDS[kind](runs)
+
+
 def _common_kind(runs: Sequence[Results]) -> str:
     first = _kind(runs[0])
     for run in runs:

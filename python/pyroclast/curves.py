@@ -133,8 +133,10 @@ def _draw_table(axes: Axes, run: Results) -> None:
 
 
 @matplotlib.rc_context(style.STYLE)
-def compare(runs: Sequence[Results]) -> Figure:
+def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
     """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
+
+    are_seeds: the runs differ in the seed alone, so that their range is drawn and none has a name.
 
     More than MANY runs are drawn as the range that they span. A run without a peak (its summary has no f_c)
     is drawn but does not enter the mean of the peaks.
@@ -146,7 +148,11 @@ def compare(runs: Sequence[Results]) -> Figure:
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
     curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
-    if len(runs) > MANY:
+    if are_seeds and len(runs) > 1:
+        for curve in curves:
+            axes.plot(*curve, color=style.SKY, linewidth=0.7)
+        draw_spread(axes, curves, style.BLUE)
+    elif len(runs) > MANY:
         draw_spread(axes, curves, style.BLUE)
     else:
         for run, curve, name, (colour, dashes) in zip(runs, curves, names_apart(runs), cycle(style.LOOKS)):

@@ -187,7 +187,13 @@ def _keys(options: argparse.Namespace) -> int:
     return 0
 
 
-_COMMANDS = {"run": _run, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
+def _scatter(options: argparse.Namespace) -> int:
+    from . import scatter
+
+    return scatter.run(options, (lambda line: None) if options.quiet else (lambda line: print(line, flush=True)))
+
+
+_COMMANDS = {"run": _run, "scatter": _scatter, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
 
 
 if __name__ == "__main__":

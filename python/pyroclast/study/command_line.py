@@ -22,7 +22,8 @@ def parser() -> argparse.ArgumentParser:
             added.add_argument("--allow-code", action="store_true",
                                help="let code that the study and its deck name run, now and until it changes; read it "
                                "first")
-            added.add_argument("study", metavar="STUDY", help="TOML file that describes the study")
+            added.add_argument("study", metavar="DECK" if name == "scatter" else "STUDY",
+                               help=f"TOML file that describes the {'run' if name == 'scatter' else 'study'}")
         return added
 
     run = command("run", "Make the runs of a study that are missing; what is done is never run again")
@@ -39,6 +40,15 @@ def parser() -> argparse.ArgumentParser:
     report = command("report", "Draw the figures of a study, and one page that gathers them")
     report.add_argument("-o", "--out", type=Path, metavar="FOLDER",
                         help="where they go (default: report in the folder of the study, which is then written to)")
+    scatter = command("scatter", "Make several specimens of a deck, and say each result with its mean and interval; the same "
+                      "as `pyroclast run DECK --seeds N`")
+    scatter.add_argument("--seeds", type=_positive, default=5, help="number of specimens (default: 5)")
+    scatter.add_argument("--seed", type=int, default=1, help="first seed (default: 1)")
+    scatter.add_argument("--set", action="append", metavar="KEY=VALUE", help="another value for a key of the deck")
+    scatter.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="where they go (default: runs/<deck>-seeds)")
+    scatter.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
+    scatter.add_argument("--no-figures", action="store_true", help="draw no figures")
+    scatter.add_argument("--quiet", action="store_true", help="print nothing but errors")
     keys = command("keys", "Print every key that a study file may hold, as Markdown")
     keys.add_argument("--schema", action="store_true",
                       help="as a JSON Schema (draft 4), with which editors complete and check study files")

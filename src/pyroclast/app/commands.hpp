@@ -33,6 +33,7 @@ struct RunOptions {
   int threads = 0;                   ///< most threads; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best available
   std::optional<std::int64_t> seed;  ///< seed in place of the deck's
+  int seeds = 1;                     ///< number of specimens; above 1 by the package for Python
   std::vector<std::string> changes;  ///< changes "key=value", see Deck::open
   std::optional<double> checkpoint;  ///< wall time between two checkpoints in place of the deck's, s
   OwnLawOptions laws;
@@ -134,6 +135,9 @@ int figures(const std::vector<std::string>& words);
 /// Goes on as the program of studies, see the Python package.
 /// \param words  as typed
 [[noreturn]] void study(const std::vector<std::string>& words);
+
+/// Goes on as the program of studies, which runs several specimens of a deck: options.seeds of them.
+[[noreturn]] void scatter(const RunOptions& options);
 
 /// Draws the figures of a folder with the Python package; warns when that is not possible.
 /// \param what    command of the package

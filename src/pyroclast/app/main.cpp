@@ -142,6 +142,11 @@ int command_line(int argc, char** argv) {
   add_checkpoint(run, options);
   add_speech(run, options);
   add_watch(run, options);
+  run->add_option("--seeds", options.seeds,
+                  "Run so many specimens, from --seed or 1 on: each result with its mean and 95 % interval, "
+                  "the curves "
+                  "with their band, and the pictures of the median specimen")
+      ->check(whole_number(1, 100000));
   run->add_flag_callback(
       "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
       "Write no fields, as [output] fields = false; figures are those of the history");
@@ -305,6 +310,7 @@ int command_line(int argc, char** argv) {
     if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
     throw Error(app::what_is_wrong(cli, error, std::vector<std::string>(argv + 1, argv + argc)));
   }
+  if (*run && options.seeds > 1) app::scatter(options);
   if (*run) return app::run(options);
   if (*resume) return app::resume(resume_options);
   const int code = [&] {

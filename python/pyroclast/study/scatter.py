@@ -1,0 +1,139 @@
+"""`pyroclast run DECK --seeds N`: one deck with several seeds, each result with its mean and 95 % interval."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import re
+import subprocess
+import tomllib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..comparisons import compare_seeds
+from ..errors import Error
+from ..results import Results
+from ..style import save
+from ..writing import make_folder, write_text
+from .driver import free_cores
+from .methods import ensemble
+from .study import Study
+
+# Numbers of a summary that are no results of the test: they say how it was computed and whether to believe it.
+_OF_THE_COMPUTATION = re.compile(r"steps|\w*time_s|time_step_s|t_b_m|mass_over_real_mass|is_good|estimated_E_GPa|quasi_static\w*|"
+                                 r"unbalanced_ratio|exchange_\w+|kinetic_\w+|platen_\w+|control_\w+|energy_\w+|\w+_converged|"
+                                 r"diameter_mm|wall\w*|loading_work_J")
+_HEADLINE = ("f_c_MPa", "critical_temperature_degC")
+
+
+def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
+    """Makes the runs that are missing, says mean and interval of each result, and draws the median specimen.
+
+    Raises Error for a deck in error, and where no run gave a value.
+    """
+    deck = Path(options.study).resolve()
+    out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-seeds"))
+    changes = dict(_change(text) for text in options.set or [])
+    names = _results_of(deck, options.set or [])
+    if not names:
+        raise Error(f"{options.study}: its run has no result that could scatter: state [[stages.results]], or a stage that "
+                    "measures one")
+    study = Study(out / "study.toml", program=options.program, title=f"Scatter of {deck.stem}",
+                  study={"deck": str(deck), "folder": ".", "seeds": options.seeds,
+                         "first_seed": options.seed, "keep": "history", **({"changes": changes} if changes else {})},
+                  method={"kind": "ensemble"}, outputs={name: name for name in names})
+    for warning in study.check():
+        say(f"warning         {warning}")
+    if not study.run(jobs=options.jobs or free_cores(), say=say):
+        say("stopped; to go on: the same command")
+        return 130
+    rows = study.rows()
+    found = _summaries(rows, names)
+    if not found:
+        reasons = sorted({str(row["reason"]) for row in rows})
+        raise Error(f"no seed gave a result: {'; '.join(reasons[:3])}")
+    for line in _lines(found, len(rows)):
+        say(line)
+    write_text(out / "scatter.csv", _table(found))
+    say(f"table           {out / 'scatter.csv'}; the runs: {out / 'table.csv'}")
+    if not options.no_figures:
+        _draw(study, rows, found, out, options, say)
+    return 0
+
+
+def _change(text: str) -> tuple[str, Any]:
+    """A key and its value of `--set key=value`; what is no TOML is a text."""
+    path, _, value = text.partition("=")
+    try:
+        return path.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return path.strip(), value.strip()
+
+
+def _results_of(deck: Path, changes: Sequence[str]) -> list[str]:
+    text = _core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), list(changes), [], [], False, False)
+    session = _core.Session.begin(text, None, 1, "", None, None, False)
+    numbers = session.summary_numbers()
+    session.close()
+    return [name for name in numbers if "." not in name and not _OF_THE_COMPUTATION.fullmatch(name)]
+
+
+def _summaries(rows: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, ensemble.Summary]:
+    """Of each result that a seed has, and that is not 0 in all of them."""
+    values = {name: [np.nan if row[name] is None else float(row[name]) for row in rows] for name in names}
+    return {name: ensemble.summary(y) for name, y in values.items() if np.isfinite(y).any() and np.nanmax(np.abs(y)) > 0.0}
+
+
+def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:
+    lines = [f"result          mean of {seeds} seeds, 95 % interval of the mean, standard deviation of one specimen"]
+    width = max(map(len, found))
+    for name, s in found.items():
+        digits = _digits(s)
+        interval = f"± {0.5 * (s.high - s.low):.2g}" if s.n > 1 else "(one seed)"
+        share = f" ({100.0 * s.variation:.1f} %)" if np.isfinite(s.variation) else ""
+        spread = f"sd {s.sd:.2g}{share}" if s.n > 1 else ""
+        missing = f"; {s.missing} of {seeds} seeds have none" if s.missing else ""
+        lines.append(f"                {name:<{width}}  {s.mean:.{digits}g} {interval}  {spread}{missing}")
+    return lines
+
+
+def _digits(s: ensemble.Summary) -> int:
+    """Digits of a mean down to the first of its interval's half-width, and one more."""
+    half = 0.5 * (s.high - s.low)
+    if not np.isfinite(half) or half <= 0.0 or s.mean == 0.0:
+        return 4
+    return int(np.clip(2 + np.floor(np.log10(abs(s.mean))) - np.floor(np.log10(half)), 1, 6))
+
+
+def _table(found: dict[str, ensemble.Summary]) -> str:
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["result", "mean", "low_95", "high_95", "sd", "seeds", "without"])
+    for name, s in found.items():
+        writer.writerow([name, *(repr(x) if np.isfinite(x) else "" for x in (s.mean, s.low, s.high, s.sd)), s.n, s.missing])
+    return text.getvalue()
+
+
+def _draw(study: Study, rows: Sequence[dict[str, Any]], found: dict[str, ensemble.Summary], out: Path,
+          options: argparse.Namespace, say: Callable[[str], None]) -> None:
+    """The curves of all seeds with their band, and all pictures of the specimen in the middle."""
+    runs = [Results(study.setup.folder / "runs" / str(row["run"])) for row in rows if row["state"] in ("done", "no value")]
+    try:
+        say(f"figure          {save(compare_seeds(runs), out / 'figures' / 'seeds.png')}")
+    except Error as error:
+        say(f"no band         {error}")
+    name = next((key for key in _HEADLINE if key in found), next(iter(found)))
+    known = sorted((float(row[name]), int(row["seed"])) for row in rows if row[name] is not None)
+    seed = known[(len(known) - 1) // 2][1]
+    say(f"median          seed {seed}, by {name}: its pictures are in {out / 'median/figures'}")
+    words = [options.program, "run", str(Path(options.study)), "--of-study", "--seed", str(seed), "--out", str(out / "median"),
+             "--overwrite", "--quiet"]
+    for change in options.set or []:
+        words += ["--set", change]
+    if (done := subprocess.run(words, check=False)).returncode not in (0, 2):
+        raise Error(f"the run of seed {seed} ended with {done.returncode}")
