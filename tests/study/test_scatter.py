@@ -7,6 +7,9 @@ import subprocess
 import tomllib
 import unittest
 
+import numpy as np
+from pyroclast.study import converge
+from scipy.stats import t, ttest_ind
 from study_files import CASES, PROGRAM, StudyTest
 
 SMALL = ("--set", "blocks.count=60", "--set", "stages[1].velocity=4 mm/s", "--set", "stages[1].stop_strain=0.003")
@@ -58,6 +61,50 @@ class Seeds(StudyTest):
             done = self.run_deck("--seeds", "2", *words, code=1)
             self.assertIn(words[1].split("=")[0], done.stderr)
         self.assertIn("--watch", self.run_deck("--seeds", "2", "--watch", code=1).stderr)
+
+
+class Converge(StudyTest):
+    def test_variants_halve_rates_increments_and_blocks_of_what_the_deck_has(self):
+        deck = tomllib.loads((CASES / "hot_strength.toml").read_text())
+        found = {v.name: v for v in converge.variants_of(deck)}
+        self.assertEqual(list(found), ["half the rate", "half the exchange step", "half the block size",
+                                       "double the block size"])
+        self.assertEqual(found["half the rate"].changes,
+                         ('stages[4].velocity="0.1 mm/s"', 'stages[4].fastest_velocity="4.0 mm/s"'))
+        self.assertEqual(found["half the exchange step"].changes, ('coupling.exchange_increment="2.0 K"',))
+        self.assertEqual(found["half the block size"].changes, ("blocks.count=8000", 'mechanics.time_step="5.0 us"'))
+        self.assertFalse(found["half the block size"].same_specimens)
+        beam = {v.name: v for v in converge.variants_of(tomllib.loads((CASES / "notched_beam.toml").read_text()))}
+        self.assertEqual([c.split("=")[0] for c in beam["half the rate"].changes],
+                         ["stages[2].control.rate", "stages[2].duration"])
+        self.assertNotIn("half the exchange step", beam)
+
+    def test_effects_are_those_of_students_intervals(self):
+        before, after = np.array([10.0, 11.0, 12.0]), np.array([10.1, 11.3, 12.2])
+        paired = converge.effect("f_c", converge.Variant("a", ()), before, after)
+        self.assertAlmostEqual(paired.share, 0.2 / 11.0)
+        self.assertAlmostEqual(paired.half, 4.302652729911275 * 0.1 / 3**0.5 / 11.0)
+        self.assertFalse(paired.is_told)
+        other = converge.effect("f_c", converge.Variant("a", (), False), before, after + 5.0)
+        self.assertAlmostEqual(other.share, 5.2 / 11.0)
+        told = ttest_ind(after + 5.0, before, equal_var=False)
+        self.assertAlmostEqual(other.half * 11.0, t.ppf(0.975, told.df if hasattr(told, "df") else 3.99) * 5.2 / told.statistic,
+                               delta=0.02)
+        self.assertTrue(other.is_told)
+        none = converge.effect("f_c", converge.Variant("a", ()), before, np.array([np.nan, np.nan, 12.2]))
+        self.assertEqual((none.seeds, none.is_told), (1, False))
+
+    def test_a_deck_by_its_command(self):
+        words = [PROGRAM, "converge", CASES / "starter.toml", "--seeds", "2", *SMALL]
+        ahead = subprocess.run([*words, "--dry-run"], cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        self.assertEqual(len(ahead.splitlines()), 3 if "double" not in ahead else 4)
+        done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        self.assertRegex(done, r"half the rate +[+-]\d")
+        with open(self.folder / "runs/starter-converge/converge.csv", newline="", encoding="utf-8") as file:
+            rows = {(row["result"], row["variant"]): row for row in csv.DictReader(file)}
+        rate = rows["E_GPa", "half the rate"]
+        self.assertLess(abs(float(rate["change"])), 0.05)
+        self.assertIn(("E_GPa", "half the block size"), rows)
 
 
 if __name__ == "__main__":

@@ -193,7 +193,13 @@ def _scatter(options: argparse.Namespace) -> int:
     return scatter.run(options, (lambda line: None) if options.quiet else (lambda line: print(line, flush=True)))
 
 
-_COMMANDS = {"run": _run, "scatter": _scatter, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
+def _converge(options: argparse.Namespace) -> int:
+    from . import converge
+
+    return converge.run(options, (lambda line: None) if options.quiet else (lambda line: print(line, flush=True)))
+
+
+_COMMANDS = {"run": _run, "scatter": _scatter, "converge": _converge, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
 
 
 if __name__ == "__main__":

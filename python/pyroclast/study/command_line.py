@@ -7,6 +7,8 @@ from pathlib import Path
 
 from .choices import EXECUTORS, KEEP
 
+_OF_DECKS = ("scatter", "converge")  # commands that make a study of a deck
+
 
 def parser() -> argparse.ArgumentParser:
     """Reads the words behind `pyroclast study`; `do` is the name of the command."""
@@ -22,8 +24,8 @@ def parser() -> argparse.ArgumentParser:
             added.add_argument("--allow-code", action="store_true",
                                help="let code that the study and its deck name run, now and until it changes; read it "
                                "first")
-            added.add_argument("study", metavar="DECK" if name == "scatter" else "STUDY",
-                               help=f"TOML file that describes the {'run' if name == 'scatter' else 'study'}")
+            added.add_argument("study", metavar="DECK" if name in _OF_DECKS else "STUDY",
+                               help=f"TOML file that describes the {'run' if name in _OF_DECKS else 'study'}")
         return added
 
     run = command("run", "Make the runs of a study that are missing; what is done is never run again")
@@ -43,12 +45,18 @@ def parser() -> argparse.ArgumentParser:
     scatter = command("scatter", "Make several specimens of a deck, and say each result with its mean and interval; the same "
                       "as `pyroclast run DECK --seeds N`")
     scatter.add_argument("--seeds", type=_positive, default=5, help="number of specimens (default: 5)")
-    scatter.add_argument("--seed", type=int, default=1, help="first seed (default: 1)")
-    scatter.add_argument("--set", action="append", metavar="KEY=VALUE", help="another value for a key of the deck")
-    scatter.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="where they go (default: runs/<deck>-seeds)")
-    scatter.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
     scatter.add_argument("--no-figures", action="store_true", help="draw no figures")
-    scatter.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    converge = command("converge", "Say what half the rate, half the exchange step, and half and double the block size move; "
+                       "the same as `pyroclast converge DECK`")
+    converge.add_argument("--seeds", type=_positive, default=3, help="number of specimens of each (default: 3)")
+    converge.add_argument("--dry-run", action="store_true", help="only say how many runs, and how long")
+    for several in (scatter, converge):
+        several.add_argument("--seed", type=int, default=1, help="first seed (default: 1)")
+        several.add_argument("--set", action="append", metavar="KEY=VALUE", help="another value for a key of the deck")
+        several.add_argument("-o", "--out", type=Path, metavar="FOLDER",
+                             help="where they go (default: runs/<deck>-seeds, runs/<deck>-converge)")
+        several.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
+        several.add_argument("--quiet", action="store_true", help="print nothing but errors")
     keys = command("keys", "Print every key that a study file may hold, as Markdown")
     keys.add_argument("--schema", action="store_true",
                       help="as a JSON Schema (draft 4), with which editors complete and check study files")

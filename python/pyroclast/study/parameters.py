@@ -125,7 +125,7 @@ class Parameter:
             return toml(value)
         number = value if factor == 1.0 else float(f"{value * factor:.{_DIGITS}g}")
         if self.how == "scale" and not _is_curve(there := value_at(deck, path)):
-            return toml(_scaled(path, there, number))
+            return toml(scaled(path, there, number))
         return toml(f"{number!r} {self.unit}" if self.unit else number)
 
 
@@ -166,7 +166,7 @@ def _is_curve(there: Any) -> bool:
     return isinstance(there, Mapping) and any(key in there for key in _CURVE)
 
 
-def _scaled(path: str, there: Any, factor: float) -> str | float:
+def scaled(path: str, there: Any, factor: float) -> str | float:
     """A quantity of the deck times a factor."""
     if isinstance(there, (int, float)) and not isinstance(there, bool):
         return float(f"{there * factor:.{_DIGITS}g}")

@@ -38,8 +38,8 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     """
     deck = Path(options.study).resolve()
     out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-seeds"))
-    changes = dict(_change(text) for text in options.set or [])
-    names = _results_of(deck, options.set or [])
+    changes = dict(change_of(text) for text in options.set or [])
+    names = result_names(deck, options.set or [])
     if not names:
         raise Error(f"{options.study}: its run has no result that could scatter: state [[stages.results]], or a stage that "
                     "measures one")
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     return 0
 
 
-def _change(text: str) -> tuple[str, Any]:
+def change_of(text: str) -> tuple[str, Any]:
     """A key and its value of `--set key=value`; what is no TOML is a text."""
     path, _, value = text.partition("=")
     try:
@@ -75,7 +75,8 @@ def _change(text: str) -> tuple[str, Any]:
         return path.strip(), value.strip()
 
 
-def _results_of(deck: Path, changes: Sequence[str]) -> list[str]:
+def result_names(deck: Path, changes: Sequence[str]) -> list[str]:
+    """Names of the results of a deck's run, without those numbers that say how it was computed."""
     text = _core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), list(changes), [], [], False, False)
     session = _core.Session.begin(text, None, 1, "", None, None, False)
     numbers = session.summary_numbers()

@@ -233,6 +233,12 @@ int command_line(int argc, char** argv) {
   study->prefix_command();
   study->set_help_flag();
 
+  auto* converge = cli.add_subcommand("converge",
+                                      "Say what half the rate, half the exchange step, and half and double "
+                                      "the block size move: converge DECK");
+  converge->prefix_command();
+  converge->set_help_flag();
+
   std::string name, from = "starter";
   auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
@@ -322,6 +328,11 @@ int command_line(int argc, char** argv) {
     if (*watch) app::watch(watch->remaining());
     if (*study) app::study(study->remaining());
     if (*concrete) return app::write_concrete(concrete_options);
+    if (*converge) {
+      std::vector<std::string> words = converge->remaining();
+      words.insert(words.begin(), "converge");
+      app::study(words);
+    }
     if (*keys) return app::print_keys(keys_options);
     if (*laws) return app::print_laws();
     if (*list) return app::print_list(list_of);
