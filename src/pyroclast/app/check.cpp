@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "pyroclast/app/open.hpp"
+#include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
@@ -16,34 +17,15 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Compressed specimens of a study, by the size of their blocks over d_max: how many fell clearly, and the
-/// scatter of f_c from seed to seed (validation/peaks.md).
-struct StudiedStrength {
-  double size;
-  int fell_clearly, of;
-  double scatter;
-};
-constexpr auto kStudiedStrengths = std::to_array<StudiedStrength>({
-    {0.42, 6, 10, 0.12},
-    {0.30, 5, 10, 0.08},
-    {0.21, 8, 10, 0.06},
-    {0.15, 8, 10, 0.03},
-    {0.09, 5, 5, 0.03},
-});
-
 void print_strength(const Setup& setup) {
-  const AskedSpecimen& s = setup.specimen;
   const auto is_compress = [](const auto& stage) { return stage->kind() == std::string_view("compress"); };
-  const bool is_like_studied = !s.prism && s.blocks.count > 0 && s.aggregates.fraction > 0.0;
-  if (!is_like_studied || std::ranges::none_of(setup.stages, is_compress)) return;
-  const double size = s.block_size() / s.aggregates.d_max;
-  const auto& nearest = *std::ranges::min_element(kStudiedStrengths, {}, [&](const StudiedStrength& studied) {
-    return std::abs(std::log(size / studied.size));
-  });
+  const auto like = studied_like(setup.specimen);
+  if (!like || std::ranges::none_of(setup.stages, is_compress)) return;
   fmt::print(
       "strength        blocks are {:.2f} of d_max; of specimens with {:.2f}, {} of {} fell clearly, and f_c\n"
       "                scattered by {:.0f} % from seed to seed (validation/peaks.md)\n",
-      size, nearest.size, nearest.fell_clearly, nearest.of, 100.0 * nearest.scatter);
+      setup.specimen.block_size() / setup.specimen.aggregates.d_max, like->size, like->fell_clearly, like->of,
+      100.0 * like->scatter);
 }
 
 double peak_memory() {

@@ -1,13 +1,16 @@
 #include "pyroclast/app/run_to_end.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/progress.hpp"
+#include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/app/watcher.hpp"
 
 namespace pyroclast::app {
@@ -63,7 +66,24 @@ std::string doing_line(const Run& run) {
   return text;
 }
 
-std::string describe(const Summary& s, const std::filesystem::path& folder) {
+/// Says how far the strength of one specimen can be trusted; empty where the run measured none, or another
+/// specimen's scatter is not known.
+std::string describe_scatter(const Summary& s, const AskedSpecimen& specimen) {
+  const auto has_strength = [](const auto& stage) {
+    return stage.kind == "compress" && std::ranges::any_of(stage.report.results, [](const Result& result) {
+             return result.name == "f_c_MPa" && std::holds_alternative<double>(result.value);
+           });
+  };
+  const auto like = studied_like(specimen);
+  if (!like || std::ranges::none_of(s.stages, has_strength)) return "";
+  return fmt::format(
+      "one specimen    f_c scatters by {:.0f} % from seed to seed with such blocks; `pyroclast run DECK "
+      "--seeds 5` "
+      "tells the mean\n",
+      100.0 * like->scatter);
+}
+
+std::string describe(const Summary& s, const AskedSpecimen& specimen, const std::filesystem::path& folder) {
   std::string text =
       fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
@@ -81,7 +101,8 @@ std::string describe(const Summary& s, const std::filesystem::path& folder) {
                                                 : "");
   if (s.heat_error)
     text += fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.heat_error);
-  return text + describe_warnings(s.warnings) + fmt::format("results         {}", folder.string());
+  return text + describe_scatter(s, specimen) + describe_warnings(s.warnings) +
+         fmt::format("results         {}", folder.string());
 }
 
 int exit_code(const Summary& summary) {
@@ -128,7 +149,7 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   }
   const Summary summary = session.finish();
   if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
-  log.say(describe(summary, folder));
+  log.say(describe(summary, session.opened().setup.specimen, folder));
   if (summary.outcome == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
   if (options.figures) {
