@@ -89,6 +89,14 @@ class Concrete(unittest.TestCase):
         seen = self.pyroclast("check", "mine.toml", "--set", "blocks.count=1000").stdout
         self.assertIn("blocks.count = 1000: the strengths of this deck were calibrated for 2800 blocks", seen)
 
+    def test_a_stated_stiffness_of_contacts_is_told_as_a_modulus(self):
+        case, small = str(CASES / "hot_strength.toml"), ("--set", "blocks.count=100")
+        seen = self.pyroclast("check", case, *small).stdout
+        self.assertIn("mortar_mortar: K_n is stated, E = K_n t_b 29.4 GPa; the softest blocks have 29.4 GPa\n", seen)
+        stiffer = self.pyroclast("check", case, *small, "--set", "materials.mortar.E.value=52 GPa").stdout
+        self.assertIn("the softest blocks have 52 GPa: leave K_n and K_s out", stiffer)
+        self.assertNotIn("K_n", self.pyroclast("check", str(CASES / "starter.toml"), *small).stdout)
+
     def test_what_cannot_be_is_refused_and_nothing_is_written(self):
         for words, told in (
                 ((*LIMESTONE[:3], "320 GPa", *LIMESTONE[4:], *FULLER), '--E "320 GPa": must be between'),

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +17,9 @@ namespace pyroclast::app {
 
 namespace {
 
+/// Share by which E of contacts may differ from that of blocks without a word.
+constexpr double kLikeModulus = 0.1;
+
 void print_strength(const Setup& setup) {
   const auto is_compress = [](const auto& stage) { return stage->kind() == std::string_view("compress"); };
   const auto like = studied_like(setup.specimen);
@@ -26,6 +29,26 @@ void print_strength(const Setup& setup) {
       "                scattered by {:.0f} % from seed to seed (validation/peaks.md)\n",
       setup.specimen.block_size() / setup.specimen.aggregates.d_max, like->size, like->fell_clearly, like->of,
       100.0 * like->scatter);
+}
+
+/// Tells the modulus that a stated K_n means, which does not follow E of the blocks.
+void print_stated_stiffness(const Setup& setup) {
+  if (!setup.motion) return;
+  const ContactParameters& contacts = setup.motion->contacts;
+  for (const InterfaceParameters& interface : contacts.interfaces) {
+    if (!interface.normal_stiffness) continue;
+    double young = std::numeric_limits<double>::infinity();
+    for (const auto& pair : interface.between)
+      for (const std::string& phase : pair)
+        for (const BlockMaterial& material : setup.block_materials)
+          if (material.name == phase) young = std::min(young, material.young(kReferenceTemperature));
+    const double stated = *interface.normal_stiffness * contacts.fracture_zone;
+    const bool is_like = std::abs(stated / young - 1.0) < kLikeModulus;
+    fmt::print(
+        "contacts        {}: K_n is stated, E = K_n t_b {:.3g} GPa; the softest blocks have {:.3g} GPa{}\n",
+        interface.name, 1e-9 * stated, 1e-9 * young,
+        is_like ? "" : ": leave K_n and K_s out, and they follow E of the blocks");
+  }
 }
 
 double peak_memory() {
@@ -50,7 +73,8 @@ void print_composition(const Composition& whole) {
                *whole.strain_weight);
 }
 
-void print_mechanics(const Simulation& simulation, MassChoice mass) {
+void print_mechanics(const Setup& setup, const Simulation& simulation) {
+  const MassChoice mass = setup.motion->mechanics.mass;
   const Motion& motion = simulation.motion();
   const Model& model = simulation.model();
   const TimeStepLimit limit = motion.real_mass_limit();
@@ -66,6 +90,7 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
              estimate_modulus(model, simulation.materials()) * 1e-9,
              1e3 * simulation.materials().fracture_zone);
+  print_stated_stiffness(setup);
   const auto& whole = simulation.materials().composition;
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
 }
@@ -94,7 +119,7 @@ int check(const RunOptions& options) {
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              setup.motion && !setup.motion->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());
-  if (simulation->moves()) print_mechanics(*simulation, setup.motion->mechanics.mass);
+  if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));
   if (!simulation->field().is_uniform() && simulation->moves())
