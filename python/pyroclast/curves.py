@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
+_LEAST_BAND = 0.01  # difference of the platens over the stress, below which it is no wider than the curve
 _TABLE_LOOKS = [(colour, dashes) for dashes in ((0, (5, 2)), (0, (2, 1.2)))
                 for colour in (style.GREEN, style.PURPLE, style.BLACK, style.SKY)]
 """Colours and dashes of users' references: none is that of a reference of the program."""
@@ -66,9 +67,18 @@ def _draw_run(axes: Axes, run: Results) -> None:
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
               label="this run, mean of both platens"
                     + (f";\nrises again, {100.0 * run.rise_again:+.0f} % above $f_c$" if run.rise_again > 0.005 else ""))
-    rows = style.kept(strain, top, bottom)
-    axes.fill_between(strain[rows], top[rows], bottom[rows], color=style.SKY, alpha=0.5, linewidth=0.0,
-                      label="between its upper and lower platen")
+    if run.has_peak:
+        at, strength = run.peak
+        axes.plot(style.PER_MILLE * at, strength, "D", color=style.BLUE, markersize=5.0, zorder=4.5, linestyle="none",
+                  label=f"its $f_c$, {strength:.3g} MPa")
+        if isinstance(modulus := run.compression.get("E_GPa"), float) and not run.compression.get("toe_strain"):
+            reach = 1.02 * strength / modulus  # per mille: MPa over GPa
+            axes.plot([0.0, reach], [0.0, 1.02 * strength], color=style.BLACK, linewidth=0.7, zorder=2.8,
+                      label=f"its $E$, {modulus:.3g} GPa")
+    if np.nanmax(np.abs(top - bottom)) > _LEAST_BAND * np.nanmax(np.abs(top)):
+        rows = style.kept(strain, top, bottom)
+        axes.fill_between(strain[rows], top[rows], bottom[rows], color=style.SKY, alpha=0.5, linewidth=0.0,
+                          label="between its upper and lower platen")
 
 
 def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> None:

@@ -8,7 +8,7 @@
     python3 -m pyroclast.figures properties DIR     DIR/figures/properties.png, from DIR/properties.csv
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
-heating_energy.png, convergence.png and heating_fracture.png;
+heating_energy.png and heating_fracture.png, and convergence.png where the body did not come to rest at an exchange;
 a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one with [[record]]
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
@@ -76,7 +76,8 @@ def _of_heating(run: Results, magnification: float | None,
         yield "total_strain", lambda: total_strain(run)
     yield "heating_cracks", lambda: heating_cracks(run)
     yield "heating_energy", lambda: energy(heating_course(run))
-    yield "convergence", lambda: convergence(run)
+    if run.unconverged.any():
+        yield "convergence", lambda: convergence(run)
     if run.heats:
         yield from _of_conduction(run)
     if run.has_fields:
@@ -89,7 +90,7 @@ def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str
     if records_of(run):
         yield "records", lambda: records(run)
         yield "energy", lambda: energy(record_course(run))
-    if run.exchanged.any():
+    if run.unconverged.any():
         yield "convergence", lambda: convergence(run)
     if run.heats:
         yield from _of_conduction(run)

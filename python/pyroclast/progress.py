@@ -26,10 +26,11 @@ _ENERGY_OUT = (
     ("dissipated_tension_J", "tension softening", style.VERMILLION, None),
     ("dissipated_shear_J", "shear softening", style.SHEAR_COLOUR, None),
     ("dissipated_friction_J", "friction", style.ORANGE, "////"),
-    ("dissipated_compression_J", "compression", style.YELLOW, None),
+    ("dissipated_compression_J", "crushing", style.YELLOW, None),
     ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
     ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
 )
+_LEAST_SHARE = 5e-4  # of the energy turned over, that an energy needs to be drawn and listed
 _MORE_LOSSES = (style.PURPLE, "#8c6d31", "#66c2a4")  # colours
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
@@ -221,6 +222,8 @@ def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     over, below = course.over[rows], np.zeros(np.count_nonzero(rows))
     for column, name, colour, hatch in energies:
         values = course[column]
+        if np.nanmax(np.abs(values), initial=0.0) < _LEAST_SHARE * turnover:
+            continue
         known = values[np.isfinite(values)]
         share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"
         axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,

@@ -27,7 +27,8 @@ from .study import Study
 # Numbers of a summary that are no results of the test: they say how it was computed and whether to believe it.
 _OF_THE_COMPUTATION = re.compile(r"steps|\w*time_s|time_step_s|t_b_m|mass_over_real_mass|is_good|estimated_E_GPa|quasi_static\w*|"
                                  r"unbalanced_ratio|exchange_\w+|kinetic_\w+|platen_\w+|control_\w+|energy_\w+|\w+_converged|"
-                                 r"diameter_mm|wall\w*|loading_work_J")
+                                 r"diameter_mm|wall\w*|loading_work_J|cycles|exchanges|platen|strain|load_level|load_stress_MPa|"
+                                 r"f_c_of_level_MPa|highest_temperature_degC|largest_exchange\w+|worst_\w+")
 _HEADLINE = ("f_c_MPa", "critical_temperature_degC")
 
 
