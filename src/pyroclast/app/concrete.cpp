@@ -213,9 +213,11 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
         fmt::format("{{ value = {}, times = \"{}\"{} }}", value.substr(0, value.find("  #")), curve, share);
   };
   over_temperature(v["ROCK_E"], "glasgow_modulus", ", share = 0.3");
-  v["ROCK_E"] += fmt::format("  # {}; share of the loss: a choice", a.rock->modulus.source);
+  v["ROCK_E"] =
+      fmt::format("{}\n# {}; the share of the loss is a choice", v["ROCK_E"], a.rock->modulus.source);
   over_temperature(v["MORTAR_E"], "glasgow_modulus", ", share = 0.87");
-  v["MORTAR_E"] += "  # the share was fitted to a siliceous concrete (validation/hot_concrete.md)";
+  v["MORTAR_E"] +=
+      "\n# The share of the loss was fitted to a siliceous concrete (validation/hot_concrete.md).";
   for (const char* key : {"G_F1", "G_F2"}) over_temperature(v[key], "glasgow_fracture_energy", "");
   v["HOT_CONCRETE"] = fmt::format(
       "[concrete]                   # strains of the phases follow from those of the concrete as a whole\n"
