@@ -133,11 +133,11 @@ void Compress::close_gap(Simulation& simulation, int most_steps) {
 
 void Compress::begin_loading(Simulation& simulation) {
   simulation.press().begin_stage();
+  take_point(simulation);  // while a force that is held still acts: forces are those of the last step
   simulation.press().control_by_motion(0.0);
   kept_.is_loading = true;
   kept_.next_frame = keys_.frame_strain;
   kept_.dissipated = simulation.motion().totals().energy().dissipated.total();
-  take_point(simulation);
 }
 
 /// Returns the steps in which the platen moves by a strain at its full velocity.
