@@ -145,12 +145,25 @@ def wrong_type(draw: random.Random, deck: dict[str, Any]) -> str:
     return f"{key['key']} = {table[key['key']]!r}"
 
 
+def is_of_kind(unit: str, kinds: list[str]) -> bool:
+    """Whether a unit is one of those that a key takes; a value that only a law refuses is no fault of the unit."""
+    for kind in kinds:
+        try:
+            _core.convert(f"1 {unit}", SI[kind])
+        except Error:
+            continue
+        return True
+    return False
+
+
 def other_unit(draw: random.Random, deck: dict[str, Any]) -> str:
     table, key = draw.choice(places_of(deck))
     value = table[key["key"]]
     if key["form"] == "quantity" and isinstance(value, str):
         number = re.match(r"[-+0-9.eE]*", value)
-        table[key["key"]] = f"{number[0]} {draw.choice(OTHER_UNITS)}"
+        unit = draw.choice(OTHER_UNITS)
+        if not is_of_kind(unit, key["kinds"]):
+            table[key["key"]] = f"{number[0]} {unit}"
     return f"{key['key']} = {table[key['key']]!r}"
 
 
