@@ -138,9 +138,13 @@ def _check(options: argparse.Namespace) -> int:
     study = _study(options)
     _checked(study)
     seen = study.forecast()
-    print(f"{options.study} is valid: {study.setup.title}; {seen.points} points, {seen.runs} runs"
+    print(f"{options.study} is valid: {study.setup.title}; {_counted(seen.points, 'point')}, {_counted(seen.runs, 'run')}"
           + ("" if seen.is_complete else " to begin with"))
     return 0
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _status(options: argparse.Namespace) -> int:
