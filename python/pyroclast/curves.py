@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
+_WITHIN_FIT = 0.2  # of f_c: a stress within those to which E is fitted, so that its line passes through the curve there
 _LEAST_BAND = 0.01  # difference of the platens over the stress, below which it is no wider than the curve
 _TABLE_LOOKS = [(colour, dashes) for dashes in ((0, (5, 2)), (0, (2, 1.2)))
                 for colour in (style.GREEN, style.PURPLE, style.BLACK, style.SKY)]
@@ -71,9 +72,12 @@ def _draw_run(axes: Axes, run: Results) -> None:
         at, strength = run.peak
         axes.plot(style.PER_MILLE * at, strength, "D", color=style.BLUE, markersize=5.0, zorder=4.5, linestyle="none",
                   label=f"its $f_c$, {strength:.3g} MPa")
-        if isinstance(modulus := run.compression.get("E_GPa"), float) and not run.compression.get("toe_strain"):
-            reach = 1.02 * strength / modulus  # per mille: MPa over GPa
-            axes.plot([0.0, reach], [0.0, 1.02 * strength], color=style.BLACK, linewidth=0.7, zorder=2.8,
+        stress = run.loaded_history("stress_MPa")
+        passes = int(np.argmax(stress >= _WITHIN_FIT * strength))
+        if isinstance(modulus := run.compression.get("E_GPa"), float) and stress[passes] >= _WITHIN_FIT * strength:
+            first = max(0.0, strain[passes] - stress[passes] / modulus)  # per mille: MPa over GPa
+            ends = np.array([first, strain[passes] + (1.02 * strength - stress[passes]) / modulus])
+            axes.plot(ends, stress[passes] + modulus * (ends - strain[passes]), color=style.BLACK, linewidth=0.7, zorder=2.8,
                       label=f"its $E$, {modulus:.3g} GPa")
     if np.nanmax(np.abs(top - bottom)) > _LEAST_BAND * np.nanmax(np.abs(top)):
         rows = style.kept(strain, top, bottom)

@@ -20,8 +20,10 @@ import h5py
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
+from PIL import Image
 
 HERE = Path(__file__).resolve().parent
+IMAGES = HERE.parents[1] / "docs" / "images"
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
 
 import synthetic_run  # noqa: E402
@@ -273,6 +275,22 @@ class CommandsMakePictures(FolderTest):
         lines = [lines[0] + ",temperature_C", *(line + ",20" for line in lines[1:])]
         (self.run_folder / "history.csv").write_text("\n".join(lines))
         self.assertEqual(self.command("run", self.run_folder)[0], 0)
+
+
+class PicturesOfTheDocs(unittest.TestCase):
+    """Committed pictures of cracked specimens, which a palette of few colours would turn grey."""
+
+    WITH_CRACKS = ("case_biaxial", "case_brazilian", "case_cyclic", "case_direct_tension", "case_hot_compression",
+                   "case_hot_strength", "case_limestone", "case_notched_beam", "case_residual_capacity",
+                   "case_restrained_heating", "case_starter_3d", "case_wall_bent", "fracture", "hot_concrete_levels", "levels")
+    NEAR = 20  # of 765: rounding to the palette
+
+    def test_broken_tension_is_orange(self):
+        for name in self.WITH_CRACKS:
+            with self.subTest(name), Image.open(IMAGES / f"{name}.png") as picture:
+                colours = np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0).astype(int)
+                wanted = np.round(255 * np.array(to_rgba(style.TENSION_COLOUR)[:3]))
+                self.assertLess(np.abs(colours - wanted).sum(axis=1).min(), self.NEAR)
 
 
 class PropertiesFigure(FolderTest):
