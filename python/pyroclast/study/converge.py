@@ -19,10 +19,9 @@ from .. import _core
 from ..decks import toml
 from ..errors import Error
 from ..writing import make_folder, write_text
-from .driver import duration, free_cores
+from .driver import duration
 from .parameters import scaled, value_at
-from .scatter import change_of, result_names
-from .study import Study
+from .scatter import deck_text, has_scatter, result_names, study_of_seeds, values_of
 
 _AS_IT_STANDS = "as it stands"
 # Of a stage, by its kind: keys that say how fast it goes, and keys that say for how long.
@@ -44,10 +43,11 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     deck = Path(options.study).resolve()
     out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-converge"))
     given = list(options.set or [])
-    text = _core.written(_core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), given, [], [], False, False))
-    variants = [Variant(_AS_IT_STANDS, ()), *variants_of(tomllib.loads(text))]
-    names = result_names(deck, given)
-    studies = [_study(deck, out, variant, given, names, options) for variant in variants]
+    text = deck_text(deck, given)
+    variants = [Variant(_AS_IT_STANDS, ()), *variants_of(tomllib.loads(_core.written(text)))]
+    names = result_names(text)
+    studies = [study_of_seeds(deck, make_folder(out / variant.name.replace(" ", "_")), f"{deck.stem}: {variant.name}",
+                              [*given, *variant.changes], names, options) for variant in variants]
     for variant, study in zip(variants, studies):
         study.check()
         if options.dry_run:
@@ -58,17 +58,15 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     values: dict[str, dict[str, NDArray[np.float64]]] = {}
     for variant, study in zip(variants, studies):
         say(variant.name)
-        if not study.run(jobs=options.jobs or free_cores(), say=say):
+        if not study.run(jobs=options.jobs, say=say):
             say("stopped; to go on: the same command")
             return 130
         rows = study.rows()
         if all(row[name] is None for row in rows for name in names):
             say(f"                no result: {rows[0]['reason']}")
-        values[variant.name] = {name: np.array([np.nan if row[name] is None else float(row[name]) for row in rows])
-                                for name in names}
+        values[variant.name] = values_of(rows, names)
     found = [effect(name, variant, values[_AS_IT_STANDS][name], values[variant.name][name])
-             for variant in variants[1:] for name in names
-             if np.isfinite(y := values[_AS_IT_STANDS][name]).any() and np.nanmax(np.abs(y)) > 0.0]
+             for variant in variants[1:] for name in names if has_scatter(values[_AS_IT_STANDS][name])]
     if not found:
         raise Error("no seed gave a result as the deck stands")
     for line in _lines(values[_AS_IT_STANDS], found):
@@ -110,16 +108,6 @@ def _found(deck: Mapping[str, Any], paths: Sequence[str]) -> list[str]:
 
 def _scaled(deck: Mapping[str, Any], paths: Sequence[str], factor: float) -> tuple[str, ...]:
     return tuple(f"{path}={toml(scaled(path, value_at(deck, path), factor))}" for path in paths)
-
-
-def _study(deck: Path, out: Path, variant: Variant, given: Sequence[str], names: Sequence[str],
-           options: argparse.Namespace) -> Study:
-    folder = make_folder(out / variant.name.replace(" ", "_"))
-    changes = dict(change_of(text) for text in (*given, *variant.changes))
-    return Study(folder / "study.toml", program=options.program, title=f"{deck.stem}: {variant.name}",
-                 study={"deck": str(deck), "folder": ".", "seeds": options.seeds, "first_seed": options.seed,
-                        **({"changes": changes} if changes else {})},
-                 method={"kind": "ensemble"}, outputs={name: name for name in names})
 
 
 @dataclass(frozen=True)

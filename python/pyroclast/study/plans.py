@@ -308,6 +308,13 @@ class _ToTargets(_Plan):
         """(points, seeds, targets)."""
         return np.stack([answers.y[t.output] for t in self.study.targets], axis=2)
 
+    def _answer(self, ask: Ask, u: Array) -> calibration.Answer:
+        """What is known of the targets at a point (k,)."""
+        answers = ask(u[None, :], self.study.seeds)
+        if not answers.is_feasible[0]:
+            return calibration.Infeasible()
+        return self._of_targets(answers)[0] if answers.has_all() else None
+
 
 class _Calibrate(_ToTargets):
     draws_as_it_goes = True
@@ -322,13 +329,7 @@ class _Calibrate(_ToTargets):
                                         most_generations=int(s["generations"]), least_sigma=float(s["least_step"]),
                                         least_gain=float(s["least_gain"]), patience=int(s["patience"]))
 
-        def answer(u: Array) -> calibration.Answer:
-            answers = ask(u[None, :], self.study.seeds)
-            if not answers.is_feasible[0]:
-                return calibration.Infeasible()
-            return self._of_targets(answers)[0] if answers.has_all() else None
-
-        return calibration.calibrate(self.k, self._targets, settings, answer)
+        return calibration.calibrate(self.k, self._targets, settings, lambda u: self._answer(ask, u))
 
     def findings(self, ask: Ask) -> dict[str, Any]:
         found = self._search(ask)
@@ -373,10 +374,8 @@ class _Secant(_ToTargets):
                           else 2.0 * (high - low) / (high + low))
 
         def answer(u: Array) -> calibration.Answer:
-            answers = ask(u[None, :], self.study.seeds)
-            if not answers.is_feasible[0]:
-                return calibration.Infeasible()
-            return self._of_targets(answers)[0][:, order] if answers.has_all() else None
+            known = self._answer(ask, u)
+            return known[:, order] if isinstance(known, np.ndarray) else known
 
         return secant.approach(ordered, np.full(self.k, 0.5), np.array(slopes), int(self.settings["rounds"]), answer)
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..comparisons import compare_seeds
@@ -20,7 +21,6 @@ from ..errors import Error
 from ..results import Results
 from ..style import save
 from ..writing import make_folder, write_text
-from .driver import free_cores
 from .methods import ensemble
 from .study import Study
 
@@ -39,22 +39,19 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     """
     deck = Path(options.study).resolve()
     out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-seeds"))
-    changes = dict(change_of(text) for text in options.set or [])
-    names = result_names(deck, options.set or [])
+    changes = options.set or []
+    names = result_names(deck_text(deck, changes))
     if not names:
         raise Error(f"{options.study}: its run has no result that could scatter: state [[stages.results]], or a stage that "
                     "measures one")
-    study = Study(out / "study.toml", program=options.program, title=f"Scatter of {deck.stem}",
-                  study={"deck": str(deck), "folder": ".", "seeds": options.seeds,
-                         "first_seed": options.seed, "keep": "history", **({"changes": changes} if changes else {})},
-                  method={"kind": "ensemble"}, outputs={name: name for name in names})
+    study = study_of_seeds(deck, out, f"Scatter of {deck.stem}", changes, names, options, keep="history")
     for warning in study.check():
         say(f"warning         {warning}")
-    if not study.run(jobs=options.jobs or free_cores(), say=say):
+    if not study.run(jobs=options.jobs, say=say):
         say("stopped; to go on: the same command")
         return 130
     rows = study.rows()
-    found = _summaries(rows, names)
+    found = {name: ensemble.summary(y) for name, y in values_of(rows, names).items() if has_scatter(y)}
     if not found:
         reasons = sorted({str(row["reason"]) for row in rows})
         raise Error(f"no seed gave a result: {'; '.join(reasons[:3])}")
@@ -67,28 +64,48 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     return 0
 
 
-def change_of(text: str) -> tuple[str, Any]:
+def deck_text(deck: Path, changes: Sequence[str]) -> _core.DeckText:
+    """A deck with changes as --set takes them."""
+    return _core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), list(changes), [], [], False, False)
+
+
+def result_names(deck: _core.DeckText) -> list[str]:
+    """Names of the results of a deck's run, without those numbers that say how it was computed."""
+    session = _core.Session.begin(deck, None, 1, "", None, None, False)
+    numbers = session.summary_numbers()
+    session.close()
+    return [name for name in numbers if "." not in name and not _OF_THE_COMPUTATION.fullmatch(name)]
+
+
+def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str], names: Sequence[str],
+                   options: argparse.Namespace, **keys: str) -> Study:
+    """An ensemble of a deck in a folder. changes: as --set takes them; names: of its outputs; keys: further ones of
+    [study].
+    """
+    stated = dict(map(_change, changes))
+    return Study(folder / "study.toml", program=options.program, title=title,
+                 study={"deck": str(deck), "folder": ".", "seeds": options.seeds, "first_seed": options.seed, **keys,
+                        **({"changes": stated} if stated else {})},
+                 method={"kind": "ensemble"}, outputs={name: name for name in names})
+
+
+def values_of(rows: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """Results by name, a number for each seed; NaN where it has none."""
+    return {name: np.array([np.nan if row[name] is None else float(row[name]) for row in rows]) for name in names}
+
+
+def has_scatter(y: NDArray[np.float64]) -> bool:
+    """Whether a seed has the result, and it is not 0 in all of them."""
+    return bool(np.isfinite(y).any() and np.nanmax(np.abs(y)) > 0.0)
+
+
+def _change(text: str) -> tuple[str, Any]:
     """A key and its value of `--set key=value`; what is no TOML is a text."""
     path, _, value = text.partition("=")
     try:
         return path.strip(), tomllib.loads(f"value = {value}")["value"]
     except tomllib.TOMLDecodeError:
         return path.strip(), value.strip()
-
-
-def result_names(deck: Path, changes: Sequence[str]) -> list[str]:
-    """Names of the results of a deck's run, without those numbers that say how it was computed."""
-    text = _core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), list(changes), [], [], False, False)
-    session = _core.Session.begin(text, None, 1, "", None, None, False)
-    numbers = session.summary_numbers()
-    session.close()
-    return [name for name in numbers if "." not in name and not _OF_THE_COMPUTATION.fullmatch(name)]
-
-
-def _summaries(rows: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, ensemble.Summary]:
-    """Of each result that a seed has, and that is not 0 in all of them."""
-    values = {name: [np.nan if row[name] is None else float(row[name]) for row in rows] for name in names}
-    return {name: ensemble.summary(y) for name, y in values.items() if np.isfinite(y).any() and np.nanmax(np.abs(y)) > 0.0}
 
 
 def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:

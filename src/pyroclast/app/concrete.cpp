@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -21,6 +20,7 @@
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/specimen/grading_curve.hpp"
 #include "pyroclast/units/units.hpp"
 
 namespace pyroclast::app {
@@ -53,8 +53,8 @@ struct Found {
 struct Asked {
   double strength = 0.0, modulus = 0.0, fraction = 0.0, width = 0.0, height = 0.0, d_min = 0.0, d_max = 0.0;
   const Rock* rock = nullptr;
-  std::vector<std::pair<double, double>> passing;  ///< size, m, and share that passes
-  std::optional<double> hot;                       ///< °C
+  specimen::GradingCurve passing;  ///< empty: Fuller's curve
+  std::optional<double> hot;       ///< °C
 };
 
 double quantity_of(const char* option, const std::string& text, const Unit& unit, double least, double most) {
@@ -70,8 +70,8 @@ double quantity_of(const char* option, const std::string& text, const Unit& unit
   return value;
 }
 
-/// Reads points of a grading such as "8 mm=45 %", ascending.
-std::vector<std::pair<double, double>> passing_of(const std::vector<std::string>& texts) {
+/// Reads points of a grading such as "8 mm=45 %".
+specimen::GradingCurve passing_of(const std::vector<std::string>& texts) {
   std::vector<std::pair<double, double>> points;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
@@ -86,16 +86,12 @@ std::vector<std::pair<double, double>> passing_of(const std::vector<std::string>
       throw Error("--passing: a larger sieve must let through as much or more, and each size stands once");
   if (!points.empty() && points.back().second < 1.0)
     throw Error("--passing: all must pass the largest sieve: its share must be 100 %");
-  return points;
-}
-
-/// Returns the share that passes a size, straight between points.
-double share_at(const std::vector<std::pair<double, double>>& passing, double size) {
-  const auto above = std::ranges::lower_bound(passing, size, {}, &std::pair<double, double>::first);
-  if (above == passing.end()) return 1.0;
-  if (above == passing.begin()) return above->first == size ? above->second : 0.0;
-  const auto& [low, at_low] = *std::prev(above);
-  return at_low + (above->second - at_low) * (size - low) / (above->first - low);
+  specimen::GradingCurve curve;
+  for (const auto& [size, share] : points) {
+    curve.sizes.push_back(size);
+    curve.shares.push_back(share);
+  }
+  return curve;
 }
 
 Asked asked_of(const ConcreteOptions& o) {
@@ -107,13 +103,13 @@ Asked asked_of(const ConcreteOptions& o) {
   a.height = quantity_of("--height", o.height, unit::length, 0.02, 2.0);
   a.d_min = quantity_of("--d_min", o.d_min, unit::length, 5e-4, 0.1);
   a.passing = passing_of(o.passing);
-  if (a.passing.empty() && o.d_max.empty())
+  if (a.passing.sizes.empty() && o.d_max.empty())
     throw Error(
         "--d_max is needed: the largest aggregate, such as --d_max '20 mm', or --passing for each sieve");
-  if (!a.passing.empty() && !o.d_max.empty())
+  if (!a.passing.sizes.empty() && !o.d_max.empty())
     throw Error("--d_max has no meaning beside --passing: all passes the largest sieve");
-  a.d_max =
-      a.passing.empty() ? quantity_of("--d_max", o.d_max, unit::length, 1e-3, 0.15) : a.passing.back().first;
+  a.d_max = a.passing.sizes.empty() ? quantity_of("--d_max", o.d_max, unit::length, 1e-3, 0.15)
+                                    : a.passing.sizes.back();
   if (a.d_max <= a.d_min)
     throw Error(fmt::format("the largest aggregate, {:g} mm, must be larger than --d_min, {:g} mm",
                             1e3 * a.d_max, 1e3 * a.d_min));
@@ -125,7 +121,7 @@ Asked asked_of(const ConcreteOptions& o) {
     a.fraction = quantity_of("--fraction", o.fraction, unit::dimensionless, 0.0, 0.6);
   } else {
     const double mass = quantity_of("--stones", o.stones, unit::density, 0.0, 3000.0);
-    const double coarse = a.passing.empty() ? 1.0 : 1.0 - share_at(a.passing, a.d_min);
+    const double coarse = a.passing.sizes.empty() ? 1.0 : 1.0 - specimen::share_at(a.passing, a.d_min);
     a.fraction = mass / a.rock->density.value * coarse;
     if (a.fraction > 0.6)
       throw Error(
@@ -137,14 +133,19 @@ Asked asked_of(const ConcreteOptions& o) {
   return a;
 }
 
+/// Returns a positive number with so many significant digits.
+double rounded(double value, int digits) {
+  const double last = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1));
+  return std::round(value / last) * last;
+}
+
 /// Returns the number of blocks, two digits of it.
 int block_count(const Asked& asked, std::int64_t stated) {
   if (stated > 0) return static_cast<int>(stated);
   const double size = asked.d_max / kBlocksInAggregate;
   const double count = std::clamp(asked.width * asked.height / (size * size),
                                   static_cast<double>(kFewestBlocks), static_cast<double>(kMostBlocks));
-  const double digit = std::pow(10.0, std::floor(std::log10(count)) - 1.0);
-  return static_cast<int>(std::round(std::round(count / digit) * digit));
+  return static_cast<int>(std::round(rounded(count, 2)));
 }
 
 std::string in(double value, double scale, const char* unit) {
@@ -152,7 +153,7 @@ std::string in(double value, double scale, const char* unit) {
 }
 
 std::string grading(const Asked& a) {
-  if (a.passing.empty()) {
+  if (a.passing.sizes.empty()) {
     std::vector<std::string> sieves;
     for (const double size : {8.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0})
       if (size > 1.05e3 * a.d_min && size < 0.95e3 * a.d_max)
@@ -165,8 +166,9 @@ std::string grading(const Asked& a) {
         in(a.d_min, 1e3, "mm"), in(a.d_max, 1e3, "mm"), fmt::join(sieves, ", "));
   }
   std::vector<std::string> points;
-  for (const auto& [size, share] : a.passing)
-    points.push_back(fmt::format("[\"{}\", \"{}\"]", in(size, 1e3, "mm"), in(share, 100.0, "%")));
+  for (std::size_t i = 0; i < a.passing.sizes.size(); ++i)
+    points.push_back(fmt::format("[\"{}\", \"{}\"]", in(a.passing.sizes[i], 1e3, "mm"),
+                                 in(a.passing.shares[i], 100.0, "%")));
   return fmt::format(
       "d_min = \"{}\"            # what is smaller belongs to the mortar\npassing = [{}]\n"
       "passing_by = \"volume\"        # of the stones, or their mass",
@@ -340,13 +342,9 @@ Found guess(const Asked& a, const ConcreteOptions& o) {
         "GPa; choose E between these, another fraction, or another rock",
         o.modulus, a.fraction, a.rock->name, a.rock->modulus.value, 1e-9 * least, 1e-9 * most,
         1e-9 / (of_rock + slope / least), 1e-9 / (of_rock + slope / most)));
-  const auto three_digits = [](double x) {
-    const double digit = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
-    return std::round(x / digit) * digit;
-  };
-  found.mortar_modulus = three_digits(slope / wanted);
+  found.mortar_modulus = rounded(slope / wanted, 3);
   const double of_stiffness = std::pow(found.mortar_modulus / kPaperMortar, kOfStiffness);
-  found.factor = three_digits(std::pow(a.strength / (kStrength * of_stiffness), 1.0 / kOfFactor));
+  found.factor = rounded(std::pow(a.strength / (kStrength * of_stiffness), 1.0 / kOfFactor), 3);
   for (double* number : {&found.f_t, &found.f_cm, &found.c_o, &found.c_res, &found.G_f1, &found.G_f2})
     *number *= found.factor;
   return found;

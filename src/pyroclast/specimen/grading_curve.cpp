@@ -14,14 +14,6 @@ namespace {
 /// Number of equal parts, by size, into which each interval between two sieves is cut.
 constexpr int kParts = 16;
 
-double share_at(const GradingCurve& curve, double size) {
-  const auto next = std::ranges::upper_bound(curve.sizes, size) - curve.sizes.begin();
-  if (next == 0) return curve.shares.front();
-  if (next == std::ssize(curve.sizes)) return curve.shares.back();
-  const double part = (size - curve.sizes[next - 1]) / (curve.sizes[next] - curve.sizes[next - 1]);
-  return curve.shares[next - 1] + part * (curve.shares[next] - curve.shares[next - 1]);
-}
-
 /// Returns the integral of 1 - 3/2 u + 1/2 u^3 over D from 0 to a diameter, m, with u = sqrt(1 - (s / D)^2);
 /// u is 0 where D is below s.
 double integral_to(double diameter, double s) {
@@ -30,6 +22,14 @@ double integral_to(double diameter, double s) {
 }
 
 }  // namespace
+
+double share_at(const GradingCurve& curve, double size) {
+  const auto next = std::ranges::upper_bound(curve.sizes, size) - curve.sizes.begin();
+  if (next == 0) return curve.shares.front();
+  if (next == std::ssize(curve.sizes)) return curve.shares.back();
+  const double part = (size - curve.sizes[next - 1]) / (curve.sizes[next] - curve.sizes[next - 1]);
+  return curve.shares[next - 1] + part * (curve.shares[next] - curve.shares[next - 1]);
+}
 
 GradingCurve above(const GradingCurve& curve, double d_min) {
   if (d_min < curve.sizes.front() || d_min >= curve.sizes.back())

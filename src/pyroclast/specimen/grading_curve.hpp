@@ -10,6 +10,9 @@ struct GradingCurve {
   std::vector<double> shares;  ///< shares from 0 up to 1, none falls
 };
 
+/// Returns the share that passes a size, m: beyond the sieves that of the nearest.
+double share_at(const GradingCurve& curve, double size);
+
 /// Returns the curve of the stones larger than a size (m): 0 there and 1 at its end. Ends without stones are
 /// left out. Throws Error where no stone is larger, or the size lies below the curve.
 GradingCurve above(const GradingCurve& curve, double d_min);

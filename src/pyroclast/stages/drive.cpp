@@ -628,7 +628,7 @@ double Drive::came(std::size_t i, const std::map<std::string, SetLoad>& loads, d
 
 /// Sets the pair of forces that holds the opening on its course, and changes the loads until the pair has
 /// nothing left to do.
-void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads) {
+void Drive::steer(const Simulation& simulation, double time, std::int64_t interval, ChangedLoads& loads) {
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
   const double opening = record.read(simulation);
@@ -638,7 +638,7 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   kept_.pair_force = control.stiffness * behind;
   const double whole = std::abs(control.rate) * keys_.duration;
   kept_.is_lost = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
-  const double step = static_cast<double>(steps_per_adjustment(simulation)) * simulation.motion().time_step();
+  const double step = static_cast<double>(interval) * simulation.motion().time_step();
   // the parts that bear the load now bear the pair beside it
   kept_.largest_with_pair =
       std::max(kept_.largest_with_pair, total_load(kept_.load_factor) + std::abs(kept_.pair_force));
@@ -691,17 +691,18 @@ std::int64_t Drive::duration_in_steps(const Simulation& simulation) const {
 }
 
 /// Returns the number of steps for which the present loads and velocities act.
-std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
-  const std::int64_t interval = steps_per_adjustment(simulation);
+std::int64_t Drive::steps_to_come(const Simulation& simulation, std::int64_t interval) const {
   return std::min(interval, duration_in_steps(simulation) - (kept_.steps - kept_.steps % interval));
 }
 
 /// Lets the loads and velocities of the middle of the steps to come act.
-void Drive::act(Simulation& simulation) {
-  const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.motion().time_step();
+/// \param adjustment  steps between two adjustments
+void Drive::act(Simulation& simulation, std::int64_t adjustment) {
+  const double interval =
+      static_cast<double>(steps_to_come(simulation, adjustment)) * simulation.motion().time_step();
   const double middle = time(simulation) + 0.5 * interval;
   ChangedLoads loads;
-  if (keys_.control) steer(simulation, middle, loads);
+  if (keys_.control) steer(simulation, middle, adjustment, loads);
   kept_.is_driven = keys_.control && keys_.control->rate != 0.0;
   for (const auto& [set, load] : loads_at(middle)) loads[set] = load;
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
@@ -742,8 +743,9 @@ void Drive::take_peaks(const Simulation& simulation) {
 
 bool Drive::advance(Simulation& simulation, int most_steps) {
   const std::int64_t interval = steps_per_adjustment(simulation);
-  if (kept_.steps % interval == 0) act(simulation);
-  const auto steps = std::min<std::int64_t>(steps_to_come(simulation) - kept_.steps % interval, most_steps);
+  if (kept_.steps % interval == 0) act(simulation, interval);
+  const auto steps =
+      std::min<std::int64_t>(steps_to_come(simulation, interval) - kept_.steps % interval, most_steps);
   simulation.motion().advance(static_cast<int>(steps));
   kept_.steps += steps;
   if (kept_.steps % kStepsPerPoint == 0) take_peaks(simulation);

@@ -101,14 +101,14 @@ class Drive : public Stage {
   const Action& longest_ramp(const std::string& set, ActionKind kind) const;
   SetLoad first_load(const std::string& set) const;
   double came(std::size_t action, const ChangedLoads& loads, double interval) const;
-  void steer(const Simulation& simulation, double time, ChangedLoads& loads);
+  void steer(const Simulation& simulation, double time, std::int64_t interval, ChangedLoads& loads);
   double unit_force() const;
   double total_load(double factor) const;
   std::int64_t steps_per_adjustment(const Simulation& simulation) const;
   static double largest_stiffness(const Simulation& simulation, const Control& control);
   std::int64_t duration_in_steps(const Simulation& simulation) const;
-  std::int64_t steps_to_come(const Simulation& simulation) const;
-  void act(Simulation& simulation);
+  std::int64_t steps_to_come(const Simulation& simulation, std::int64_t interval) const;
+  void act(Simulation& simulation, std::int64_t adjustment);
   void take_peaks(const Simulation& simulation);
   bool is_met(std::size_t condition, const Simulation& simulation);
   bool is_beyond_noise(double share, const Simulation& simulation);

@@ -55,6 +55,11 @@ def sections(seen: Seen) -> list[Section]:
     return [_of_search(seen, found, best), _of_targets(seen, found), *_of_parameters(seen, found, best)]
 
 
+def standing(found: dict[str, Any]) -> str:
+    """Whether a search is done, and why."""
+    return f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
+
+
 def generation_size(seen: Seen) -> int:
     """Points of a generation, as stated or as CMA-ES has it by default."""
     stated = int(seen.setup.method.settings["population"])
@@ -63,8 +68,7 @@ def generation_size(seen: Seen) -> int:
 
 def _of_search(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> Section:
     named = listed([f"{p.name} = {value_text(p, v)}" for p, v in zip(seen.setup.parameters, best)])
-    finished = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
-    said = (f"{finished} The best of {found['points']} points has a misfit of {number(found['best']['misfit'], 3)} for "
+    said = (f"{standing(found)} The best of {found['points']} points has a misfit of {number(found['best']['misfit'], 3)} for "
             f"{len(found['targets']['names'])} targets: {named}.")
     figures = [Shown("misfit", misfit_figure(seen, found), _MISFIT_CAPTION),
                Shown("search", search_figure(seen, found), _SEARCH_CAPTION)]

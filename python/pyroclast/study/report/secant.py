@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ... import style
-from .calibration import residuals_figure
+from .calibration import residuals_figure, standing
 from .drawing import output_label, panels, parameter_label, value_text
 from .section import PageTable, Section, Shown
 from .seen import Seen, listed, number, numbers
@@ -29,7 +29,6 @@ def sections(seen: Seen) -> list[Section]:
     targets, best = found["targets"], found["best"]
     labels = {o.name: output_label(o) for o in seen.setup.outputs}
     named = listed([f"{p.name} = {value_text(p, p.distribution.at(u))}" for p, u in zip(seen.setup.parameters, best["u"])])
-    said = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
     head = ["round", *map(parameter_label, seen.setup.parameters), *(labels[name] for name in targets["names"])]
     rows = [[str(i + 1), *(value_text(p, p.distribution.at(x)) for p, x in zip(seen.setup.parameters, u)),
              *(number(value) for value in y)]
@@ -38,7 +37,7 @@ def sections(seen: Seen) -> list[Section]:
     met = [[labels[name], number(value, 4), number(sd, 3), number(y), number(error, 2)]
            for name, value, sd, y, error
            in zip(targets["names"], targets["values"], targets["sd"], best["y"], best["error"])]
-    return [Section("Rounds", [f"{said} Round {best['round'] + 1} comes nearest: {named}.", _ROUNDS],
+    return [Section("Rounds", [f"{standing(found)} Round {best['round'] + 1} comes nearest: {named}.", _ROUNDS],
                     [Shown("rounds", rounds_figure(seen, found), _ROUNDS_CAPTION)], [PageTable(head, rows)]),
             Section("Targets", [_OPEN],
                     [Shown("targets", residuals_figure(targets["names"], residuals), _RESIDUALS_CAPTION)],
