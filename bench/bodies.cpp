@@ -19,7 +19,7 @@ using pyroclast::Vec;
 
 namespace {
 
-/// Mean of specimens of 1,000 to 100,000 blocks (docs/performance.md).
+/// Mean of specimens of 1,000 to 100,000 blocks (docs/develop/performance.md).
 constexpr double kZonesPerBlock = 5.4;
 /// Axial strain that is imposed, and the steps in which.
 constexpr double kIntactStrain = 1e-4, kCrackedStrain = 5e-3;

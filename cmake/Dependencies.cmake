@@ -1,4 +1,4 @@
-# Every dependency is a Debian package; docs/dependencies.md gives the reason for each.
+# Every dependency is a Debian package; docs/develop/dependencies.md gives the reason for each.
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)

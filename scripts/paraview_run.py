@@ -6,7 +6,7 @@ In the Python shell of ParaView's window:
 
     import sys; sys.path.append("scripts"); import paraview_run; paraview_run.show("RUN")
 
-docs/fields.md lists the arrays.
+docs/lookup/fields.md lists the arrays.
 """
 
 from __future__ import annotations

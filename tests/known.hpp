@@ -10,7 +10,7 @@
 
 /// Comparisons with what is known beforehand. Suites that hold them have "Verification" in their names. With
 /// the environment variable PYROCLAST_VERIFICATION each comparison adds a line to the file that it names,
-/// from which validation/verification makes docs/verification.md.
+/// from which validation/verification makes docs/understand/verification.md.
 namespace pyroclast {
 
 /// What is known: a closed form, a published benchmark or table, an independent solution.

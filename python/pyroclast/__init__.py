@@ -5,8 +5,8 @@
     for state in run:
         print(state.strain, state.stress)
 
-docs/python.md tells how to script it. Results and figures need no more than a folder, and not the compiled part of the
-package:
+docs/do/python.md tells how to script it. Results and figures need no more than a folder, and not the compiled part of
+the package:
 
     python3 -m pyroclast.figures run RUN_DIR
     python3 -m pyroclast.figures specimen DIR

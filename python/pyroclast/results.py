@@ -531,7 +531,7 @@ class Results:
 
     @cached_property
     def fields(self) -> xarray.Dataset:
-        """The fields of all frames: an array for each of the files' (docs/fields.md), by its name without the unit,
+        """The fields of all frames: an array for each in the files (docs/lookup/fields.md), by its name without unit,
         which stands in its `attrs["units"]`. Stress and strain are positive in tension.
 
         A frame is read when values of it are asked for, and nothing is kept: `fields["stress"].isel(frame=-1)` takes

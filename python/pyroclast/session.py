@@ -146,7 +146,7 @@ class Views:
 class Fields(Mapping[str, Array]):
     """Fields of gridpoints and zones now, by name with unit, `run.fields["stress_Pa"]`, or without,
     `run.fields.stress`: (items,) numbers, (items, 2) vectors x and y, (items, 6) symmetric tensors xx, yy, zz, xy, yz,
-    xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/fields.md lists them.
+    xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/lookup/fields.md lists them.
     """
 
     def __init__(self, core: _core.Session):
@@ -729,7 +729,7 @@ class Run:
 
     def contacts(self) -> pandas.DataFrame:
         """State of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the number of the
-        `face`, `area_m2`, `normal_x` and `normal_y`, and the fields of contacts that are numbers (docs/fields.md):
+        `face`, `area_m2`, `normal_x` and `normal_y`, and fields of contacts that are numbers (docs/lookup/fields.md):
         `opening_m`, what their laws remember (`closure_m`), what they lost (`lost_tension_J_m2`), ...
         """
         columns = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}

@@ -1,4 +1,7 @@
-"""docs/deck-reference.md is what `pyroclast keys` prints, and has every key of the cases. PYROCLAST names the program."""
+"""docs/lookup/deck-reference.md is what `pyroclast keys` prints, and has every key of the cases.
+
+PYROCLAST names the program.
+"""
 
 import os
 import pathlib
@@ -8,7 +11,7 @@ import tomllib
 import unittest
 
 ROOT = pathlib.Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "deck-reference.md"
+PAGE = ROOT / "docs" / "lookup" / "deck-reference.md"
 PROGRAM = os.environ["PYROCLAST"]
 FORMS = re.compile(r"curve over the (?:time|temperature)")
 
@@ -58,9 +61,9 @@ class DeckReference(unittest.TestCase):
         self.assertEqual(printed, PAGE.read_text("utf-8"), f"to renew it: pyroclast keys > {PAGE.relative_to(ROOT)}")
 
     def test_page_of_laws_is_what_the_program_prints(self):
-        page = ROOT / "docs" / "laws.md"
+        page = ROOT / "docs" / "lookup" / "laws.md"
         printed = subprocess.run([PROGRAM, "laws"], capture_output=True, text=True, check=True, encoding="utf-8").stdout
-        self.assertEqual(printed, page.read_text("utf-8"), "to renew it: pyroclast laws > docs/laws.md")
+        self.assertEqual(printed, page.read_text("utf-8"), "to renew it: pyroclast laws > docs/lookup/laws.md")
 
     def test_has_every_key_of_every_case(self):
         tables = read_reference(PAGE.read_text("utf-8"))

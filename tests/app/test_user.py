@@ -216,7 +216,7 @@ class FireUnderLoad(UserTest):
         self.assertGreater(jumps, 0)
 
     def test_every_array_is_documented_and_the_script_names_those_that_are_there(self):
-        page = (CASES.parent / "docs" / "fields.md").read_text()
+        page = (CASES.parent / "docs" / "lookup" / "fields.md").read_text()
         names = set()
         for name in ("blocks_0007.hdf", "contacts_0007.hdf"):
             fields = self.read(name)

@@ -269,9 +269,9 @@ TEST(BuiltinCurves, AnUnknownNameIsAnsweredWithTheNearestAndAll) {
   }
 }
 
-// The table of docs/deck.md, with unit and range.
+// The table of docs/understand/deck.md, with unit and range.
 TEST(BuiltinCurves, AreAllInTheManual) {
-  std::ifstream file(PYROCLAST_DOCS "/deck.md");
+  std::ifstream file(PYROCLAST_DOCS "/understand/deck.md");
   std::stringstream manual;
   manual << file.rdbuf();
   for (const NamedCurve& entry : builtin_curves().entries()) {

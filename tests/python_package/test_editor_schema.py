@@ -190,7 +190,7 @@ def missing_key(draw: random.Random, deck: dict[str, Any]) -> str:
 
 
 FAULTS = (unknown_key, wrong_type, other_unit, out_of_range, missing_key)
-# Faults that the readers alone can see (docs/editors.md).
+# Faults that the readers alone can see (docs/do/editors.md).
 READERS_ALONE = re.compile(r"""
     missing_key:\ without\ (materials|contacts)\.\w+$            # tables that the deck names
     | missing_key:\ without\ \.(record|platens|output|superposition|aggregates|bearings|sets|heat|coupling|inclusions)$  # for others

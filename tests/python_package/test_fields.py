@@ -1,4 +1,4 @@
-"""Promise: docs/fields.md lists what the library's one list of fields has, in its words."""
+"""Promise: docs/lookup/fields.md lists what the library's one list of fields has, in its words."""
 
 import pathlib
 import re
@@ -12,7 +12,7 @@ _MESH = {"block", "material", "bearing", "interface", "length [m]", "area [m2]"}
 
 class Docs(unittest.TestCase):
     def test_the_tables_are_those_of_the_list(self):
-        text = (ROOT / "docs/fields.md").read_text()
+        text = (ROOT / "docs/lookup/fields.md").read_text()
         tables = [re.findall(r"^\| `([^`]+)` \| (points|cells) \| (.*) \|$", table, re.MULTILINE)
                   for table in text.split("\n| array |")[1:]]
         self.assertEqual(len(tables), 2)

@@ -1,4 +1,4 @@
-"""docs/python-reference.md is what scripts/python-reference prints, and has every public name."""
+"""docs/lookup/python-reference.md is what scripts/python-reference prints, and has every public name."""
 
 import pathlib
 import re
@@ -10,14 +10,14 @@ import pyroclast
 from pyroclast import units
 
 ROOT = pathlib.Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "python-reference.md").read_text()
+PAGE = (ROOT / "docs" / "lookup" / "python-reference.md").read_text()
 
 
 class Reference(unittest.TestCase):
     def test_the_page_is_that_of_the_docstrings(self):
         script = ROOT / "scripts" / "python-reference"
         printed = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True).stdout
-        self.assertEqual(printed, PAGE, "scripts/python-reference > docs/python-reference.md")
+        self.assertEqual(printed, PAGE, "scripts/python-reference > docs/lookup/python-reference.md")
 
     def test_every_public_name_is_on_it(self):
         for names in pyroclast._PLACES.values():

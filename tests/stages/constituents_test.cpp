@@ -15,7 +15,7 @@
 namespace pyroclast {
 namespace {
 
-/// Strength of aggregate, with its loss by temperature (docs/deck.md), and what a test may change.
+/// Strength of aggregate, with its loss by temperature (docs/understand/deck.md), and what a test may change.
 const std::string kStone = R"(law = "cohesive"
 temperature_ratio = { table = [["20 degC", 1], ["200 degC", 0.9], ["400 degC", 0.75], ["600 degC", 0.45]] }
 f_t = "10 MPa"
@@ -248,7 +248,7 @@ std::string hot_concrete() {
          "[materials.mortar.creep]\nk2 = 2.35\n";
 }
 
-/// The same with the other law, as docs/deck.md says.
+/// The same with the other law, as docs/understand/deck.md says.
 std::string with_mixed_mode(std::string text) {
   text = with(text, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"mixed_mode\"");
   for (const char* line : {"c_res = \"0.038 MPa\"          # residual cohesion\n",

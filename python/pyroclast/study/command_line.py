@@ -13,7 +13,7 @@ _OF_DECKS = ("scatter", "converge")  # commands that make a study of a deck
 def parser() -> argparse.ArgumentParser:
     """Reads the words behind `pyroclast study`; `do` is the name of the command."""
     study = argparse.ArgumentParser(prog="pyroclast study", description="From one run to a thousand: sensitivity, "
-                                    "scatter, calibration. docs/studies.md tells what a study file holds.")
+                                    "scatter, calibration. docs/do/studies.md tells what a study file holds.")
     study.add_argument("--program", help=argparse.SUPPRESS)  # by which `pyroclast study` names itself
     commands = study.add_subparsers(required=True, metavar="COMMAND")
 

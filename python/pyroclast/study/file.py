@@ -144,7 +144,7 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
     outputs = [Output.of_function(name) for name in functions]
     outputs += _outputs(root, not outputs, "Numbers that are taken of each run, by names of your own: a number of the "
                                   "summary by its name (`\"f_c_MPa\"`), or `\"history: COLUMN at COLUMN = NUMBER\"`; see "
-                        "[studies.md](studies.md#outputs).")
+                        "[Outputs](../do/studies.md#outputs).")
     parameters = []
     tables = root.optional_table("parameters", "What is varied.")
     if tables is not None:

@@ -126,7 +126,7 @@ class Study:
 
     @property
     def findings(self) -> dict[str, Any]:
-        """What the method makes of the results; docs/studies.md tells what stands where."""
+        """What the method makes of the results; docs/do/studies.md tells what stands where."""
         return self._driver().findings()
 
     def count_values(self) -> int:

@@ -219,7 +219,7 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
       fmt::format("{}\n# {}; the share of the loss is a choice", v["ROCK_E"], a.rock->modulus.source);
   over_temperature(v["MORTAR_E"], "glasgow_modulus", ", share = 0.87");
   v["MORTAR_E"] +=
-      "\n# The share of the loss was fitted to a siliceous concrete (validation/hot_concrete.md).";
+      "\n# The share of the loss was fitted to a siliceous concrete (docs/validation/hot_concrete.md).";
   for (const char* key : {"G_F1", "G_F2"}) over_temperature(v[key], "glasgow_fracture_energy", "");
   v["HOT_CONCRETE"] = fmt::format(
       "[concrete]                   # strains of the phases follow from those of the concrete as a whole\n"
@@ -230,11 +230,11 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
   v["HOT_CREEP"] = fmt::format(
       "[materials.mortar.creep]     # load-induced thermal strain: what heating under stress shortens for "
       "good\n"
-      "k2 = 2.5                     # fitted to a siliceous concrete (validation/hot_concrete.md)\n"
+      "k2 = 2.5                     # fitted to a siliceous concrete (docs/validation/hot_concrete.md)\n"
       "f_c = \"{}\"\nnu = 0.3\ntension = 1                  # as much under tension as under compression\n\n",
       in(a.strength, 1e-6, "MPa"));
   v["HOT_STRENGTH"] =
-      "# Of f_t, f_cm and c; fitted to a siliceous concrete (validation/hot_concrete.md).\n"
+      "# Of f_t, f_cm and c; fitted to a siliceous concrete (docs/validation/hot_concrete.md).\n"
       "temperature_ratio = { expression = \"max(1 - 0.01784*((T-20)/100)^2, 0.01)\", range = [\"20 degC\", "
       "\"800 degC\"] }\n";
   v["HOT_HEAT"] = "[heat]\nfield = \"uniform\"            # the whole specimen has one temperature\n\n";

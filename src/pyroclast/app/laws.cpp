@@ -12,9 +12,9 @@ namespace {
 constexpr auto kLawsIntroduction = R"(# Contact laws
 
 The laws that are part of the program. `pyroclast laws` prints this page from the laws themselves. A deck chooses one
-with `law = "name"` in a table of `[contacts]` ([deck.md](deck.md#phases-and-interfaces)); [method.md](method.md) tells
-how they work; [architecture.md](architecture.md#add-a-law) how to add one. What each of them is tried for stands in
-[laws-verified.md](laws-verified.md).
+with `law = "name"` in a table of `[contacts]` ([Phases and interfaces](../understand/deck.md#phases-and-interfaces)).
+The [method](../understand/method.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
+one, and [What every contact law must hold](../develop/laws-verified.md) what each is tried for.
 
 - **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses.
 - **Remembered.** What a contact point carries from step to step. A value "in files" is a field of the contacts in
@@ -62,7 +62,7 @@ std::string capitalised(std::string text) {
 
 std::string page_of(const LawTable& law) {
   std::string text = fmt::format("\n## `{}`\n\n{}.\n", law.name, capitalised(law.meaning));
-  text += fmt::format("\n![{} along a path](images/law_{}.png)\n", law.name, law.name);
+  text += fmt::format("\n![{} along a path](../images/law_{}.png)\n", law.name, law.name);
   text += "\n| property | meaning | unit | allowed | role |\n|---|---|---|---|---|\n";
   for (const PropertyInfo& p : law.properties)
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.key, p.meaning, p.unit.si, p.range.describe(),

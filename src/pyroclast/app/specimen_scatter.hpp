@@ -7,7 +7,7 @@
 namespace pyroclast::app {
 
 /// Compressed specimens of a study, by the size of their blocks over d_max: how many fell clearly, and the
-/// scatter of f_c from seed to seed (validation/peaks.md).
+/// scatter of f_c from seed to seed (docs/validation/peaks.md).
 struct StudiedStrength {
   double size;
   int fell_clearly, of;

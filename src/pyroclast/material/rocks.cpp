@@ -51,7 +51,7 @@ constexpr std::array<Rock, 6> kRocks{{
      {0.14, kAashto},
      {2650.0, "of 2600 to 2700, DIN 52100"},
      {12.0, "guess: one stone had 13.1 (ABNT NBR 15845-3)"},
-     {1.55, "guess: the upper end that was studied, validation/hot_concrete.md"},
+     {1.55, "guess: the upper end that was studied, docs/validation/hot_concrete.md"},
      "glasgow_free_thermal_strain",
      kGlasgow},
     {"basalt",
@@ -67,7 +67,7 @@ constexpr std::array<Rock, 6> kRocks{{
      {0.2, kAashto},
      {2500.0, "guess"},
      {10.0, kCarmichael},
-     {1.25, "rough mean of a sandstone's dilatometer table, validation/hot_concrete.md"},
+     {1.25, "rough mean of a sandstone's dilatometer table, docs/validation/hot_concrete.md"},
      "glasgow_free_thermal_strain",
      kGlasgow},
 }};

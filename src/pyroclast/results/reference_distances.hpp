@@ -15,8 +15,8 @@ struct PlainCurve {
   std::vector<double> x, y;
 };
 
-/// Distances of a curve from a reference; docs/method.md has the formulas. Each is empty where it cannot be
-/// computed.
+/// Distances of a curve from a reference; docs/understand/method.md has the formulas. Each is empty where it
+/// cannot be computed.
 struct CurveDistances {
   std::optional<double> rms;  ///< root mean square over the common range, over the reference's greatest size
   /// Greatest size of the curve in the reference's range over the reference's, less 1.

@@ -18,18 +18,19 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// Jump over the edge on which it stands from which small and finite kinematics differ (validation/jumps.md).
+/// Jump over the edge on which it stands from which small and finite kinematics differ
+/// (docs/validation/jumps.md).
 constexpr double kLargeJump = 1.0;
 /// Largest error of the energy ledger in a sound run, over the energy turned over.
 constexpr double kEnergyTolerance = 0.005;
 /// Largest error of the energy ledger in a sound run, over the energy that contacts dissipated, which may be
-/// little of the energy turned over: measured in docs/method.md.
+/// little of the energy turned over: measured in docs/understand/method.md.
 constexpr double kDissipationTolerance = 0.01;
 /// Share of the energy turned over below which an error is no more than rounding, whatever it is compared
 /// with.
 constexpr double kRounding = 1e-6;
 /// Largest stress that an exchange of temperatures may bring at once, over the tensile strength: measured in
-/// docs/method.md.
+/// docs/understand/method.md.
 constexpr double kExchangeStress = 1.0;
 /// Error of the energy ledger, over the energy turned over, above which a run has no results: energy came
 /// from nowhere, or a body flew off.
@@ -387,7 +388,7 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
     s.warnings.push_back(fmt::format(
         "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: with "
         "mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical temperatures 8 to "
-        "28 K (validation/jumps.md)",
+        "28 K (docs/validation/jumps.md)",
         *history.cell(*row, "temperature_degC"),
         simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : ""));
   return s;

@@ -56,7 +56,7 @@ std::vector<ReadBearing> read_bearings(const Section& root) {
   for (const Section& s :
        root.optional_sections("bearings",
                               "blocks beside the specimen by which it is loaded or held, any number; see "
-                              "[bodies.md](bodies.md#bearings)")) {
+                              "[Bearings](../do/bodies.md#bearings)")) {
     ReadBearing read = read_bearing(s);
     const auto same = [&](const ReadBearing& other) { return other.bearing.name == read.bearing.name; };
     if (s.ok() && std::ranges::any_of(bearings, same))

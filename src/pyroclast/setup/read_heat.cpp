@@ -21,7 +21,7 @@ constexpr double kSafety = 0.9;
 constexpr double kLargestChange = 2.0;  // K
 constexpr double kLargestStep = 60.0;   // s
 
-// Defaults for cracks, see docs/heat.md.
+// Defaults for cracks, see docs/understand/heat.md.
 constexpr double kBridges = 5e4;        // W/(m2 K)
 constexpr double kJumpDistance = 2e-7;  // m
 constexpr double kEmissivity = 0.9;
@@ -121,7 +121,7 @@ std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveRea
                                                    const DeckSpace& space) {
   std::vector<HeatBoundaryCondition> boundaries;
   for (const Section& s :
-       heat.sections("boundaries", "what acts on faces of the specimen; see [heat.md](heat.md)")) {
+       heat.sections("boundaries", "what acts on faces of the specimen; see [Heat](../understand/heat.md)")) {
     HeatBoundaryCondition boundary{read_faces(s, space), read_condition(s, curves),
                                    fmt::format("{}: {}", s.where("faces"), s.path())};
     if (!s.ok()) continue;  // a value that stands in for an error contradicts nothing
@@ -150,7 +150,7 @@ std::optional<Interval> read_range(const Section& s, const HeatConditions& heat)
   }
   const auto ends = s.quantities(
       "temperature_range", unit::temperature, kTemperature,
-      "two temperatures between which the run stays; needed with a flux; see [heat.md](heat.md)");
+      "two temperatures between which the run stays; needed with a flux; see [Heat](../understand/heat.md)");
   if (ends.empty()) return std::nullopt;
   if (ends.size() != 2 || !(ends[0] < ends[1])) {
     s.error("temperature_range", "two temperatures are needed, the lower one first");
@@ -178,7 +178,7 @@ void read_conduction(const Section& s, CurveReader& time_curves, const DeckSpace
       "scheme",
       {{"rkl2", HeatScheme::super_time_stepping, "Runge-Kutta-Legendre super-time-stepping, second order"},
        {"euler", HeatScheme::euler, "forward Euler, first order"}},
-      HeatScheme::super_time_stepping, "how time is advanced; see [heat.md](heat.md)");
+      HeatScheme::super_time_stepping, "how time is advanced; see [Heat](../understand/heat.md)");
   heat.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, kSafety,
                          "fraction of the stable step that is taken");
   heat.largest_change = s.quantity("largest_change", unit::temperature_difference, Range::positive(),
@@ -208,7 +208,7 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
     law.split_below = s.quantity(
         "split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5),
         "conductance below which a contact parts the temperatures of its sides; above twice that it "
-        "joins them; without it 20 λ / ℓ of the specimen; see [heat.md](heat.md#cracks)");
+        "joins them; without it 20 λ / ℓ of the specimen; see [Cracks](../understand/heat.md#cracks)");
   const Interval needed = curves.needed();
   if (s.has("gas_conductivity"))
     law.gas_conductivity =
@@ -231,7 +231,7 @@ std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curve
   const auto s =
       heat ? heat->optional_section("cracks",
                                     "lets cracks hinder heat; without it heat crosses them as if they "
-                                    "were not there; see [heat.md](heat.md#cracks)")
+                                    "were not there; see [Cracks](../understand/heat.md#cracks)")
            : std::nullopt;
   if (!s) return std::nullopt;
   CrackHeat cracks{
@@ -240,7 +240,7 @@ std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curve
        s->optional_sections("gaps", "contacts that stand apart from the start, for heat; any number"))
     cracks.gaps.push_back({gap.text("contacts",
                                     "a set of contacts: the name of a notch without width, or of a set; see "
-                                    "[bodies.md](bodies.md#sets)"),
+                                    "[Sets](../do/bodies.md#sets)"),
                            gap.quantity("width", unit::length, Range::positive().usually(1e-6, 0.02),
                                         "between the faces; what the motion opens comes to it"),
                            fmt::format("{}: {}", gap.where("contacts"), gap.path())});

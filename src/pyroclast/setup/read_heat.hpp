@@ -9,7 +9,7 @@
 
 namespace pyroclast {
 
-/// Reads [heat] (docs/heat.md); empty if the deck has none. Errors are recorded in the deck.
+/// Reads [heat] (docs/understand/heat.md); empty if the deck has none. Errors are recorded in the deck.
 /// \param time_curves  reader of curves of the time from the start of heating
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves,
                                         const DeckSpace& space);

@@ -168,7 +168,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
   const auto s = phase.optional_section(
       "creep",
       "load-induced thermal strain (transient creep): what the phase under stress is shorter by when "
-      "it is heated for the first time; see [deck.md](deck.md#creep-under-load)");
+      "it is heated for the first time; see [Creep under load](../understand/deck.md#creep-under-load)");
   if (!s) return std::nullopt;
   CreepMaterial m;
   m.strain = read_creep_strain(*s, concrete, curves);
@@ -214,7 +214,7 @@ BlockMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
   m.residual_ratio = read_residual_ratio(
       s, rules.on_cooling,
       "share of E at T_max, the highest temperature that was there, that is left at 20 °C: a curve of T_max, "
-      "1 at 20 °C; E falls to it evenly on cooling; see [deck.md](deck.md#cooling)",
+      "1 at 20 °C; E falls to it evenly on cooling; see [Cooling](../understand/deck.md#cooling)",
       curves);
   m.thermal_strain = read_thermal_strain(s, rules.expansion_reading, curves);
   m.quartz_step = read_quartz_step(s, concrete);
@@ -229,7 +229,7 @@ BlockMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
         s.quantity("contraction", unit::expansion, Range::any().usually(0.0, 3e-5),
                    "expansion coefficient where the phase is colder than it was, T_max: free strain "
                    "is then that at T_max − contraction (T_max − T); without it free strain "
-                   "goes back along its curve; see [deck.md](deck.md#cooling)");
+                   "goes back along its curve; see [Cooling](../understand/deck.md#cooling)");
   m.creep = read_creep(s, concrete, curves);
   return m;
 }
@@ -265,7 +265,7 @@ void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMateria
       read_residual_ratio(s, on_cooling,
                           "share of strengths and fracture energies at T_max, the highest temperature that "
                           "was there, that is left at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it "
-                          "evenly on cooling; see [deck.md](deck.md#cooling)",
+                          "evenly on cooling; see [Cooling](../understand/deck.md#cooling)",
                           curves);
   if (!ratio) return;
   bool has_effect = false;
@@ -441,7 +441,7 @@ class InterfaceReader {
     for (const LawTable* law : built_in_laws())
       words.push_back({law->name, static_cast<int>(words.size()), Meaning(law->meaning)});
     const std::string stated =
-        s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
+        s.word_or_text("law", words, "a law of your own, see [Contact laws](laws.md)", "contact law");
     s.take_keys_of_code("law");
     try {
       const LawTable& law = find_law_(stated, s.is_changed("law"));
@@ -556,8 +556,9 @@ MaterialRules read_material_rules(const Section& root) {
 ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
                            const MaterialRules& rules, CurveReader& curves) {
   ReadConcrete concrete;
-  const auto s = root.optional_section(
-      "concrete", "what is known of the concrete as a whole; see [deck.md](deck.md#creep-under-load)");
+  const auto s = root.optional_section("concrete",
+                                       "what is known of the concrete as a whole; see [Creep under "
+                                       "load](../understand/deck.md#creep-under-load)");
   if (!s) return concrete;
   concrete.thermal_strain = read_thermal_strain(*s, rules.expansion_reading, curves);
   const char* const key = s->has("expansion") ? "expansion" : "thermal_strain";

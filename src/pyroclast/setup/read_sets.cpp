@@ -90,7 +90,7 @@ RecordParameters read_record(const Section& s, const DeckSpace& space) {
     s.error("kind", "cracks of a solid have an area: kind = \"crack_area\"");
   if (r.kind == RecordKind::crack_area && !space.is_solid())
     s.error("kind", "cracks in the plane have a length: kind = \"crack_length\"");
-  r.set = s.text("set", "of which it is; see [bodies.md](bodies.md#sets)");
+  r.set = s.text("set", "of which it is; see [Sets](../do/bodies.md#sets)");
   s.know({"other", "direction", "over"});
   if (r.kind == RecordKind::displacement || r.kind == RecordKind::opening ||
       r.kind == RecordKind::temperature)
@@ -126,7 +126,7 @@ std::vector<SetParameters> read_sets(const Section& root, const DeckSpace& space
   for (const Section& s : root.optional_sections(
            "sets",
            "parts of the body that stages, records and heat boundaries name, any number; see "
-           "[bodies.md](bodies.md#sets)")) {
+           "[Sets](../do/bodies.md#sets)")) {
     SetParameters set;
     set.name = s.text("name", "another than those of the sets that there are anyhow");
     set.deck_place = fmt::format("{}: {}", s.where("name"), s.path());

@@ -35,7 +35,7 @@ DeckSpace read_space(const Section& root) {
   space.depth =
       s.quantity("depth", unit::length, kDepth,
                  "makes a rectangle, polygon or disc a solid: drawn out along z, from z = 0, its side front, "
-                 "to this depth, its side back; see [bodies.md](bodies.md#solids)");
+                 "to this depth, its side back; see [Solids](../do/bodies.md#solids)");
   if (space.shape == Shape::cylinder)
     s.error("depth", "has no meaning here: a cylinder has a diameter and a height");
   else if (!has_section(space.shape))

@@ -59,7 +59,8 @@ struct NamedTable {
 /// \param asked  columns asked for; the last of them may be missing in the file, down to `least`
 std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
                                            std::span<const AskedColumn> asked, std::size_t least) {
-  const std::string file = s.text("csv", "[measured table](deck.md#measured-tables) beside the deck");
+  const std::string file =
+      s.text("csv", "[measured table](../understand/deck.md#measured-tables) beside the deck");
   const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
   if (!s.ok() || !s.has("csv")) return std::nullopt;
   try {
@@ -132,7 +133,7 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
       {{"area", By::area, "shares are of the area of the circles"},
        {"volume", By::volume,
         "shares are of the volume of the stones, or their mass: circles are what a plane cuts from spheres, "
-        "see [method.md](method.md#specimen); in a solid they are those of the balls"}},
+        "see [Specimen](../understand/method.md#specimen); in a solid they are those of the balls"}},
       "what the shares of `passing` are of");
   if (space.is_solid() && s.ok() && by == By::area)
     s.error("passing_by", "shares of areas are those of a section; a solid takes passing_by = \"volume\"");
@@ -335,7 +336,7 @@ constexpr Range kSize = Range::positive().usually(0.01, 10.0);
 std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
   const std::string name = s.text("file",
                                   "of shape \"cells\": JSON with the blocks, see "
-                                  "[bodies.md](bodies.md#blocks-made-elsewhere)");
+                                  "[Blocks made elsewhere](../do/bodies.md#blocks-made-elsewhere)");
   const double join = s.quantity(
       "join", unit::length, Range::non_negative(), 0.0,
       "vertices of the file nearer to each other than this become one, and those nearer to an edge of "
@@ -800,7 +801,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
     if (calibrated > 0 && calibrated != b.count)
       s.warn("count",
              fmt::format("the strengths of this deck were calibrated for {} blocks; f_c depends on the "
-                         "number of blocks (validation/block_size.md): calibrate again",
+                         "number of blocks (docs/validation/block_size.md): calibrate again",
                          calibrated));
   }
   b.relaxation =

@@ -79,8 +79,8 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
                        const std::filesystem::path& folder) {
   std::vector<Choice<const StageKind*>> options;
   for (const StageKind& kind : kinds.kinds()) options.push_back({kind.name, &kind, Meaning(kind.meaning)});
-  const auto sections =
-      root.sections("stages", "what is done to the specimen, in this order; see [deck.md](deck.md#stages)");
+  const auto sections = root.sections(
+      "stages", "what is done to the specimen, in this order; see [Stages](../understand/deck.md#stages)");
   std::vector<const StageKind*> chosen;
   for (const Section& s : sections) chosen.push_back(s.choice("kind", options, "what the stage does"));
   const auto any = [&](auto needs) {
@@ -104,10 +104,10 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
       read_output(needs_output ? root.section("output", kOutput) : root.section_or_none("output", kOutput),
                   moves, tables.has_platens, frames_in_time);
   if (moves)
-    tables.coupling_table =
-        root.optional_section("coupling",
-                              "how temperatures are handed to the mechanics; needed by stages that change "
-                              "them; see [deck.md](deck.md#exchanges-of-temperature)");
+    tables.coupling_table = root.optional_section(
+        "coupling",
+        "how temperatures are handed to the mechanics; needed by stages that change "
+        "them; see [Exchanges of temperature](../understand/deck.md#exchanges-of-temperature)");
   else
     root.know({"coupling"});
   // A body that only stands at other temperatures than it was made at exchanges none.

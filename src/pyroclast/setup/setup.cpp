@@ -27,8 +27,8 @@ namespace pyroclast {
 
 namespace {
 
-// Block sizes over d_max, from validation/block_size.md: of 250 and of 1,600 blocks on 150 mm x 300 mm with
-// d_max = 32 mm.
+// Block sizes over d_max, from docs/validation/block_size.md: of 250 and of 1,600 blocks on 150 mm x 300 mm
+// with d_max = 32 mm.
 constexpr double kCoarsestStudied = 0.42, kCoarsestHeated = 0.165;
 
 constexpr double kGravity = 9.80665;  // m/s², standard
@@ -144,7 +144,7 @@ void check_heated_sides(const Section& root, const Setup& setup) {
 }
 
 /// Warns of blocks that are coarser than any that were studied, or than a test heated under load allows
-/// (validation/block_size.md).
+/// (docs/validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const AskedSpecimen& s = setup.specimen;
   if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.motion) return;
@@ -317,7 +317,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
       read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
   setup.motion->mechanics = read_mechanics(
-      root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"), space);
+      root.section("mechanics", "how the body moves; see [Motion](../understand/method.md#motion)"), space);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 
@@ -388,7 +388,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
                       "every batch of steps");
   setup.checkpoints.keep_stages =
       output.flag("keep_stage_checkpoints", true,
-                  "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
+                  "whether the state at the end of each stage is kept, for [forks](../do/restart.md#forks)");
   setup.unused_sets = unused_sets(setup);
   setup.unused_properties = unused_properties(root, setup);
   setup.references = read_references(output, folder, setup);

@@ -142,9 +142,9 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      "of a zone, with the thermal strain and what it has crept"},
     {"creep_strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, creeps,
      [](R& r, int i, double* to) { put(to, creep_of(r, i)); },
-     "what a zone has crept under load, see [method.md](method.md#creep-under-load); only where a phase "
-     "creeps. ZZ "
-     "acts on nothing"},
+     "what a zone has crept under load, see [Creep under load](../understand/method.md#creep-under-load); "
+     "only where "
+     "a phase creeps. ZZ acts on nothing"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,
      [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "platens stay at 20 °C"},
 });
@@ -170,7 +170,8 @@ constexpr auto kOfContacts = std::to_array<KnownField>({
      "σ n n + τ (n t + t n) of the tractions σ and τ, with n across the contact and t along it"},
     {"heat_conductance", unit::heat_transfer, Item::contact, ValueKind::number, true, parts_heat,
      [](R& r, int i, double* to) { *to = r.heat_conductances()[i]; },
-     "h as the heat of this frame met it, where [cracks hinder heat](heat.md#cracks); 0 at bearings"},
+     "h as the heat of this frame met it, where [cracks hinder heat](../understand/heat.md#cracks); 0 at "
+     "bearings"},
     {"temperature_jump", unit::temperature_difference, Item::contact, ValueKind::number, true, parts_heat,
      [](R& r, int i, double* to) { *to = temperature_jump(r, i); },
      "likewise: of side b less that of side a"},

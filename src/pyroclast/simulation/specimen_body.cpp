@@ -18,8 +18,8 @@ namespace pyroclast {
 namespace {
 
 /// Measured peak of the memory over the number of blocks, bytes, from 5,000 to 1,000,000 blocks of the plane
-/// and of 1,000 and 4,000 of space (docs/performance.md), rounded up: heat conduction takes half as much
-/// again.
+/// and of 1,000 and 4,000 of space (docs/develop/performance.md), rounded up: heat conduction takes half as
+/// much again.
 constexpr double kBytesPerBlock = 6000.0, kBytesPerSolidBlock = 60000.0;
 constexpr double kBytesFixed = 40e6;
 

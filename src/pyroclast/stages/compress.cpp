@@ -32,15 +32,15 @@ constexpr double kExpectedStrain = 0.001;
 constexpr double kNoStopStrain = 1.0;
 /// Passages of the stress wave through the specimen after which the stress is no longer that of a wave.
 constexpr double kPassages = 2.0;
-/// Steps of a controlled velocity over those of the lowest one, about (validation/adaptive.md).
+/// Steps of a controlled velocity over those of the lowest one, about (docs/validation/adaptive.md).
 constexpr double kControlledShare = 0.2;
 
 /// Reads the control of a velocity that changes between `velocity` and `fastest_velocity`.
 VelocityControl read_velocity_control(const Section& s, const Compress::Keys& keys) {
   VelocityControl c;
-  c.fastest = s.quantity(
-      "fastest_velocity", unit::velocity, Range::positive(),
-      "highest velocity; with it the stage [chooses the velocity itself](deck.md#a-controlled-velocity)");
+  c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive(),
+                         "highest velocity; with it the stage [chooses the velocity "
+                         "itself](../understand/deck.md#a-controlled-velocity)");
   if (s.ok() && c.fastest < keys.velocity) s.error("fastest_velocity", "must not be less than velocity");
   if (s.ok() && keys.ramp_time == 0.0)
     s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");

@@ -263,7 +263,7 @@ void tell_doubts(const CompressionCurve& curve, const CompressionResponse& r, St
   if (by_large - by_small <= kMoves * strength) return;
   report.warnings.push_back(fmt::format(
       "f_c depends on how a peak is told: {:.2f} MPa by the first fall of 2 %, {:.2f} MPa {}; the stress "
-      "falls and rises again, as where few coarse blocks fail one by one (validation/peaks.md)",
+      "falls and rises again, as where few coarse blocks fail one by one (docs/validation/peaks.md)",
       by_small * 1e-6, by_large * 1e-6,
       r.by_large_fall ? "by one of 10 %" : "at the end without a fall of 10 %"));
 }

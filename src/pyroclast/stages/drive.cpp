@@ -107,7 +107,7 @@ std::optional<ActionKind> kind_of(const Section& s) {
 
 Drive::Action read_action(const Section& s, double duration, int dimension, CurveReader& curves) {
   Drive::Action a;
-  a.set = s.text("set", "set of gridpoints that it acts on; see [bodies.md](bodies.md#sets)");
+  a.set = s.text("set", "set of gridpoints that it acts on; see [Sets](../do/bodies.md#sets)");
   a.place = fmt::format("{}: {}", s.where("set"), s.path());
   const auto kind = kind_of(s);
   s.know(
@@ -200,15 +200,15 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
       u.value = s.quantity("below", unit, Range::any(), "the stage ends when the record is less");
       break;
     case Drive::Until::Kind::share_of_peak:
-      u.value =
-          s.number("share_of_peak", Range::inside(0.0, 1.0),
-                   "the stage ends when the record's size has passed its [peak](method.md#peaks), and fallen "
-                   "below this share of it");
+      u.value = s.number(
+          "share_of_peak", Range::inside(0.0, 1.0),
+          "the stage ends when the record's size has passed its [peak](../understand/method.md#peaks), and "
+          "fallen below this share of it");
       if (s.has("least_peak"))
         u.least_peak = s.quantity(
             "least_peak", unit, Range::positive(),
             "a peak counts when it is greater; where it is not stated, from when what is recorded is "
-            "[beyond noise](bodies.md#drives)");
+            "[beyond noise](../do/bodies.md#drives)");
       break;
     case Drive::Until::Kind::rate_above:
       u.value = s.quantity("rate_above", rate, Range::positive(),
@@ -251,7 +251,7 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
     keys.until.push_back(read_until(own, tables.records));
   if (const auto own = s.optional_section("control",
                                           "an opening whose growth is given: the forces of the stage become "
-                                          "what it takes; see [bodies.md](bodies.md#control)")) {
+                                          "what it takes; see [Control](../do/bodies.md#control)")) {
     keys.control = read_control(*own, tables.records);
     const auto is_force = [](const Drive::Action& a) { return a.kind == ActionKind::force; };
     if (s.ok() && std::ranges::none_of(
