@@ -37,8 +37,8 @@ Setup read(const std::filesystem::path& path) {
 /// \param block_size  m
 template <int Dim>
 void add_properties(Sample<Dim>& sample, const Setup& setup, double block_size) {
-  sample.parameters = setup.motion->mechanics;
-  const auto materials = pyroclast::make_concrete(setup.block_materials, setup.motion->contacts, block_size);
+  sample.parameters = setup.moving->mechanics;
+  const auto materials = pyroclast::make_concrete(setup.block_materials, setup.moving->contacts, block_size);
   const pyroclast::TemperatureField field(sample.model, pyroclast::kReferenceTemperature);
   sample.properties =
       pyroclast::properties_at(sample.model, materials, field, {sample.model, materials, field});
@@ -52,8 +52,8 @@ std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {
   const auto made = pyroclast::specimen::make_specimen(parameters);
   const auto& box = made.region.box();
   auto sample = std::make_unique<Sample<2>>();
-  sample->model = pyroclast::make_concrete_model(made, setup.thickness, setup.motion->contacts.interfaces,
-                                                 setup.motion->bearings);
+  sample->model = pyroclast::make_concrete_model(made, setup.thickness, setup.moving->contacts.interfaces,
+                                                 setup.moving->bearings);
   sample->size = {{box.width(), box.height()}};
   const auto& model = sample->model;
   for (const char* const platen : {"bottom_platen", "top_platen"})
@@ -75,7 +75,7 @@ std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
   sample->size = {{kEdgeOfCube, kEdgeOfCube, kEdgeOfCube}};
   auto& model = sample->model;
   model.material_names = pyroclast::specimen::phases(setup.specimen);
-  const pyroclast::InterfaceTable interfaces(model.material_names, setup.motion->contacts.interfaces);
+  const pyroclast::InterfaceTable interfaces(model.material_names, setup.moving->contacts.interfaces);
   model.interface_names = interfaces.names();
   const int matrix = pyroclast::place_in(model.material_names, setup.specimen.matrix);
   add_cells(model, result.complex, std::vector<int>(blocks, matrix),
@@ -137,7 +137,7 @@ const char* name(Loading loading) {
 }
 
 Deck::Deck(const std::filesystem::path& path) : setup_(read(path)) {
-  if (!setup_.motion) throw Error("the bench needs the deck of a specimen between platens");
+  if (!setup_.moving) throw Error("the bench needs the deck of a specimen between platens");
 }
 
 double Deck::velocity() const {

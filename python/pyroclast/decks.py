@@ -103,7 +103,7 @@ class Deck:
     a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in
     `[[heat.boundaries]]`; what it returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`. The
     `factor` of a drive is a function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen`
-    too.
+    or a `pyroclast.SolidSpecimen` too.
 
     Raises DeckError for a file that is no deck, or holds no TOML.
     """
@@ -121,7 +121,7 @@ class Deck:
         self._laws = [str(folder) for folder in laws]
         self._changes: list[tuple[str, str]] = []
         self._functions: dict[str, functions.Function] = {}
-        self._specimen: tuple[Specimen, functions.Scratch] | None = None
+        self._specimen: tuple[Specimen | SolidSpecimen, functions.Scratch] | None = None
         self._name, self._folder, self._text = "deck", "", ""
         self._is_own = file is None  # the script's, not a file's: what it names, the script names
         if file is not None:
@@ -146,9 +146,9 @@ class Deck:
         plain: list[str] = []
         headed: list[tuple[str, list[Mapping[str, Any]], bool]] = []
         for name, value in tables.items():
-            if isinstance(value, Specimen):
+            if isinstance(value, (Specimen, SolidSpecimen)):
                 self._take(value)
-                headed.append((name, [{"shape": "cells", "file": _CELLS}], False))
+                headed.append((name, [{"shape": value.shape, "file": _CELLS}], False))
             elif isinstance(value, Mapping):
                 headed.append((name, [value], False))
             elif is_list_of_tables(value):
@@ -194,15 +194,14 @@ class Deck:
             return False
         return True
 
-    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function | Specimen) -> None:
+    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function | Specimen
+                    | SolidSpecimen) -> None:
         """Sets a value; a key or table that is missing is added. A specimen takes the place of all that the deck says
         of it but for the thickness and the matrix.
 
         Raises DeckError for a bare number where a unit is needed, and Error where the deck has no place for the key.
         """
-        if isinstance(value, SolidSpecimen):
-            raise Error("a deck cannot take blocks in space yet; it makes a solid by specimen.depth or a cylinder")
-        if isinstance(value, Specimen):
+        if isinstance(value, (Specimen, SolidSpecimen)):
             self._set_specimen(path, value)
             return
         if callable(value) or isinstance(value, functions.Function):
@@ -248,23 +247,24 @@ class Deck:
         self._rebuild(take_out, path)
         self._functions = moved
 
-    def _set_specimen(self, path: str, specimen: Specimen) -> None:
+    def _set_specimen(self, path: str, specimen: Specimen | SolidSpecimen) -> None:
         if path != "specimen":
             raise Error(f'{path}: a specimen belongs to "specimen"')
 
         def replace(tables: dict[str, Any]) -> None:
-            kept = {key: value for key, value in tables.get("specimen", {}).items() if key == "thickness"}
+            is_plane = isinstance(specimen, Specimen)
+            kept = {key: value for key, value in tables.get("specimen", {}).items() if is_plane and key == "thickness"}
             matrix = tables.get("superposition", {}).get("matrix")
             for name in _MADE_OTHERWISE:
                 tables.pop(name, None)
-            tables["specimen"] = {"shape": "cells", "file": _CELLS, **kept}
+            tables["specimen"] = {"shape": specimen.shape, "file": _CELLS, **kept}
             if matrix is not None:
                 tables["superposition"] = {"matrix": matrix}
 
         self._rebuild(replace, path)
         self._take(specimen)
 
-    def _take(self, specimen: Specimen) -> None:
+    def _take(self, specimen: Specimen | SolidSpecimen) -> None:
         scratch = functions.Scratch()
         specimen.save(Path(scratch.folder) / _CELLS)
         self._specimen = (specimen, scratch)
@@ -283,7 +283,7 @@ class Deck:
         are appended. Returns the deck.
         """
         for name, value in tables.items():
-            if isinstance(value, Specimen):
+            if isinstance(value, (Specimen, SolidSpecimen)):
                 self[name] = value
             elif is_list_of_tables(value):
                 for entry in value:

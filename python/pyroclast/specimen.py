@@ -33,6 +33,8 @@ class Specimen:
     copies, in m.
     """
 
+    shape = "cells"  #: what a deck calls it
+
     def __init__(self, core: _core.Specimen, agreement: float | None = None):
         self._core = core
         self._agreement = agreement
@@ -243,13 +245,27 @@ class Specimen:
 
 
 class SolidSpecimen:
-    """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them.
+    """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them. A
+    deck takes one in the place of what it says of the specimen itself:
+
+        deck["specimen"] = pyroclast.SolidSpecimen.read("cylinder.json")
 
     Arrays are copies, in m.
     """
 
+    shape = "polyhedra"  #: what a deck calls it
+
     def __init__(self, core: _core.SolidSpecimen):
         self._core = core
+
+    @classmethod
+    def read(cls, file: str | Path) -> SolidSpecimen:
+        """From a file as `save` writes it; it has no `balls`. Raises Error, which names the file."""
+        return cls(_core.SolidSpecimen.read(str(file)))
+
+    def save(self, file: str | Path) -> None:
+        """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "polyhedra"` and `file`."""
+        Path(file).write_text(self._core.text(), encoding="utf-8")
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -303,7 +319,7 @@ class SolidSpecimen:
 
     @property
     def balls(self) -> NDArray[np.float64]:
-        """(balls, 4): x, y, z and diameter of each aggregate as it was placed, m."""
+        """(balls, 4): x, y, z and diameter of each aggregate as it was placed, m; none where blocks were read."""
         return self._core.balls
 
     @property

@@ -197,6 +197,75 @@ class Cylinder(unittest.TestCase):
                 areas[outer] -= vector
         self.assertLess(np.abs(areas).max(), 1e-15)
 
+    def test_a_saved_specimen_gives_the_run_that_it_came_from(self):
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        for change in CHANGES:
+            path, _, value = change.partition("=")
+            deck[path] = json.loads(value) if value[0] in "[0123456789" and " " not in value else value
+        made = deck.make_specimen()
+        made.save(self.place / "cylinder.json")
+        read = pyroclast.SolidSpecimen.read(self.place / "cylinder.json")
+        for what in ("vertices", "neighbours", "phase"):
+            np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
+        self.assertEqual((read.sides, read.phases, read.shares, read.size), (made.sides, made.phases, made.shares, made.size))
+        self.assertEqual(len(read.balls), 0)
+        deck["specimen"] = read
+        self.assertEqual(deck["specimen"], {"shape": "polyhedra", "file": "cells.json"})
+        run = pyroclast.Run(deck, out=self.place / "again", threads=1).finish()
+        run.close()
+        self.assertEqual((self.place / "again/history.csv").read_bytes(), (self.place / "out/history.csv").read_bytes())
+        # the folder keeps the blocks, so the program makes the run again
+        subprocess.run([PROGRAM, "run", "again/deck.toml", "--out", "program", "--no-figures", "--quiet"], cwd=self.place,
+                       check=True)
+        self.assertEqual((self.place / "program/history.csv").read_bytes(), (self.place / "out/history.csv").read_bytes())
+        with self.assertRaisesRegex(pyroclast.Error, "seed has no meaning"):
+            pyroclast.Run(deck, seed=2)
+
+    def test_a_saved_disc_has_seats_of_bearings(self):
+        deck = pyroclast.Deck(CASES / "brazilian.toml")
+        del deck["specimen.thickness"]
+        deck.update(specimen={"depth": "60 mm"}, blocks={"count": 150}, aggregates={"fraction": 0.0})
+        deck["stages[0].drives[0].hold"] = ["x", "y", "z"]
+        made = pyroclast.Run(deck, threads=1)
+        deck["specimen"] = made.specimen
+        again = pyroclast.Run(deck, threads=1)
+        for name in ("rim", "lower_strip_face", "lower_strip_support", "upper_strip_pivot"):
+            np.testing.assert_array_equal(again.sets[name], made.sets[name])
+
+    def test_a_file_that_holds_no_blocks_is_told_with_its_name(self):
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        deck["blocks.count"] = 40
+        deck.make_specimen().save(self.place / "good.json")
+        good = json.loads((self.place / "good.json").read_text())
+        self.assertEqual((good["body"]["axis"], good["body"]["sides"]), ("y", ["rim"]))
+        surface = next(i for i in range(len(good["faces"])) if sum(i in cell for cell in good["cells"]) == 1)
+        bent = [list(place) for place in good["vertices_m"]]
+        for axis, way in enumerate((0.013, 0.011, 0.017)):  # in the plane of no side
+            bent[good["faces"][surface][0]][axis] += way
+        file = self.place / "mine.json"
+        for change, told in (
+                ({"faces": [[0, 1]]}, r"mine.json: face 0 .from 0. has 2 of vertices, but needs 3"),
+                ({"faces": [[0, 1, 10**6], *good["faces"][1:]]}, "names vertices 1000000"),
+                ({"cells": [[0, 1, 2]] + good["cells"][1:]}, "cell 0 .from 0. has 3 of faces, but needs 4"),
+                ({"cells": good["cells"][:-1]}, "39 cells, but the phases of 40"),
+                ({"cells": good["cells"][:-1], "phase": good["phase"][:-1]}, "is of 0 cells|lies on no side"),
+                ({"phase": [9] * 40}, "cell 0 .from 0. is of phase 9"), ({"body": None}, 'no table "body"'),
+                ({"body": {**good["body"], "axis": "x"}}, '"y" or "z"'),
+                ({"body": {**good["body"], "length_m": -1.0}}, "above 0"),
+                ({"vertices_m": [[0, 0]]}, r"vertices_m\[0\]: must be a place, \[x, y, z\]"),
+                ({"vertices_m": bent}, "lies on no side")):
+            file.write_text(json.dumps({**good, **change}))
+            with self.assertRaisesRegex(pyroclast.Error, told, msg=str(change)[:80]):
+                pyroclast.SolidSpecimen.read(file)
+        deck["specimen"] = pyroclast.SolidSpecimen.read(self.place / "good.json")
+        for key, value, told in (("specimen.depth", "1 m", "has no meaning"), ("specimen.join", "1 um", "has no meaning"),
+                                 ("specimen.thickness", "1 m", "thickness"), ("blocks.count", 9, "no effect"),
+                                 ("superposition.matrix", "paste", "none is the matrix")):
+            other = deck.copy()
+            other[key] = value
+            with self.assertRaisesRegex(pyroclast.DeckError, told):
+                other.check()
+
     def test_vtk_measures_the_blocks_as_a_mesh(self):
         # pylint: disable=import-outside-toplevel
         from vtkmodules.util.numpy_support import vtk_to_numpy

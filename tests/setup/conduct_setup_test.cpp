@@ -36,7 +36,7 @@ Diagnostic error_of(const std::string& text) {
 
 TEST(ConductSetup, NeedsNeitherContactsNorMechanicsNorPlatens) {
   const pyroclast::Setup setup = read_setup(Deck::parse(wall_deck(), "deck.toml"), ".");
-  EXPECT_FALSE(setup.motion);
+  EXPECT_FALSE(setup.moving);
   ASSERT_EQ(setup.stages.size(), 1U);
   EXPECT_STREQ(setup.stages[0]->kind(), "conduct");
   EXPECT_EQ(setup.stages[0]->heating().duration, 7200.0);

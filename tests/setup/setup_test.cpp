@@ -37,8 +37,8 @@ TEST(PaperCase, HoldsTablesOneAndTwoAsPrinted) {
   EXPECT_EQ(c.block_materials[mortar_material].young(20.0), 29.4e9);
   EXPECT_EQ(c.specimen.blocks.count, 5000);
   EXPECT_EQ(c.specimen.blocks.relaxation, 0);
-  EXPECT_EQ(c.motion->mechanics.local_damping, 0.8);
-  const auto concrete = make_concrete(c.block_materials, c.motion->contacts, 3e-3);
+  EXPECT_EQ(c.moving->mechanics.local_damping, 0.8);
+  const auto concrete = make_concrete(c.block_materials, c.moving->contacts, 3e-3);
   const auto mm = concrete.contacts[mortar_mortar].at(20.0).as<Cohesive>();
   EXPECT_DOUBLE_EQ(mm.normal_stiffness, 18400e9);
   EXPECT_DOUBLE_EQ(mm.shear_stiffness, 7660e9);
@@ -54,7 +54,7 @@ TEST(PaperCase, HoldsTablesOneAndTwoAsPrinted) {
 
 TEST(PaperCase, InterfaceHasEightTenthsOfStiffnessAndStrengthAndTheSameFractureEnergies) {
   const pyroclast::Setup c = read(paper_deck());
-  const auto concrete = make_concrete(c.block_materials, c.motion->contacts, 3e-3);
+  const auto concrete = make_concrete(c.block_materials, c.moving->contacts, 3e-3);
   const auto mm = concrete.contacts[mortar_mortar].at(20.0).as<Cohesive>();
   const auto am = concrete.contacts[aggregate_mortar].at(20.0).as<Cohesive>();
   EXPECT_DOUBLE_EQ(am.normal_stiffness, 0.8 * mm.normal_stiffness);
@@ -68,13 +68,13 @@ TEST(PaperCase, InterfaceHasEightTenthsOfStiffnessAndStrengthAndTheSameFractureE
 TEST(PaperCase, FractureZoneScalesWithTheBlockSizeUnlessFixed) {
   const std::string deck = paper_deck();
   const pyroclast::Setup scaled = read(deck);
-  EXPECT_DOUBLE_EQ(make_concrete(scaled.block_materials, scaled.motion->contacts, 6e-3).fracture_zone,
+  EXPECT_DOUBLE_EQ(make_concrete(scaled.block_materials, scaled.moving->contacts, 6e-3).fracture_zone,
                    3.2e-3);
   const pyroclast::Setup fixed =
       read(with(with(deck, "t_b_scaling = \"block size\"", "t_b_scaling = \"fixed\""),
                 "t_b_block_size = \"3 mm\"", ""));
-  EXPECT_DOUBLE_EQ(make_concrete(fixed.block_materials, fixed.motion->contacts, 6e-3).fracture_zone, 1.6e-3);
-  const auto aa = make_concrete(fixed.block_materials, fixed.motion->contacts, 6e-3)
+  EXPECT_DOUBLE_EQ(make_concrete(fixed.block_materials, fixed.moving->contacts, 6e-3).fracture_zone, 1.6e-3);
+  const auto aa = make_concrete(fixed.block_materials, fixed.moving->contacts, 6e-3)
                       .contacts[aggregate_aggregate]
                       .at(20.0)
                       .as<Elastic>();
@@ -301,7 +301,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   EXPECT_EQ(specimen.fibres.size(), 9U);
   // the interface of each contact is the one between the phases of its blocks
   const auto& model = simulation->model();
-  const InterfaceTable table(phases_of(setup.block_materials), setup.motion->contacts.interfaces);
+  const InterfaceTable table(phases_of(setup.block_materials), setup.moving->contacts.interfaces);
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);
     const int a = model.block_material[model.block_of(c.a)], b = model.block_material[model.block_of(c.b)];
@@ -346,12 +346,12 @@ TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
 TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
   const auto setup = read(paper_deck());
   const auto stiffness = [&](double size, double foreseen) {
-    const auto concrete = make_concrete(setup.block_materials, setup.motion->contacts, size, foreseen);
+    const auto concrete = make_concrete(setup.block_materials, setup.moving->contacts, size, foreseen);
     return concrete.contacts[mortar_mortar]["K_n"](20.0);
   };
   EXPECT_EQ(stiffness(0.003 * (1 + 1e-15), 0.003), 18400e9);  // at 5,000 blocks to the last bit
   EXPECT_DOUBLE_EQ(stiffness(0.006, 0.006), 9200e9);
-  auto fixed = setup.motion->contacts;
+  auto fixed = setup.moving->contacts;
   fixed.fracture_zone_size.reset();
   EXPECT_EQ(make_concrete(setup.block_materials, fixed, 0.006).contacts[mortar_mortar]["K_n"](20.0), 18400e9);
 }

@@ -123,6 +123,14 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
                  "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"150 mm\"]\nwidth = \"20 mm\"\n"
                  "thickness = \"10 mm\"\nmaterial = \"platen\"\ncontact = \"glued\"\n"),
        {"bearings[0].at", "all of bottom, right, top, left, front, back"}},
+      {with_more(solid(),
+                 "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"1 mm\", \"2 mm\", \"3 mm\"]\n"
+                 "width = \"20 mm\"\nthickness = \"10 mm\"\ncontact = \"glued\"\n"),
+       {"bearings[0].at", "\"10 mm\", \"10 mm\", \"10 mm\"] is needed, not a list of 4"}},
+      {with_more(plane(),
+                 "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"1 mm\", \"2 mm\"]\nwidth = \"20 mm\"\n"
+                 "thickness = \"10 mm\"\ncontact = \"glued\"\n"),
+       {"bearings[0].at", "no z"}},
       {with_more(cylinder(),
                  "[[bearings]]\nname = \"band\"\nside = \"rim\"\nthickness = \"10 mm\"\n"
                  "contact = \"glued\"\n"),
@@ -207,6 +215,21 @@ TEST(SolidDeck, ABearingLiesOnTheRimOfADisc) {
       EXPECT_NEAR(std::abs(model.place(g)[1]), std::abs(model.place(model.set(strip).back())[1]), 1e-12);
   }
   EXPECT_GT(area_of("rim"), 0.9 * (std::numbers::pi * 0.15 - 2 * 0.015) * 0.06);
+}
+
+// Promise: in space the middle of a seat has three coordinates; of a pair z is the middle of the depth.
+TEST(SolidDeck, TheMiddleOfASeatMayHaveThreeCoordinates) {
+  const std::string deck = with(shipped_case("brazilian"), "thickness = \"300 mm\"", "depth = \"60 mm\"");
+  const std::string pair = "at = [\"0 mm\", \"-75 mm\"]";
+  ASSERT_NE(deck.find(pair), std::string::npos);
+  const auto at = [&](const char* z) {
+    return with(deck, pair, fmt::format("at = [\"0 mm\", \"-75 mm\", \"{}\"]", z));
+  };
+  EXPECT_EQ(message(at("30 mm")), "no Error was thrown");
+  const auto sides = [](const std::string& of) { return read(of).specimen.sides(); };
+  EXPECT_EQ(sides(at("30 mm")), sides(deck));
+  expect_in("bearings[0].at", message(at("10 mm")));
+  expect_in("over all of the depth, so the z of its middle is 0.03 m; got 0.01 m", message(at("10 mm")));
 }
 
 TEST(SolidDeck, ShortEdgesStayAndAWarningSaysSo) {

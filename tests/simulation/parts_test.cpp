@@ -31,14 +31,14 @@ constexpr int kBlocksOfAPart = 8;
 /// A heated prism between platens; each zone and contact has a temperature of its own.
 struct Whole {
   explicit Whole(const std::string& text) : setup(read(text)) {
-    setup.motion->chunk_blocks = kBlocksOfAPart;
+    setup.moving->chunk_blocks = kBlocksOfAPart;
     simulation = make_simulation(setup);
     simulation->field().begin_exposure(setup.temperatures);
     simulation->field().advance(1000.0, 300.0);
     properties = properties_at(model(), simulation->materials(), simulation->field(), simulation->hottest());
     for (const BlockMaterial& material : simulation->materials().block_materials)
       densities.push_back(material.density(kReferenceTemperature));
-    mechanics = std::make_unique<Mechanics<2>>(model(), densities, properties, setup.motion->mechanics);
+    mechanics = std::make_unique<Mechanics<2>>(model(), densities, properties, setup.moving->mechanics);
   }
   const ModelOf<2>& model() const { return in_plane::model(simulation->model()); }
 
@@ -59,7 +59,7 @@ struct OfPart {
   OfPart(Part<2> of, const Whole& whole)
       : part(std::move(of)),
         mechanics(part.model, whole.densities, parts::properties_in(part, whole.properties),
-                  whole.setup.motion->mechanics) {}
+                  whole.setup.moving->mechanics) {}
   Part<2> part;
   Mechanics<2> mechanics;
 };
@@ -260,7 +260,7 @@ TEST(Constraints, HaveOneOrder) {
   const Whole whole(heated_deck("small"));
   const ModelOf<2>& model = whole.model();
   const auto body = [&](bool forwards) {
-    Mechanics<2> m(model, whole.densities, whole.properties, whole.setup.motion->mechanics);
+    Mechanics<2> m(model, whole.densities, whole.properties, whole.setup.moving->mechanics);
     std::vector<int> held = model.set("left");
     std::vector<std::vector<int>> tied{model.set("top_platen_support"), model.set("bottom_platen_support")};
     if (!forwards) {

@@ -11,6 +11,7 @@
 
 #include "mechanics/bodies.hpp"
 #include "messages.hpp"
+#include "pyroclast/base/random.hpp"
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/simulation/fields.hpp"
 #include "shake.hpp"
@@ -79,7 +80,7 @@ SpecimenBody column_between_platens(const Setup& setup) {
 struct Solid {
   explicit Solid(const std::string& text, const StageRegistry& kinds = {})
       : setup(read(text, kinds)),
-        simulation(column_between_platens(setup), setup.block_materials, setup.heat, {}, {}, setup.motion,
+        simulation(column_between_platens(setup), setup.block_materials, setup.heat, {}, {}, setup.moving,
                    std::make_shared<Team>()),
         run(simulation, std::move(setup.stages)) {}
   double at_end_of(int stage, const char* column) const {
@@ -145,7 +146,7 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
   parameters.superposition = specimen::Superposition::fit;
   const auto specimen =
       solid::make_specimen(parameters, solid::Prism(section, solid::Prism::Axis::y, kHeight));
-  return make_body(specimen, 1.0, {}, setup.motion);
+  return make_body(specimen, 1.0, {}, setup.moving);
 }
 
 // Promise: the stress of a cylinder of polyhedra is the force over the area of a circle, and its lateral
@@ -154,7 +155,7 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
 TEST(Solid, ACylinderOfConcreteHasItsStressAndModulus) {
   auto setup = read(deck(kUniform + kSettle + kCompress));
   Simulation simulation(cylinder_between_platens(setup), setup.block_materials, setup.heat, {}, {},
-                        setup.motion, std::make_shared<Team>());
+                        setup.moving, std::make_shared<Team>());
   pyroclast::Run run(simulation, std::move(setup.stages));
   ASSERT_EQ(run.run(), Outcome::completed);
   const Model& model = simulation.model();
@@ -180,10 +181,41 @@ TEST(Solid, ACylinderOfConcreteHasItsStressAndModulus) {
   EXPECT_TRUE(history.has("tension_mortar_mortar_area_m2"));
 }
 
-TEST(Solid, IsNotSetDownOnThreePointsYet) {
-  const Solid solid(deck(kUniform + kSettle));
-  EXPECT_FALSE(solid.simulation.press().can_set_down());
-  EXPECT_THROW(solid.simulation.press().to_touch(), Error);
+// Promise: a cylinder that hovers, tilted and with a rough end, is set down on three points of its end around
+// the middle, no point comes below the platen, and the upper platen comes to lie on it.
+TEST(Solid, IsSetDownOnThreePoints) {
+  auto setup = read(deck(kUniform + kSettle));
+  Simulation simulation(cylinder_between_platens(setup), setup.block_materials, setup.heat, {}, {},
+                        setup.moving, std::make_shared<Team>());
+  Press& press = simulation.press();
+  Motion& motion = simulation.motion();
+  const Model& model = simulation.model();
+  press.move_evenly({.lift = 2e-5, .tilt = {1e-4, -3e-4}}, 1.0, false);
+  Random random(7);
+  for (int g : model.set("bottom"))
+    motion.constraints().prescribe_velocity(
+        g, 1, (4e-5 + 1e-4 * model.place(g)[0] + 5e-7 * random.uniform()) / motion.time_step());
+  motion.advance(1);
+  const Press::EvenMotion touch = press.to_touch();
+  EXPECT_LT(std::abs(touch.tilt[0] + 1e-4), 0.5e-4);
+  EXPECT_LT(std::abs(touch.tilt[1]), 0.5e-4) << "the end itself is tilted along x alone";
+  press.move_evenly(touch, 1.0, true);
+  motion.advance(1);
+  std::vector<Vec<3>> touching;
+  Vec<3> middle{};
+  for (int g : model.set("bottom")) {
+    const double up = motion.read().displacement(g)[1];
+    EXPECT_GT(up, -1e-14);
+    if (up < 1e-13) touching.push_back(model.place(g));
+    middle += model.place(g) * (1.0 / static_cast<double>(model.set("bottom").size()));
+  }
+  ASSERT_EQ(touching.size(), 3U);
+  const auto turn = [&](int from, int to) {
+    const Vec<3> a = touching[from] - middle, b = touching[to] - middle;
+    return a[0] * b[2] - a[2] * b[0] > 0.0;
+  };
+  EXPECT_TRUE(turn(0, 1) == turn(1, 2) && turn(1, 2) == turn(2, 0)) << "the middle is not among them";
+  EXPECT_LT(press.gap(), 1e-12);
 }
 
 TEST(Solid, ABodyThatIsNoneIsRefused) {
@@ -192,7 +224,7 @@ TEST(Solid, ABodyThatIsNoneIsRefused) {
     SpecimenBody body = column_between_platens(setup);
     change(body);
     return message([&] {
-      Simulation(std::move(body), setup.block_materials, setup.heat, {}, {}, setup.motion,
+      Simulation(std::move(body), setup.block_materials, setup.heat, {}, {}, setup.moving,
                  std::make_shared<Team>());
     });
   };

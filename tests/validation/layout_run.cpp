@@ -28,8 +28,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(cli, argc, argv);
 
   Setup setup = read_setup(Deck::open(deck, changes), deck.parent_path());
-  setup.motion->mechanics.layout.fewest_blocks = std::stoi(std::getenv("FEWEST_BLOCKS"));
-  setup.motion->chunk_blocks = std::stoi(std::getenv("CHUNK_BLOCKS"));
+  setup.moving->mechanics.layout.fewest_blocks = std::stoi(std::getenv("FEWEST_BLOCKS"));
+  setup.moving->chunk_blocks = std::stoi(std::getenv("CHUNK_BLOCKS"));
   const auto simulation = make_simulation(setup);
   std::filesystem::create_directories(out);
   write_text_file(out / "manifest.json", R"({"commit": "this"})");

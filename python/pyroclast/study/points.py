@@ -116,7 +116,7 @@ class Points:
         if self._study.runner.kind != "pyroclast":
             return True
         specimen = self._tables.get("specimen", {})
-        return not (isinstance(specimen, Mapping) and specimen.get("shape") == "cells")
+        return not (isinstance(specimen, Mapping) and specimen.get("shape") in ("cells", "polyhedra"))
 
     @cached_property
     def _text(self) -> str:

@@ -33,8 +33,8 @@ void print_strength(const Setup& setup) {
 
 /// Tells the modulus that a stated K_n means, which does not follow E of the blocks.
 void print_stated_stiffness(const Setup& setup) {
-  if (!setup.motion) return;
-  const ContactParameters& contacts = setup.motion->contacts;
+  if (!setup.moving) return;
+  const ContactParameters& contacts = setup.moving->contacts;
   for (const InterfaceParameters& interface : contacts.interfaces) {
     if (!interface.normal_stiffness) continue;
     double young = std::numeric_limits<double>::infinity();
@@ -74,7 +74,7 @@ void print_composition(const Composition& whole) {
 }
 
 void print_mechanics(const Setup& setup, const Simulation& simulation) {
-  const MassChoice mass = setup.motion->mechanics.mass;
+  const MassChoice mass = setup.moving->mechanics.mass;
   const Motion& motion = simulation.motion();
   const Model& model = simulation.model();
   const TimeStepLimit limit = motion.real_mass_limit();
@@ -117,7 +117,7 @@ int check(const RunOptions& options) {
   fmt::print("{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
-             setup.motion && !setup.motion->bearings.empty() ? " with the bearings" : "", model.zone_count(),
+             setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());
   if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())

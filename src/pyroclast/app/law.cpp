@@ -38,16 +38,16 @@ LawPoint point_of_deck(const LawOptions& options) {
   const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
   require_code(setup);
-  if (!setup.motion)
+  if (!setup.moving)
     throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
                             options.deck.string()));
-  const ContactParameters& contacts = setup.motion->contacts;
+  const ContactParameters& contacts = setup.moving->contacts;
   const auto concrete =
       make_concrete(setup.block_materials, contacts, expected_block_size(setup.specimen, contacts));
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
-  const auto& stress_free = setup.motion->stress_free;
+  const auto& stress_free = setup.moving->stress_free;
   return LawPoint(
-      contact_of(concrete, options.interface.empty() ? matrix : options.interface), setup.motion->on_cooling,
+      contact_of(concrete, options.interface.empty() ? matrix : options.interface), setup.moving->on_cooling,
       setup.heat.initial,
       stress_free && !stress_free->is_field() ? stress_free->temperatures.front() : absolute_zero);
 }

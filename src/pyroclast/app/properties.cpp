@@ -21,9 +21,9 @@ constexpr double kTemperatureStep = 1.0;
 
 /// Returns the phases as a run has them: those of the specimen, where they follow its composition.
 std::vector<BlockMaterial> block_materials_of(const Setup& setup) {
-  if (!setup.motion || !follows_composition(setup.block_materials, *setup.motion))
+  if (!setup.moving || !follows_composition(setup.block_materials, *setup.moving))
     return setup.block_materials;
-  return make_materials(setup.block_materials, *setup.motion,
+  return make_materials(setup.block_materials, *setup.moving,
                         numbers_of(make_checked_specimen(setup.specimen)))
       .block_materials;
 }
@@ -56,11 +56,11 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
 /// an expansion coefficient.
 std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
-  const bool moves = setup.motion.has_value();
+  const bool moves = setup.moving.has_value();
   for (const BlockMaterial& material : block_materials_of(setup))
     if (moves || !material.name.empty()) add_material(material, moves, list);
   if (moves) {
-    const ContactParameters& contacts = setup.motion->contacts;
+    const ContactParameters& contacts = setup.moving->contacts;
     const auto concrete =
         make_concrete(setup.block_materials, contacts, expected_block_size(setup.specimen, contacts));
     for (std::size_t i = 0; i + contacts.bearings.size() < concrete.contacts.size(); ++i)

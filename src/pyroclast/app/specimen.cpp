@@ -15,7 +15,7 @@ int make_specimen(const RunOptions& asked) {
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
   const MadeSpecimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
-  const auto model = make_model(specimen, setup.thickness, setup.motion);
+  const auto model = make_model(specimen, setup.thickness, setup.moving);
   const RunFolder folder(output_folder(options), options.overwrite,
                          {opened.deck.name(),
                           inputs_of(opened.deck, setup),

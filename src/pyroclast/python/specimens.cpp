@@ -102,6 +102,15 @@ py::array_t<double> balls(const SolidSpecimen& s) {
 void bind_solid_specimens(py::module_& m) {
   py::class_<SolidSpecimen, std::shared_ptr<SolidSpecimen>>(m, "SolidSpecimen",
                                                             "Polyhedral blocks, and what each is made of.")
+      .def_static(
+          "read",
+          [](const std::string& file) {
+            solid::Polyhedra polyhedra = solid::read_polyhedra(file);
+            const solid::Prism body = polyhedra.body;
+            return solid::specimen_from(std::move(polyhedra), body);
+          },
+          py::arg("file"))
+      .def("text", &solid::polyhedra_text, "As a file holds it.")
       .def_property_readonly("vertices",
                              [](const SolidSpecimen& s) { return vectors(s.complex.vertices, 3); })
       .def_property_readonly("faces",

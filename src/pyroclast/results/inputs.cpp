@@ -32,7 +32,7 @@ Inputs inputs_of(const Deck& deck, const Setup& setup) {
     }
     if (!named.key.empty()) values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
   }
-  if (!setup.specimen.cells) {
+  if (!setup.specimen.is_of_file()) {
     const auto seed = deck.root().section("specimen").integer("seed", Range::any(), "");
     if (std::cmp_not_equal(seed, setup.specimen.seed))
       values.emplace_back("specimen.seed", std::to_string(setup.specimen.seed));

@@ -35,11 +35,11 @@ Opened::Opened(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
         "threads: {} were asked for, and at most {} are taken, one for each processor that is free for "
         "this process",
         choices.threads, team->size()));
-  if (choices.seed && setup.specimen.cells)
+  if (choices.seed && setup.specimen.is_of_file())
     throw Error("a seed has no meaning for a specimen whose blocks come from a file");
   if (choices.seed) setup.specimen.seed = *choices.seed;
   if (choices.checkpoint) setup.checkpoints.interval = *choices.checkpoint;
-  if (setup.motion) setup.motion->mechanics.instructions = instructions;
+  if (setup.moving) setup.moving->mechanics.instructions = instructions;
 }
 
 std::vector<OwnLaw> own_laws() {

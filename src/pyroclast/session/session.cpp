@@ -226,7 +226,7 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
   Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes);
   Setup setup = read(deck);
-  auto materials = make_materials(setup.block_materials, *setup.motion, simulation_->numbers());
+  auto materials = make_materials(setup.block_materials, *setup.moving, simulation_->numbers());
   require_same_body(simulation_->materials(), materials);
   simulation_->set_materials(std::move(materials));
   take_over(std::move(deck), std::move(setup));

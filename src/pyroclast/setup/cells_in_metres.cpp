@@ -19,7 +19,7 @@ specimen::Cells cells_in_metres(const std::filesystem::path& file, double join) 
   auto [cells, unit] = specimen::read_cells(file);
   try {
     if (const UnitFactors to_m = unit_factors(unit, unit::length); !to_m.is_none())
-      for (specimen::Point& v : cells.tessellation.vertices) v = {{to_m(v[0]), to_m(v[1])}};
+      for (Vec<2>& v : cells.tessellation.vertices) v = {{to_m(v[0]), to_m(v[1])}};
   } catch (const QuantityError& error) {
     throw Error(fmt::format("{}: \"vertices_{}\": {}", file.string(), unit, error.reason()));
   }

@@ -21,7 +21,7 @@ bool is_nothing(const Curve& strain) {
 
 /// Tells whether temperature strains any part of the specimen.
 bool expands(const Setup& setup) {
-  const auto& of_concrete = setup.motion->strain_of_concrete;
+  const auto& of_concrete = setup.moving->strain_of_concrete;
   return (of_concrete && !is_nothing(of_concrete->strain)) ||
          std::ranges::any_of(setup.block_materials, [](const BlockMaterial& material) {
            return !material.is_of_bearing && (!is_nothing(material.thermal_strain) || material.contraction);
@@ -49,8 +49,8 @@ std::vector<std::string> keys_of_change(const Section& root, const Setup& setup)
     add(material.contraction.has_value(), owner, "contraction");
     add(material.residual_ratio.has_value(), owner, "residual_ratio");
   }
-  if (!setup.motion) return keys;
-  for (const auto& interface : setup.motion->contacts.interfaces)
+  if (!setup.moving) return keys;
+  for (const auto& interface : setup.moving->contacts.interfaces)
     add(root.section("contacts").section(interface.name).has("residual_ratio"), "contacts." + interface.name,
         "residual_ratio");
   return keys;
@@ -67,8 +67,8 @@ void check_flow(const Section& root, const Setup& setup) {
 }
 
 void warn_of_first_strain(const Section& root, const Setup& setup) {
-  if (!setup.motion) return;
-  const auto& stress_free = setup.motion->stress_free;
+  if (!setup.moving) return;
+  const auto& stress_free = setup.moving->stress_free;
   const auto coupling = root.optional_section("coupling");
   if (!expands(setup)) {
     if (stress_free)
@@ -134,7 +134,7 @@ std::vector<std::string> unused_properties(const Section& root, const Setup& set
           fmt::format("materials.{}.quartz_step begins at {:.6g} degC, and the run comes to {:.6g} degC at "
                       "most, so that it has no effect",
                       material.name, material.quartz_step->over.lower, setup.temperatures.upper));
-  if (changes_temperature(setup) || (setup.motion && setup.motion->stress_free)) return lines;
+  if (changes_temperature(setup) || (setup.moving && setup.moving->stress_free)) return lines;
   const auto keys = keys_of_change(root, setup);
   if (!keys.empty())
     lines.push_back(fmt::format("{}: no temperature changes in this run, so that {} no effect",

@@ -8,8 +8,8 @@ namespace pyroclast {
 
 namespace {
 
-ReadBearing read_bearing(const Section& s) {
-  ReadBearing read{s, {}, {}, {}, 0.0};
+ReadBearing read_bearing(const Section& s, const DeckSpace& space) {
+  ReadBearing read{s, {}, {}, {}, {}, 0.0};
   Bearing& bearing = read.bearing;
   bearing.name = s.text("name", "of the bearing, and of the sets that come with it");
   if (s.has("side")) {
@@ -18,8 +18,12 @@ ReadBearing read_bearing(const Section& s) {
       if (s.has(key)) s.error(key, "either side, or at and width; not both");
   } else {
     bearing.side = bearing.name + "_seat";
-    const auto at = s.place("at", unit::length, "middle of its seat, on the outline");
-    read.at = at ? specimen::Point{{at->first, at->second}} : specimen::Point{};
+    const StatedPlace at =
+        s.place("at", unit::length, space.of_extrusion(),
+                "middle of its seat, on the outline; in a solid a pair stands for the middle of the depth")
+            .value_or(StatedPlace{});
+    read.at = Vec<2>{{at.x, at.y}};
+    read.z = at.z;
     read.width =
         s.quantity("width", unit::length, Range::positive(), "of its seat, straight from end to end");
   }
@@ -51,13 +55,13 @@ ReadBearing read_bearing(const Section& s) {
 
 }  // namespace
 
-std::vector<ReadBearing> read_bearings(const Section& root) {
+std::vector<ReadBearing> read_bearings(const Section& root, const DeckSpace& space) {
   std::vector<ReadBearing> bearings;
   for (const Section& s :
        root.optional_sections("bearings",
                               "blocks beside the specimen by which it is loaded or held, any number; see "
                               "[Bearings](../do/bodies.md#bearings)")) {
-    ReadBearing read = read_bearing(s);
+    ReadBearing read = read_bearing(s, space);
     const auto same = [&](const ReadBearing& other) { return other.bearing.name == read.bearing.name; };
     if (s.ok() && std::ranges::any_of(bearings, same))
       s.error("name", fmt::format("\"{}\" is the name of another bearing", read.bearing.name));

@@ -69,7 +69,7 @@ void add_records(const Setup& setup, bool heats, std::vector<Drawn>& drawn) {
       if (!has && over.name != record.name) one.over.push_back(over);
     };
     if (record.kind == RecordKind::temperature && heats) add(heating_time());
-    if (setup.motion) {
+    if (setup.moving) {
       if (first != nullptr) add(quantity_of(*first));
       add(time);
       for (const RecordParameters& other : setup.records) add(quantity_of(other));
@@ -86,7 +86,7 @@ std::vector<Drawn> drawn_by_figures(const Setup& setup) {
   const auto heated = std::ranges::find_if(setup.stages, needs);
   const bool exchanges = heated != setup.stages.end();
   const bool has_platens =
-      setup.motion && std::ranges::any_of(setup.motion->bearings, [](const Bearing& bearing) {
+      setup.moving && std::ranges::any_of(setup.moving->bearings, [](const Bearing& bearing) {
         return bearing.name == "top_platen";
       });
   const DrawnQuantity stress{"stress", "stress_MPa", &unit::stress, 1.0 / kMega};

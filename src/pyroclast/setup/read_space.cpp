@@ -29,7 +29,9 @@ DeckSpace read_space(const Section& root) {
         "hole_1"},
        {"cells", Shape::cells, "of blocks that are made elsewhere, as the specimen is in all"},
        {"cylinder", Shape::cylinder,
-        "a solid that stands around the y axis, from y = 0 up; its sides are called bottom, top and rim"}},
+        "a solid that stands around the y axis, from y = 0 up; its sides are called bottom, top and rim"},
+       {"polyhedra", Shape::polyhedra,
+        "of blocks in space that were made before, as the specimen is in all"}},
       Shape::rectangle, "outline of the specimen");
   if (!s.has("depth")) return space;
   space.depth =
@@ -38,6 +40,8 @@ DeckSpace read_space(const Section& root) {
                  "to this depth, its side back; see [Solids](../do/bodies.md#solids)");
   if (space.shape == Shape::cylinder)
     s.error("depth", "has no meaning here: a cylinder has a diameter and a height");
+  else if (space.shape == Shape::polyhedra)
+    s.error("depth", "has no meaning here: the file says how deep the body is");
   else if (!has_section(space.shape))
     s.error("depth",
             "is for a rectangle, polygon, disc; a solid with a hole, or of blocks made elsewhere, cannot be "

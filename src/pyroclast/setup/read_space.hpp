@@ -9,14 +9,14 @@
 namespace pyroclast {
 
 /// Shapes of specimens in decks.
-enum class Shape : std::uint8_t { rectangle, disc, ring, polygon, tessellation, cells, cylinder };
+enum class Shape : std::uint8_t { rectangle, disc, ring, polygon, tessellation, cells, cylinder, polyhedra };
 
 /// Space in which a deck describes its body: the plane, or space where the specimen has a depth.
 struct DeckSpace {
   Shape shape = Shape::rectangle;
-  std::optional<double> depth = std::nullopt;  ///< m; none in the plane, and of a cylinder
+  std::optional<double> depth = std::nullopt;  ///< m; none in the plane, of a cylinder and of polyhedra
 
-  bool is_solid() const { return depth || shape == Shape::cylinder; }
+  bool is_solid() const { return depth || shape == Shape::cylinder || shape == Shape::polyhedra; }
   int dimension() const { return is_solid() ? 3 : 2; }
   /// Returns the coordinates of a point.
   Coordinates of_point() const { return {dimension(), false, 0.5 * depth.value_or(0.0)}; }

@@ -305,26 +305,27 @@ void check_size(const Section& s, const AskedSpecimen& p) {
 struct Outline {
   Shape shape;
   double width = 0.0, height = 0.0, diameter = 0.0, inner_diameter = 0.0;  ///< m
-  double unit = 0.0;                     ///< unit of the coordinates of a file, m
-  std::vector<specimen::Point> corners;  ///< m
+  double unit = 0.0;            ///< unit of the coordinates of a file, m
+  std::vector<Vec<2>> corners;  ///< m
   struct Hole {
     std::string name;
-    specimen::Point centre{};
+    Vec<2> centre{};
     double diameter = 0.0;
-    std::vector<specimen::Point> corners;
+    std::vector<Vec<2>> corners;
   };
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
   std::optional<specimen::Cells> cells;
+  std::optional<solid::Polyhedra> polyhedra;
 };
 
-std::vector<specimen::Point> vecs(const std::vector<std::pair<double, double>>& places) {
-  std::vector<specimen::Point> result;
+std::vector<Vec<2>> vecs(const std::vector<std::pair<double, double>>& places) {
+  std::vector<Vec<2>> result;
   for (const auto& [x, y] : places) result.push_back({{x, y}});
   return result;
 }
 
-specimen::Point read_place(const Section& s, std::string_view key, Meaning meaning) {
+Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
   const auto [x, y] = s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0});
   return {{x, y}};
 }
@@ -332,23 +333,32 @@ specimen::Point read_place(const Section& s, std::string_view key, Meaning meani
 /// Usual range of a specimen's lengths, m.
 constexpr Range kSize = Range::positive().usually(0.01, 10.0);
 
-/// Reads all of a specimen from a file; returns none after an error.
-std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
+/// Reads the file that holds all of a specimen; returns none after an error.
+/// \param read  function that reads a file; throws Error
+template <class Read>
+auto read_blocks_file(const Section& s, const std::filesystem::path& folder, Read read)
+    -> std::optional<decltype(read(folder))> {
   const std::string name = s.text("file",
-                                  "of shape \"cells\": JSON with the blocks, see "
+                                  "of shape \"cells\" or \"polyhedra\": JSON with the blocks, see "
                                   "[Blocks made elsewhere](../do/bodies.md#blocks-made-elsewhere)");
-  const double join = s.quantity(
-      "join", unit::length, Range::non_negative(), 0.0,
-      "vertices of the file nearer to each other than this become one, and those nearer to an edge of "
-      "a cell a corner of it; 0: cells share the vertices that the file says");
   if (!s.has("file")) return std::nullopt;
   s.names_file("file", folder / name);
   try {
-    return cells_in_metres(folder / name, join);
+    return read(folder / name);
   } catch (const Error& error) {
     s.error("file", error.what());
     return std::nullopt;
   }
+}
+
+/// Reads all of a specimen of the plane from a file; returns none after an error.
+std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
+  const double join = s.quantity(
+      "join", unit::length, Range::non_negative(), 0.0,
+      "vertices of the file nearer to each other than this become one, and those nearer to an edge of "
+      "a cell a corner of it; 0: cells share the vertices that the file says");
+  return read_blocks_file(s, folder,
+                          [join](const std::filesystem::path& file) { return cells_in_metres(file, join); });
 }
 
 /// Reads the unit of a file's coordinates, m; returns 0 after an error.
@@ -388,6 +398,11 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder, cons
   } else if (o.shape == Shape::cells) {
     o.cells = read_cells(s, folder);
     s.know({"seed", "holes", "notches"});
+  } else if (o.shape == Shape::polyhedra) {
+    o.polyhedra = read_blocks_file(
+        s, folder, [](const std::filesystem::path& file) { return solid::read_polyhedra(file); });
+    if (s.has("join")) s.error("join", "has no meaning here: faces share the vertices that the file says");
+    s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::cylinder) {
     o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");
     o.height = s.quantity("height", unit::length, kSize, "of the specimen");
@@ -399,7 +414,7 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder, cons
     }
   }
   s.know({"width", "height", "corners", "diameter", "inner_diameter", "file", "join", "unit"});
-  if (o.shape == Shape::cells || o.shape == Shape::tessellation) return o;
+  if (o.shape == Shape::cells || o.shape == Shape::polyhedra || o.shape == Shape::tessellation) return o;
   if (space.is_solid()) {
     refuse_cuts(s);
     return o;
@@ -436,7 +451,7 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder, cons
 
 /// Circle of the outline.
 struct Circle {
-  specimen::Point centre{};
+  Vec<2> centre{};
   double diameter = 0.0;
 };
 
@@ -454,13 +469,12 @@ std::optional<double> half_angle(const ReadBearing& b, const Circle& circle) {
 }
 
 double angle_on(const ReadBearing& b, const Circle& circle) {
-  const specimen::Point from_centre = *b.at - circle.centre;
+  const Vec<2> from_centre = *b.at - circle.centre;
   return std::atan2(from_centre[1], from_centre[0]);
 }
 
 /// Returns the corners of a circle; the ends of bearings are among them.
-std::vector<specimen::Point> corners_of(const Circle& circle, double size,
-                                        std::span<const ReadBearing> bearings) {
+std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<const ReadBearing> bearings) {
   std::vector<double> angles;
   for (const ReadBearing& b : bearings)
     if (const auto half = half_angle(b, circle))
@@ -474,20 +488,20 @@ std::vector<specimen::Point> corners_of(const Circle& circle, double size,
 /// bearing's middle is not on the outline.
 /// \param corners  corners of blocks that are there already, of which the ends are the nearest; empty: the
 ///                 ends may be anywhere
-std::array<specimen::Point, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
-                                            std::span<const specimen::Point> corners) {
+std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
+                                   std::span<const Vec<2>> corners) {
   const auto& box = region.box();
   const double near = kOnCircle * std::max(box.width(), box.height());
   for (const specimen::Piece& piece : region.pieces()) {
     if (region.sides()[piece.side].is_round ||
         specimen::distance_from_segment(*b.at, piece.from, piece.to) > near)
       continue;
-    const specimen::Point along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
-    const specimen::Point middle = piece.from + dot(*b.at - piece.from, along) * along;
-    std::array<specimen::Point, 2> ends{middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
+    const Vec<2> along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
+    const Vec<2> middle = piece.from + dot(*b.at - piece.from, along) * along;
+    std::array<Vec<2>, 2> ends{middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
     if (!corners.empty())
-      for (specimen::Point& end : ends)
-        end = *std::ranges::min_element(corners, {}, [&](const specimen::Point& corner) {
+      for (Vec<2>& end : ends)
+        end = *std::ranges::min_element(corners, {}, [&](const Vec<2>& corner) {
           const bool is_on = specimen::distance_from_segment(corner, piece.from, piece.to) <= kOnSide * near;
           return is_on ? norm(corner - end) : std::numeric_limits<double>::infinity();
         });
@@ -497,15 +511,14 @@ std::array<specimen::Point, 2> ends_on_side(const specimen::Region& region, cons
 }
 
 /// Returns the ends of a bearing on a circle: two of its corners.
-std::array<specimen::Point, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
-                                              const ReadBearing& b, double half) {
-  std::array<specimen::Point, 2> ends;
+std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
+                                     const ReadBearing& b, double half) {
+  std::array<Vec<2>, 2> ends;
   const double middle = angle_on(b, circle);
   const bool is_hole = region.distance(circle.centre) > 0.0;
   for (const int end : {0, 1}) {
     const double angle = middle + (end == 0 ? -half : half) * (is_hole ? -1.0 : 1.0);
-    const specimen::Point at =
-        circle.centre + 0.5 * circle.diameter * specimen::Point{{std::cos(angle), std::sin(angle)}};
+    const Vec<2> at = circle.centre + 0.5 * circle.diameter * Vec<2>{{std::cos(angle), std::sin(angle)}};
     ends[end] = std::ranges::min_element(region.pieces(), {}, [&](const specimen::Piece& piece) {
                   return norm(piece.from - at);
                 })->from;
@@ -515,8 +528,7 @@ std::array<specimen::Point, 2> ends_on_circle(const specimen::Region& region, co
 
 /// Returns the region with the seats of bearings as patches.
 specimen::Region with_seats(const specimen::Region& region, std::span<const Circle> circles,
-                            std::span<const ReadBearing> bearings,
-                            std::span<const specimen::Point> corners = {}) {
+                            std::span<const ReadBearing> bearings, std::span<const Vec<2>> corners = {}) {
   std::vector<specimen::Patch> patches;
   for (const ReadBearing& b : bearings) {
     if (!b.at) continue;
@@ -566,6 +578,17 @@ specimen::Region round_section(double diameter, double length, const ReadBlocks&
   return with_seats(rim, std::array{circle}, bearings);
 }
 
+/// Returns the body of blocks that were made before. A disc has the seats of bearings, whose ends are corners
+/// of its outline that are there already.
+solid::Prism body_of(const solid::Polyhedra& polyhedra, std::span<const ReadBearing> bearings) {
+  const solid::Prism& body = polyhedra.body;
+  const specimen::Region& section = body.section();
+  if (body.axis() != solid::Prism::Axis::z || !section.sides().front().is_round) return body;
+  const Circle circle{0.5 * (section.box().low + section.box().high),
+                      2.0 * std::sqrt(section.area() / std::numbers::pi)};
+  return {with_seats(section, std::array{circle}, bearings), body.axis(), body.length()};
+}
+
 std::vector<std::string> side_names(std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::format("side_{}", i + 1));
@@ -579,6 +602,7 @@ solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& spa
   const solid::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
   if (!s.ok()) return stand_in;
   try {
+    if (o.polyhedra) return body_of(*o.polyhedra, bearings);
     if (o.shape == Shape::cylinder) return {round_section(o.diameter, o.height, read, {}), y, o.height};
     const double depth = *space.depth;
     if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
@@ -586,7 +610,12 @@ solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& spa
       return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
     return {round_section(o.diameter, depth, read, bearings), z, depth};
   } catch (const Error& error) {
-    o.shape == Shape::polygon ? s.error("corners", error.what()) : s.error(error.what());
+    if (o.shape == Shape::polygon)
+      s.error("corners", error.what());
+    else if (o.polyhedra)
+      s.error("file", error.what());
+    else
+      s.error(error.what());
     return stand_in;
   }
 }
@@ -660,6 +689,15 @@ void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> 
                       fmt::format("a bearing on a part of a side can be made in a solid only on the rim of "
                                   "a disc yet; side = ... lays one on all of {}",
                                   fmt::join(names, ", ")));
+  for (const ReadBearing& b : bearings) {
+    if (!b.z || !specimen.prism || !b.section.ok()) continue;
+    const double middle = 0.5 * (specimen.low()[2] + specimen.high()[2]);
+    if (std::abs(*b.z - middle) > kOnCircle * (specimen.high()[2] - specimen.low()[2]))
+      b.section.error("at",
+                      fmt::format("a seat lies over all of the depth, so the z of its middle is {:g} m; got "
+                                  "{:g} m",
+                                  middle, *b.z));
+  }
   for (std::size_t i = 0; i < bearings.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!bearings[i].at && !bearings[j].at && bearings[i].section.ok() &&
@@ -854,6 +892,7 @@ void check_outline(const Section& s, const Outline& outline, const AskedSpecimen
       case Shape::tessellation:
         return outline.unit > 0.0 ? "unit" : "width";
       case Shape::cells:
+      case Shape::polyhedra:
         return "file";
       default:
         return {};
@@ -873,11 +912,21 @@ void check_outline(const Section& s, const Outline& outline, const AskedSpecimen
 
 /// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
 /// effect.
-void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
-                       Outline outline, AskedSpecimen& p) {
+void read_beside_cells(const Section& root, const Section& s, const DeckSpace& space,
+                       std::span<const ReadBearing> bearings, Outline outline, AskedSpecimen& p) {
   root.know({"aggregates", "inclusions", "blocks"});
-  p.region = make_region(s, outline, {}, bearings);
+  if (space.is_solid())
+    p.prism = make_prism(s, outline, space, {}, bearings);
+  else
+    p.region = make_region(s, outline, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
+  if (outline.polyhedra && s.ok()) {
+    p.blocks.count = static_cast<int>(outline.polyhedra->complex.cells.size());
+    p.blocks.phases = outline.polyhedra->phases;
+    check_outline(s, outline, p);
+    check_matrix(s, "file", p.blocks.phases, has_matrix, p);
+    p.polyhedra = std::move(outline.polyhedra);
+  }
   if (!outline.cells || !s.ok()) return;
   p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
   check_outline(s, outline, p);
@@ -908,8 +957,8 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   AskedSpecimen p;
   const Section s = root.section("specimen");
   Outline outline = read_outline(s, folder, space);
-  if (outline.shape == Shape::cells) {
-    read_beside_cells(root, s, bearings, std::move(outline), p);
+  if (outline.shape == Shape::cells || outline.shape == Shape::polyhedra) {
+    read_beside_cells(root, s, space, bearings, std::move(outline), p);
     if (s.ok()) check_bearings(p, bearings);
     check_phases(s, p, bearings);
     return p;

@@ -147,7 +147,7 @@ void check_heated_sides(const Section& root, const Setup& setup) {
 /// (docs/validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const AskedSpecimen& s = setup.specimen;
-  if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.motion) return;
+  if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.moving) return;
   const double size = s.block_size(), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
   const bool is_heated_under_load =
@@ -174,7 +174,7 @@ bool follows_temperature(const ReadCurve& read) {
 
 /// Warns of properties that come back on cooling.
 void warn_of_healing(const Section& root, const Setup& setup) {
-  if (!setup.motion || setup.motion->on_cooling == OnCooling::irreversible) return;
+  if (!setup.moving || setup.moving->on_cooling == OnCooling::irreversible) return;
   if (std::ranges::none_of(setup.curves, follows_temperature)) return;
   double temperature = setup.heat.initial;
   for (std::size_t i = 0; i < setup.stages.size(); ++i) {
@@ -220,8 +220,8 @@ Interval run_temperatures(const Section& root, const HeatConditions& conditions,
 void check_contacts(const Section& root, const Setup& setup) {
   const Section contacts = root.section("contacts");
   if (!root.ok()) return;
-  const auto concrete = make_concrete(setup.block_materials, setup.motion->contacts,
-                                      expected_block_size(setup.specimen, setup.motion->contacts));
+  const auto concrete = make_concrete(setup.block_materials, setup.moving->contacts,
+                                      expected_block_size(setup.specimen, setup.moving->contacts));
   const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
     double T = kReferenceTemperature, highest = T;
@@ -246,7 +246,7 @@ void check_contacts(const Section& root, const Setup& setup) {
         contacts.error(key, fmt::format("{}: {}", at, e.what()));
     }
   };
-  const std::size_t bearings = setup.motion->contacts.bearings.size();
+  const std::size_t bearings = setup.moving->contacts.bearings.size();
   for (std::size_t i = 0; i + bearings < concrete.contacts.size(); ++i)
     check(concrete.contacts[i], concrete.interfaces[i]);
 }
@@ -298,25 +298,25 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   const MaterialRules rules = read_material_rules(root);
   setup.expansion_reading = rules.expansion_reading;
   const auto phases = specimen::phases(setup.specimen);
-  setup.motion.emplace();
-  MotionParameters& motion = *setup.motion;
-  const bool has_platens = read_platens(root, setup, motion.bearings);
+  setup.moving.emplace();
+  MovingBody& moving = *setup.moving;
+  const bool has_platens = read_platens(root, setup, moving.bearings);
   for (const ReadBearing& read : bearings) {
     const auto lies_there = [&](const Bearing& b) { return b.side == read.bearing.side; };
-    if (has_platens && read.section.ok() && std::ranges::any_of(motion.bearings, lies_there))
+    if (has_platens && read.section.ok() && std::ranges::any_of(moving.bearings, lies_there))
       read.section.error(
           "side", fmt::format("a platen or another bearing lies on \"{}\" already", read.bearing.side));
-    motion.bearings.push_back(read.bearing);
+    moving.bearings.push_back(read.bearing);
   }
-  motion.on_cooling = rules.on_cooling;
+  moving.on_cooling = rules.on_cooling;
   const ReadConcrete concrete = read_concrete(root, phases, rules, curves);
-  motion.strain_of_concrete = concrete.of_phases;
+  moving.strain_of_concrete = concrete.of_phases;
   setup.block_materials =
-      read_block_materials(root, phases, materials_of(motion.bearings), rules, concrete, curves);
-  motion.contacts =
+      read_block_materials(root, phases, materials_of(moving.bearings), rules, concrete, curves);
+  moving.contacts =
       read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
-  for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
-  setup.motion->mechanics = read_mechanics(
+  for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
+  setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/method.md#motion)"), space);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
@@ -347,7 +347,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   check_hand_over(root, setup.stages);
   if (root.ok()) check_flow(root, setup);
   setup.temperatures = run_temperatures(root, setup.heat, read.stress_free, setup.stages);
-  const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
+  const auto bearings = read.any_moves ? read_bearings(root, space) : std::vector<ReadBearing>();
   setup.specimen = read_specimen(root, folder, space, bearings);
   setup.sets = read_sets(root, space);
   if (root.ok()) check_heated_sides(root, setup);
@@ -373,7 +373,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     read_resting(root, curves, setup);
   setup.records = records;
-  if (setup.motion) setup.motion->stress_free = read.stress_free;
+  if (setup.moving) setup.moving->stress_free = read.stress_free;
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   warn_of_first_strain(root, setup);
@@ -420,7 +420,7 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
                             fmt::join(phases(specimen), ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.block_materials, setup.sets,
-                                      setup.heat, setup.probes, setup.records, setup.motion, std::move(team));
+                                      setup.heat, setup.probes, setup.records, setup.moving, std::move(team));
 }
 
 double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts) {

@@ -33,10 +33,10 @@ struct Setup {
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
   /// Temperatures to which the run may come, °C; its curves must cover them.
   Interval temperatures;
-  double exposure = 0.0;                   ///< time for which boundaries act, s
-  std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
-  std::vector<SetParameters> sets;         ///< sets beside those that every model has
-  std::vector<std::string> unused_sets;    ///< sets that no table names: for scripts and ParaView
+  double exposure = 0.0;                 ///< time for which boundaries act, s
+  std::optional<MovingBody> moving;      ///< empty where no stage moves the body
+  std::vector<SetParameters> sets;       ///< sets beside those that every model has
+  std::vector<std::string> unused_sets;  ///< sets that no table names: for scripts and ParaView
   /// Lines about properties of materials that no temperature of the run needs.
   std::vector<std::string> unused_properties;
   HeatConditions heat;  ///< heat; uniform at the reference temperature without [heat]

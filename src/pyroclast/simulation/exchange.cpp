@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -81,7 +83,6 @@ bool Exchange::move_evenly(Simulation& simulation) {
 /// contact with the platen is left to settle.
 void Exchange::set_down(const Press& press) {
   if (press.stress_held() > 0.0) return;  // the force moves the body fast enough
-  if (!press.can_set_down()) return;
   const Press::EvenMotion motion = press.to_touch();
   if (press.way(motion) > kTouches * press.height()) move_evenly_first(motion);
 }
@@ -153,7 +154,8 @@ void Exchange::visit_state(StateVisitor& visitor) {
   visitor.visit("even_axial", even_motion.axial);
   visitor.visit("even_lateral", even_motion.lateral);
   visitor.visit("even_lift", even_motion.lift);
-  visitor.visit("even_tilt", even_motion.tilt);
+  for (std::size_t d = 0; d < even_motion.tilt.size(); ++d)
+    visitor.visit(fmt::format("even_tilt_{}", d), even_motion.tilt[d]);
   visitor.visit("even_platen_lift", even_motion.platen_lift);
   visitor.visit("strain_before", strain_before);
   visitor.visit("last_strain", last_strain);

@@ -26,6 +26,64 @@ std::vector<int> components_across(int axis, int dimension) {
   return across;
 }
 
+/// Gridpoint of the lower end of a solid.
+struct StandingPoint {
+  Vec<2> across{};  ///< position across the axis, m
+  double up = 0.0;  ///< displacement along the axis, m
+};
+
+/// Share of a triangle by which a point must differ from a corner to take its place.
+constexpr double kLeastShare = 1e-12;
+/// Distance of a point from a plane that counts as none, over the size of the points.
+constexpr double kOnPlane = 1e-12;
+
+/// Returns the shares by which the corners of a triangle make a place.
+std::array<double, 3> shares_of(const std::array<StandingPoint, 3>& corner, const Vec<2>& place) {
+  const Vec<2> first = corner[1].across - corner[0].across, second = corner[2].across - corner[0].across;
+  const Vec<2> to = place - corner[0].across;
+  const double doubled = cross(first, second);
+  const double b = cross(to, second) / doubled, c = cross(first, to) / doubled;
+  return {1.0 - b - c, b, c};
+}
+
+/// Returns the slopes of the plane through three points around a place that no other point is below: of all
+/// such triangles it is the lowest at the place, found by the simplex method. Returns 0 where no triangle of
+/// points is around the place.
+/// \param size  size of all points across the axis, m
+std::array<double, 2> slopes_under(const std::vector<StandingPoint>& points, const Vec<2>& place,
+                                   double size) {
+  // The method begins with three points that are too high and too far away to stay.
+  const double far = 10.0 * size, high = 1e3 * size;
+  std::array<StandingPoint, 3> corner{{{place + far * Vec<2>{{1.0, 0.0}}, high},
+                                       {place + far * Vec<2>{{-0.5, 0.9}}, high},
+                                       {place + far * Vec<2>{{-0.5, -0.9}}, high}}};
+  const auto above = [&](const StandingPoint& point) {
+    const auto [a, b, c] = shares_of(corner, point.across);
+    return point.up - (a * corner[0].up + b * corner[1].up + c * corner[2].up);
+  };
+  for (std::size_t round = 0; round < points.size(); ++round) {
+    const StandingPoint& lowest = *std::ranges::min_element(points, {}, above);
+    if (above(lowest) >= -kOnPlane * size) break;
+    const auto of_place = shares_of(corner, place), of_lowest = shares_of(corner, lowest.across);
+    int leaves = -1;
+    double least = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      if (of_lowest[i] <= kLeastShare) continue;
+      const double ratio = of_place[i] / of_lowest[i];
+      if (leaves >= 0 && ratio >= least) continue;
+      leaves = i;
+      least = ratio;
+    }
+    if (leaves < 0) break;
+    corner[leaves] = lowest;
+  }
+  if (std::ranges::any_of(corner, [&](const StandingPoint& point) { return point.up == high; })) return {};
+  const Vec<2> first = corner[1].across - corner[0].across, second = corner[2].across - corner[0].across;
+  const double rise = corner[1].up - corner[0].up, other = corner[2].up - corner[0].up;
+  const double doubled = cross(first, second);
+  return {(rise * second[1] - other * first[1]) / doubled, (other * first[0] - rise * second[0]) / doubled};
+}
+
 }  // namespace
 
 Press::Press(Motion& motion, Specimen between)
@@ -99,8 +157,6 @@ double Press::volume() const {
 /// Returns the rise over the width of the line on which the specimen stands: the edge of the lower hull of
 /// its lower end that lies under the middle.
 double Press::rise_of_stand() const {
-  if (!can_set_down())
-    throw Error("a specimen in space stands on three points: to set it down is not made yet");
   struct Point {
     double across, up;  // position across the axis, and displacement along it
   };
@@ -123,6 +179,23 @@ double Press::rise_of_stand() const {
   return (to.up - from.up) / (to.across - from.across);
 }
 
+/// Returns the slopes of the plane on which the specimen stands in 3D: that through three points of its lower
+/// end around its middle which lies on no point, a facet of their lower hull. Flat where there are no such
+/// points.
+std::array<double, 2> Press::slopes_of_stand() const {
+  std::vector<StandingPoint> points;
+  Vec<2> low{}, high{};
+  for (int g : set("bottom")) {
+    const Vec<3> at = motion_.model().place(g);
+    points.push_back({{{at[across_[0]], at[across_[1]]}}, motion_.read().displacement(g)[between_.axis]});
+    for (int d : {0, 1}) {
+      low[d] = points.size() == 1 ? points.back().across[d] : std::min(low[d], points.back().across[d]);
+      high[d] = points.size() == 1 ? points.back().across[d] : std::max(high[d], points.back().across[d]);
+    }
+  }
+  return slopes_under(points, 0.5 * (low + high), norm(high - low));
+}
+
 /// Returns the clearances between the platens and the gridpoints of the ends that stand out most, m.
 /// \param up  function that returns the way of a gridpoint along the axis since the start
 template <class Up>
@@ -134,18 +207,27 @@ Press::Clearances Press::clearances(const Up& up) const {
 }
 
 Press::EvenMotion Press::to_touch() const {
-  const double tilt = -rise_of_stand();
-  const double middle = mean_position(motion_.model(), specimen(), across_[0]);
+  std::array<double, 2> tilt{}, middle{};
+  if (across_.size() == 1)
+    tilt[0] = -rise_of_stand();
+  else
+    for (int d = 0; const double slope : slopes_of_stand()) tilt[d++] = -slope;
+  for (std::size_t d = 0; d < across_.size(); ++d)
+    middle[d] = mean_position(motion_.model(), specimen(), across_[d]);
   const auto up = [&](int g) {
-    return motion_.read().displacement(g)[between_.axis] +
-           tilt * (motion_.model().place(g)[across_[0]] - middle);
+    double way = motion_.read().displacement(g)[between_.axis];
+    for (std::size_t d = 0; d < across_.size(); ++d)
+      way += tilt[d] * (motion_.model().place(g)[across_[d]] - middle[d]);
+    return way;
   };
   const auto [below, above] = clearances(up);
   return {.lift = -std::max(0.0, below), .tilt = tilt, .platen_lift = -above};
 }
 
 double Press::way(const EvenMotion& motion) const {
-  return std::abs(motion.lift) + std::abs(motion.tilt) * between_.widths[0];
+  double way = std::abs(motion.lift);
+  for (std::size_t d = 0; d < across_.size(); ++d) way += std::abs(motion.tilt[d]) * between_.widths[d];
+  return way;
 }
 
 double Press::gap() const {
@@ -213,9 +295,10 @@ void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_foll
   const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
     const Vec<3> x = model.place(g);
-    const double turned = motion.tilt * (x[across_[0]] - middle[0]);
+    double turned = 0.0;
     for (std::size_t d = 0; d < across_.size(); ++d) {
-      const double aside = d == 0 ? -motion.tilt * (x[between_.axis] - bottom) : 0.0;
+      turned += motion.tilt[d] * (x[across_[d]] - middle[d]);
+      const double aside = -motion.tilt[d] * (x[between_.axis] - bottom);
       motion_.constraints().prescribe_velocity(g, across_[d],
                                                rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
     }

@@ -26,8 +26,9 @@ class Press {
   struct EvenMotion {
     double axial = 0.0, lateral = 0.0;  ///< strains, expansion positive; the lower end stays where it is
     double lift = 0.0;                  ///< lift of the specimen as a whole along the axis, m
-    double tilt = 0.0;                  ///< rise of the specimen over its width; 0 in 3D
-    double platen_lift = 0.0;           ///< lift of the upper platen beyond the end that it lies on, m
+    /// Slopes to which the specimen is tilted, along each component across the axis; in 2D the second is 0.
+    std::array<double, 2> tilt{};
+    double platen_lift = 0.0;  ///< lift of the upper platen beyond the end that it lies on, m
   };
 
   /// Specimen between the platens.
@@ -88,11 +89,8 @@ class Press {
   double height() const { return between_.height; }
   double volume() const;  ///< Returns the volume of the specimen, m³.
   /// Returns the motion that sets the specimen down on the lower platen, and the upper platen on the
-  /// specimen. In 2D the specimen then stands on two points on either side of its middle. Throws Error in 3D,
-  /// where it would stand on three; see `can_set_down`.
+  /// specimen. The specimen then stands on two points on either side of its middle, in 3D on three around it.
   EvenMotion to_touch() const;
-  /// Tells whether a specimen can be set down on two points; a solid settles by its weight instead.
-  bool can_set_down() const { return across_.size() == 1; }
   /// Returns the largest way that a gridpoint of the specimen goes in a motion without strain, m.
   double way(const EvenMotion& motion) const;
   const GridpointSet& specimen() const { return summed("specimen"); }
@@ -115,6 +113,7 @@ class Press {
   double shortening(std::string_view top, std::string_view bottom) const;
   double widening(std::size_t direction) const;
   double rise_of_stand() const;
+  std::array<double, 2> slopes_of_stand() const;
   struct Clearances {
     double below = 0.0, above = 0.0;
   };

@@ -56,19 +56,19 @@ SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<BlockMateria
 
 }  // namespace
 
-bool follows_composition(const std::vector<BlockMaterial>& block_materials, const MotionParameters& motion) {
-  return motion.strain_of_concrete || any_creeps(block_materials);
+bool follows_composition(const std::vector<BlockMaterial>& block_materials, const MovingBody& moving) {
+  return moving.strain_of_concrete || any_creeps(block_materials);
 }
 
-ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materials,
-                                 const MotionParameters& motion, const SpecimenNumbers& specimen) {
-  auto materials = make_concrete(block_materials, motion.contacts, specimen.mean_size, specimen.block_size);
-  materials.on_cooling = motion.on_cooling;
-  if (follows_composition(block_materials, motion))
-    follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
+ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materials, const MovingBody& moving,
+                                 const SpecimenNumbers& specimen) {
+  auto materials = make_concrete(block_materials, moving.contacts, specimen.mean_size, specimen.block_size);
+  materials.on_cooling = moving.on_cooling;
+  if (follows_composition(block_materials, moving))
+    follow_composition(materials, moving.contacts, moving.strain_of_concrete, specimen.fraction,
                        specimen.mean_size);
-  if (motion.stress_free && !motion.stress_free->is_field())
-    set_stress_free(materials, motion.stress_free->temperatures.front());
+  if (moving.stress_free && !moving.stress_free->is_field())
+    set_stress_free(materials, moving.stress_free->temperatures.front());
   return materials;
 }
 
@@ -76,33 +76,33 @@ Simulation::Simulation(MadeSpecimen specimen, double thickness,
                        const std::vector<BlockMaterial>& block_materials,
                        const std::vector<SetParameters>& sets, const HeatConditions& heat,
                        const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-                       const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
-    : Simulation(make_body(specimen, thickness, sets, motion), block_materials, heat, probes, records, motion,
+                       const std::optional<MovingBody>& moving, std::shared_ptr<Team> team)
+    : Simulation(make_body(specimen, thickness, sets, moving), block_materials, heat, probes, records, moving,
                  std::move(team)) {
   specimen_ = std::move(specimen);
 }
 
 Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& block_materials,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
-                       const std::vector<RecordParameters>& records,
-                       const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
+                       const std::vector<RecordParameters>& records, const std::optional<MovingBody>& moving,
+                       std::shared_ptr<Team> team)
     : team_(std::move(team)),
       model_(required(std::move(body.model))),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
-  if (!motion) {
+  if (!moving) {
     for (const RecordParameters& record : records) records_.emplace_back(*model_, false, record);
     show_cracks_to_heat();
     return;
   }
-  materials_ = make_materials(block_materials, *motion, numbers_);
+  materials_ = make_materials(block_materials, *moving, numbers_);
   std::vector<double> stress_free;
-  if (motion->stress_free && motion->stress_free->is_field())
-    stress_free = stress_free_gridpoints(*motion->stress_free, *model_, numbers_.mean_size);
+  if (moving->stress_free && moving->stress_free->is_field())
+    stress_free = stress_free_gridpoints(*moving->stress_free, *model_, numbers_.mean_size);
   hottest_ = HottestTemperatures(*model_, materials_, field_, stress_free);
-  motion_ = make_motion_at(*model_, materials_, field_, hottest_, motion->mechanics, team_);
+  motion_ = make_motion_at(*model_, materials_, field_, hottest_, moving->mechanics, team_);
   for (const specimen::Notch& notch : body.notches)
     if (const auto parted = model_->contact_sets.find(notch.name); parted != model_->contact_sets.end())
       for (int contact : parted->second)

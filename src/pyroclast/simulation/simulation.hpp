@@ -25,11 +25,11 @@
 namespace pyroclast {
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.
-bool follows_composition(const std::vector<BlockMaterial>& block_materials, const MotionParameters& motion);
+bool follows_composition(const std::vector<BlockMaterial>& block_materials, const MovingBody& moving);
 
 /// Makes the materials of a specimen. Throws Error, see make_concrete and follow_composition.
-ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materials,
-                                 const MotionParameters& motion, const SpecimenNumbers& specimen);
+ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materials, const MovingBody& moving,
+                                 const SpecimenNumbers& specimen);
 
 /// Specimen as a model and its temperatures; where a stage moves it, also its motion and loads, and the
 /// press around it where there are platens. A simulation cannot be moved: the solvers refer to the model
@@ -41,7 +41,7 @@ class Simulation {
   /// \param sets          sets beside those that every model has
   /// \param probes        probes of temperature
   /// \param records       records; those of motion only where something moves
-  /// \param motion        empty where nothing moves: then there are no platens and no mechanics
+  /// \param moving        empty where nothing moves: then there are no platens and no mechanics
   /// \param team          threads of the run
   ///
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
@@ -49,12 +49,12 @@ class Simulation {
   Simulation(MadeSpecimen specimen, double thickness, const std::vector<BlockMaterial>& block_materials,
              const std::vector<SetParameters>& sets, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
+             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team);
   /// Takes a body that was made elsewhere. Its model has the bearings, interfaces and chunks already, so
-  /// those of `motion` are not used. Throws Error as above, and for a body that is none.
+  /// those of `moving` are not used. Throws Error as above, and for a body that is none.
   Simulation(SpecimenBody body, const std::vector<BlockMaterial>& block_materials, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
+             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

@@ -25,9 +25,9 @@ constexpr double kBytesFixed = 40e6;
 
 constexpr const char* kUpperPlaten = "top_platen";
 
-bool has_platens(const std::optional<MotionParameters>& motion) {
+bool has_platens(const std::optional<MovingBody>& moving) {
   const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
-  return motion && std::ranges::any_of(motion->bearings, is_upper);
+  return moving && std::ranges::any_of(moving->bearings, is_upper);
 }
 
 Press::Specimen between_platens(const specimen::Specimen& specimen, const Model& model) {
@@ -116,6 +116,7 @@ MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team) {
   if (needed > available)
     throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
                             asked.blocks.count, needed * 1e-9, available * 1e-9));
+  if (asked.polyhedra) return solid::specimen_from(*asked.polyhedra, *asked.prism);
   if (asked.prism) return solid::make_specimen(asked, *asked.prism, team);
   return specimen::make_specimen(asked, team);
 }
@@ -134,10 +135,10 @@ SpecimenNumbers numbers_of(const MadeSpecimen& specimen) {
 }
 
 std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness,
-                                  const std::optional<MotionParameters>& motion) {
+                                  const std::optional<MovingBody>& moving) {
   return std::visit(
       [&](const auto& s) -> std::unique_ptr<Model> {
-        auto made = motion ? model_of(s, thickness, motion->contacts.interfaces, motion->bearings)
+        auto made = moving ? model_of(s, thickness, moving->contacts.interfaces, moving->bearings)
                            : model_of(s, thickness, {}, {});
         return std::make_unique<decltype(made)>(std::move(made));
       },
@@ -145,12 +146,12 @@ std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness
 }
 
 SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
-                       const std::optional<MotionParameters>& motion) {
-  SpecimenBody body{make_model(specimen, thickness, motion), numbers_of(specimen), {}, {}};
-  if (motion) body.model->cut_into_chunks(motion->chunk_blocks);
+                       const std::optional<MovingBody>& moving) {
+  SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}};
+  if (moving) body.model->cut_into_chunks(moving->chunk_blocks);
   add_sets(*body.model, sets);
   if (const auto* plane = std::get_if<specimen::Specimen>(&specimen)) body.notches = plane->region.notches();
-  if (has_platens(motion))
+  if (has_platens(moving))
     body.between_platens =
         std::visit([&](const auto& s) { return between_platens(s, *body.model); }, specimen);
   return body;

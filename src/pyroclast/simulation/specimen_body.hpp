@@ -10,9 +10,9 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/model/model.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/simulation/motion_parameters.hpp"
+#include "pyroclast/simulation/moving_body.hpp"
 #include "pyroclast/simulation/press.hpp"
-#include "pyroclast/solid/specimen.hpp"
+#include "pyroclast/solid/polyhedra.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast {
@@ -20,6 +20,8 @@ namespace pyroclast {
 /// Specimen that is asked for, in the plane or in space.
 struct AskedSpecimen : specimen::SpecimenParameters {
   std::optional<solid::Prism> prism;  ///< body in space; the region is then empty
+  /// Blocks of the body in space, where they were made before; `blocks` then has their number and phases.
+  std::optional<solid::Polyhedra> polyhedra;
 
   int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
   std::vector<std::string> sides() const;          ///< Returns the names of its sides.
@@ -27,6 +29,8 @@ struct AskedSpecimen : specimen::SpecimenParameters {
   Vec<3> high() const;                             ///< Returns the upper corner, m.
   /// Returns the distance of a point from the outline, m, negative or 0 within the specimen.
   double distance(const Vec<3>& point) const;
+  /// Tells whether all blocks come from a file; then no seed counts.
+  bool is_of_file() const { return cells || polyhedra; }
   double extent() const;  ///< Returns the area, m², of a solid the volume, m³.
   /// Returns the size of a block as foreseen, m: the root of the mean area, of a solid of the mean volume. 0
   /// where the number of blocks is not known.
@@ -74,14 +78,14 @@ struct SpecimenBody {
 /// Component of a position along which the press of a deck stands.
 inline constexpr int kVertical = 1;
 
-/// Makes the model of a specimen, with the bearings and interfaces of `motion`.
+/// Makes the model of a specimen, with the bearings and interfaces of `moving`.
 /// \param thickness  thickness of a specimen in the plane, m; of a solid not used
-/// \param motion     empty where nothing moves: then there are no bearings
+/// \param moving     empty where nothing moves: then there are no bearings
 std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness,
-                                  const std::optional<MotionParameters>& motion);
+                                  const std::optional<MovingBody>& moving);
 
 /// Makes a specimen into a body, with sets beside those that every model has.
 SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
-                       const std::optional<MotionParameters>& motion);
+                       const std::optional<MovingBody>& moving);
 
 }  // namespace pyroclast

@@ -36,7 +36,8 @@ class Prism {
   const std::vector<Plane>& planes() const { return planes_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
-  double volume() const { return volume_; }     ///< Returns the volume, m³.
+  double length() const { return planes_.back().offset; }  ///< Returns the length along the axis, m.
+  double volume() const { return volume_; }                ///< Returns the volume, m³.
   const specimen::Region& section() const { return section_; }
   Axis axis() const { return axis_; }
   /// Returns the distance from the nearest of the planes, m, negative within the body.

@@ -28,7 +28,7 @@ constexpr int kMostRounds = 20;
 /// Throws Error for cells that a solid cannot have.
 void require_own_cells(const specimen::SpecimenParameters& p) {
   if (p.cells || p.blocks.tessellation || !p.blocks.phases.empty())
-    throw Error("a solid cannot be made of cells from elsewhere yet");
+    throw Error("a solid cannot be made of cells of a plane");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
 }
 
@@ -92,35 +92,6 @@ double least_height(const std::array<Vec<3>, 4>& x) {
   return std::abs(dot(a, cross(b, c))) / widest;
 }
 
-CellMetrics measure(const Complex& complex, const Prism& body) {
-  CellMetrics metrics;
-  metrics.shortest_edge = std::numeric_limits<double>::infinity();
-  std::size_t zones = 0;
-  for (const CellFace& face : complex.faces) {
-    const auto corners = static_cast<int>(face.corners.size());
-    zones += static_cast<std::size_t>(corners - 2) * (face.outer >= 0 ? 2 : 1);
-    if (face.outer >= 0) metrics.most_corners = std::max(metrics.most_corners, corners);
-    for (int i = 0; i < corners; ++i)
-      metrics.shortest_edge = std::min(
-          metrics.shortest_edge,
-          norm(complex.vertices[face.corners[(i + 1) % corners]] - complex.vertices[face.corners[i]]));
-  }
-  metrics.lowest_zone = std::numeric_limits<double>::infinity();
-  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
-    const ZonedCell zoned = zone_cell(complex, cell);
-    for (const auto& [a, b, c, d] : zoned.zones) {
-      const auto& x = zoned.gridpoints;
-      const double height = least_height({x[a], x[b], x[c], x[d]});
-      if (height >= metrics.lowest_zone) continue;
-      metrics.lowest_zone = height;
-      metrics.lowest_zone_cell = static_cast<int>(cell);
-    }
-  }
-  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(complex.cells.size());
-  metrics.mean_size = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
-  return metrics;
-}
-
 /// Returns the size classes of all kinds: the intervals between their sieves.
 std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregateParameters*>& kinds,
                                   const SolidSpecimen& specimen, const std::vector<int>& stone,
@@ -153,6 +124,35 @@ std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregatePar
 
 }  // namespace
 
+CellMetrics measure(const Complex& complex, const Prism& body) {
+  CellMetrics metrics;
+  metrics.shortest_edge = std::numeric_limits<double>::infinity();
+  std::size_t zones = 0;
+  for (const CellFace& face : complex.faces) {
+    const auto corners = static_cast<int>(face.corners.size());
+    zones += static_cast<std::size_t>(corners - 2) * (face.outer >= 0 ? 2 : 1);
+    if (face.outer >= 0) metrics.most_corners = std::max(metrics.most_corners, corners);
+    for (int i = 0; i < corners; ++i)
+      metrics.shortest_edge = std::min(
+          metrics.shortest_edge,
+          norm(complex.vertices[face.corners[(i + 1) % corners]] - complex.vertices[face.corners[i]]));
+  }
+  metrics.lowest_zone = std::numeric_limits<double>::infinity();
+  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
+    const ZonedCell zoned = zone_cell(complex, cell);
+    for (const auto& [a, b, c, d] : zoned.zones) {
+      const auto& x = zoned.gridpoints;
+      const double height = least_height({x[a], x[b], x[c], x[d]});
+      if (height >= metrics.lowest_zone) continue;
+      metrics.lowest_zone = height;
+      metrics.lowest_zone_cell = static_cast<int>(cell);
+    }
+  }
+  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(complex.cells.size());
+  metrics.mean_size = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
+  return metrics;
+}
+
 std::vector<std::string> warnings(const SolidSpecimen& s) {
   std::vector<std::string> lines;
   const auto is_small = [&](const Ball& ball) {
@@ -183,7 +183,7 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   SolidSpecimen specimen;
   specimen.body = body;
   specimen.phases = specimen::phases(p);
-  specimen.matrix = place_in(specimen.phases, p.matrix);
+  const int matrix = place_in(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
   specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics.seeds_redrawn);
   const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
@@ -192,11 +192,10 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   specimen.fraction.assign(specimen.phases.size(), 0.0);
   for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell) {
     const int stone = superposed.stone[cell];
-    specimen.phase.push_back(stone < 0 ? specimen.matrix : specimen.balls[stone].phase);
+    specimen.phase.push_back(stone < 0 ? matrix : specimen.balls[stone].phase);
     volumes.push_back(volume(specimen.complex, cell));
     specimen.fraction[specimen.phase.back()] += volumes.back() / body.volume();
-    if (specimen.phase.back() != specimen.matrix)
-      specimen.fraction_superposed += volumes.back() / body.volume();
+    if (specimen.phase.back() != matrix) specimen.fraction_superposed += volumes.back() / body.volume();
   }
   specimen.classes = classes_of(kinds, specimen, superposed.stone, volumes);
   const int redrawn = specimen.metrics.seeds_redrawn;

@@ -36,7 +36,6 @@ struct SolidSpecimen {
   Prism body;
   Complex complex;
   std::vector<std::string> phases;  ///< phases that blocks can have
-  int matrix = 0;                   ///< index into `phases`
   std::vector<int> phase;           ///< phase of each cell, index into `phases`
   std::vector<Ball> balls;          ///< balls as placed, those of each kind largest first
   /// Volume of balls asked for and placed, and of blocks that are not matrix, over that of the specimen.
@@ -54,6 +53,8 @@ struct SolidSpecimen {
 /// \param team        team that shares the cells out; without a team the calling thread works alone
 SolidSpecimen make_specimen(const specimen::SpecimenParameters& parameters, const Prism& body,
                             Team* team = nullptr);
+
+CellMetrics measure(const Complex& complex, const Prism& body);
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const SolidSpecimen& specimen);

@@ -12,9 +12,6 @@
 
 namespace pyroclast::specimen {
 
-/// Place or direction in the plane of a specimen, m.
-using Point = Vec<2>;
-
 /// Lines of a region on which a point lies, ascending: pieces of the outline, then notches without a width,
 /// then tips of these notches.
 struct LineSet {

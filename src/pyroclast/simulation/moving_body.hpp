@@ -11,7 +11,7 @@
 namespace pyroclast {
 
 /// Parameters of a simulation that moves the body, beside those of every simulation.
-struct MotionParameters {
+struct MovingBody {
   std::vector<Bearing> bearings;
   ContactParameters contacts;
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it

@@ -1,0 +1,204 @@
+#include "pyroclast/solid/polyhedra.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
+#include "pyroclast/specimen/json_lists.hpp"
+
+namespace pyroclast::solid {
+
+namespace {
+
+using specimen::Json;
+using specimen::list_in;
+
+/// Largest distance of a corner from the side on which its face lies, over the size of a block: vertices that
+/// are closer than 1e-7 of it became one.
+constexpr double kOnSide = 1e-6;
+
+/// Reads the coordinates of a place; throws Json::exception for another number of them.
+template <int Count>
+Vec<Count> place_in_list(const Json& item) {
+  const auto stated = item.get<std::array<double, Count>>();
+  if (item.size() != Count) throw Json::other_error::create(501, "another number of coordinates", &item);
+  return {stated};
+}
+
+Prism body_in(const Json& json) {
+  const auto found = json.find("body");
+  if (found == json.end() || !found->is_object()) throw Error("there is no table \"body\"");
+  const auto sides = list_in(*found, "sides", "a name", specimen::text_in);
+  auto corners = list_in(*found, "section_m", "a place, [x, y] in m", place_in_list<2>);
+  const Json axis = found->value("axis", Json()), length = found->value("length_m", Json());
+  if (axis != "y" && axis != "z") throw Error(R"(body: "axis" must be "y" or "z")");
+  if (!length.is_number() || !(length.get<double>() > 0.0))
+    throw Error("body: \"length_m\" must be a number above 0");
+  if (sides.empty()) throw Error("body: \"sides\" must name a side");
+  auto section = specimen::Region::polygon(std::move(corners), sides, sides.size() == 1);
+  return {std::move(section), axis == "y" ? Prism::Axis::y : Prism::Axis::z, length.get<double>()};
+}
+
+void require_indices(const std::vector<std::vector<int>>& lists, const char* item, std::size_t fewest,
+                     const char* of, std::size_t there_are) {
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    std::vector<int> sorted = lists[i];
+    std::ranges::sort(sorted);
+    if (sorted.size() < fewest)
+      throw Error(
+          fmt::format("{} {} (from 0) has {} of {}, but needs {}", item, i, sorted.size(), of, fewest));
+    if (std::cmp_greater_equal(sorted.back(), there_are))
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0), but there are {}", item, i, of,
+                              sorted.back(), there_are));
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0) twice", item, i, of, *twice));
+  }
+}
+
+/// Returns the mean of the places of some vertices.
+Vec<3> mean_place(const Complex& complex, const std::vector<int>& vertices) {
+  Vec<3> sum{};
+  for (const int v : vertices) sum += complex.vertices[v];
+  return sum * (1.0 / static_cast<double>(vertices.size()));
+}
+
+/// Finds the cells on both sides of each face, and turns the faces of the surface outwards.
+void find_neighbours(Complex& complex) {
+  std::vector<std::vector<int>> cells_of(complex.faces.size());
+  std::vector<Vec<3>> middle;
+  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
+    Vec<3> sum{};
+    for (const int f : complex.cells[cell]) {
+      cells_of[f].push_back(static_cast<int>(cell));
+      sum += mean_place(complex, complex.faces[f].corners);
+    }
+    middle.push_back(sum * (1.0 / static_cast<double>(complex.cells[cell].size())));
+  }
+  for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+    CellFace& face = complex.faces[f];
+    const auto& cells = cells_of[f];
+    if (cells.empty() || cells.size() > 2)
+      throw Error(fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", f, cells.size()));
+    const Vec<3> from_first = mean_place(complex, face.corners) - middle[cells[0]];
+    const bool is_of_first = dot(area_vector(complex, face), from_first) > 0.0;
+    if (cells.size() == 1) {
+      face.inner = cells[0];
+      if (!is_of_first) std::reverse(face.corners.begin() + 1, face.corners.end());
+    } else {
+      face.inner = cells[is_of_first ? 0 : 1];
+      face.outer = cells[is_of_first ? 1 : 0];
+    }
+  }
+}
+
+/// Finds the side of the body on which each face of the surface lies.
+void find_sides(Complex& complex, const Prism& body) {
+  const double block = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
+  for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+    CellFace& face = complex.faces[f];
+    if (face.outer >= 0) continue;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Plane& plane : body.planes()) {
+      double farthest = 0.0;
+      for (const int v : face.corners)
+        farthest = std::max(farthest, std::abs(dot(plane.normal, complex.vertices[v]) - plane.offset));
+      if (farthest >= nearest) continue;
+      nearest = farthest;
+      face.side = plane.side;
+    }
+    if (nearest > kOnSide * block)
+      throw Error(
+          fmt::format("face {} (from 0), of cell {} alone, lies on no side of the body", f, face.inner));
+  }
+}
+
+}  // namespace
+
+std::string polyhedra_text(const SolidSpecimen& specimen) {
+  const auto places = [](const auto& list) {
+    Json all = Json::array();
+    for (const auto& place : list) all.push_back(place.c);
+    return all;
+  };
+  const specimen::Region& section = specimen.body.section();
+  const specimen::Loop& outline = section.loops().front();
+  Json sides = Json::array();
+  for (int side : outline.side) {
+    while (section.sides()[side].part_of >= 0) side = section.sides()[side].part_of;
+    if (section.sides()[side].is_round && !sides.empty()) continue;  // one name for all
+    sides.push_back(section.sides()[side].name);
+  }
+  Json json;
+  json["phases"] = specimen.phases;
+  json["body"] = {{"axis", specimen.body.axis() == Prism::Axis::y ? "y" : "z"},
+                  {"length_m", specimen.body.length()},
+                  {"section_m", places(outline.corners)},
+                  {"sides", std::move(sides)}};
+  json["vertices_m"] = places(specimen.complex.vertices);
+  json["faces"] = Json::array();
+  for (const CellFace& face : specimen.complex.faces) json["faces"].push_back(face.corners);
+  json["cells"] = specimen.complex.cells;
+  json["phase"] = specimen.phase;
+  return json.dump() + "\n";
+}
+
+Polyhedra read_polyhedra(const std::filesystem::path& file) {
+  return polyhedra_from(read_file(file), file.string());
+}
+
+Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
+  Polyhedra read;
+  read.origin = name;
+  specimen::read_table(text, name, [&read](const Json& json) {
+    read.phases = list_in(json, "phases", "a name", specimen::text_in);
+    read.body = body_in(json);
+    Complex& complex = read.complex;
+    complex.vertices = list_in(json, "vertices_m", "a place, [x, y, z] in m", place_in_list<3>);
+    const auto corners =
+        list_in(json, "faces", "a list of vertices, each by its number from 0", specimen::numbers_in);
+    complex.cells =
+        list_in(json, "cells", "a list of faces, each by its number from 0", specimen::numbers_in);
+    read.phase = list_in(json, "phase", "the number of a phase, from 0", specimen::number_in);
+    if (complex.cells.empty()) throw Error("there are no cells");
+    require_indices(corners, "face", 3, "vertices", complex.vertices.size());
+    require_indices(complex.cells, "cell", 4, "faces", corners.size());
+    if (read.phase.size() != complex.cells.size())
+      throw Error(
+          fmt::format("there are {} cells, but the phases of {}", complex.cells.size(), read.phase.size()));
+    for (std::size_t c = 0; c < read.phase.size(); ++c)
+      if (std::cmp_greater_equal(read.phase[c], read.phases.size()))
+        throw Error(fmt::format("cell {} (from 0) is of phase {} (from 0), but there are {}", c,
+                                read.phase[c], read.phases.size()));
+    for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
+    find_neighbours(complex);
+  });
+  return read;
+}
+
+SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body) {
+  const std::string what = polyhedra.origin.empty() ? "The blocks" : polyhedra.origin;
+  SolidSpecimen specimen;
+  specimen.body = body;
+  specimen.complex = std::move(polyhedra.complex);
+  try {
+    find_sides(specimen.complex, body);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", what, error.what()));
+  }
+  require_valid(specimen.complex, body, what);
+  specimen.phases = std::move(polyhedra.phases);
+  specimen.phase = std::move(polyhedra.phase);
+  specimen.fraction.assign(specimen.phases.size(), 0.0);
+  for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell)
+    specimen.fraction[specimen.phase[cell]] += volume(specimen.complex, cell) / body.volume();
+  specimen.metrics = measure(specimen.complex, body);
+  return specimen;
+}
+
+}  // namespace pyroclast::solid

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pyroclast/solid/specimen.hpp"
+
+/// Blocks in space that were made before, and their files.
+namespace pyroclast::solid {
+
+/// Blocks in space that were made before.
+struct Polyhedra {
+  Prism body;
+  Complex complex;  ///< its faces are on no side yet
+  std::vector<std::string> phases;
+  std::vector<int> phase;   ///< phase of each cell, index into `phases`
+  std::string origin = {};  ///< text that begins messages, such as the name of a file; may be empty
+};
+
+/// Writes a specimen as a file holds it: JSON with the lists `phases` (names), `vertices_m` ([x, y, z]
+/// each), `faces` (the vertices around each, from 0), `cells` (the faces of each, from 0) and `phase` (of
+/// each cell, from 0), and the table `body`: `axis` ("y" or "z"), `length_m` along it, `section_m` (the
+/// corners of its section, counter-clockwise) and `sides` (their names from each corner on, or one name of a
+/// round section). Stretches of sides are no part of it.
+std::string polyhedra_text(const SolidSpecimen& specimen);
+
+/// Reads a file of blocks in space, and turns each face counter-clockwise seen from outside of the first of
+/// its cells. Throws Error, with the file, for a text of another form, and for lists that do not fit.
+Polyhedra read_polyhedra(const std::filesystem::path& file);
+/// Reads blocks from a text; `name` takes the file's place in messages.
+Polyhedra polyhedra_from(const std::string& text, const std::string& name);
+
+/// Makes a specimen of blocks that were made before. Throws Error when they do not fill the body, or a face
+/// on the surface lies on none of its sides.
+/// \param body  body of the blocks, perhaps with patches
+SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body);
+
+}  // namespace pyroclast::solid
