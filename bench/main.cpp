@@ -1,23 +1,10 @@
 #include <cstdio>
 #include <exception>
-#include <fstream>
-#include <string>
 
 #include <benchmark/benchmark.h>
 
+#include "pyroclast/base/processors.hpp"
 #include "register.hpp"
-
-namespace {
-
-/// Name of the processor as Linux gives it.
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(": ") + 2);
-  return "unknown";
-}
-
-}  // namespace
 
 /// pyroclast_bench DECK [flags of Google Benchmark]; bench/run calls it.
 int main(int argc, char** argv) {
@@ -33,7 +20,7 @@ int main(int argc, char** argv) {
     bench::register_machine();
     bench::register_steps(specimens, cubes);
     bench::register_kernels(specimens, cubes);
-    benchmark::AddCustomContext("processor", processor());
+    benchmark::AddCustomContext("processor", pyroclast::processor_name());
     benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {

@@ -16,6 +16,7 @@
 #include "pyroclast/base/own_program.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/processors.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/plugin/compile.hpp"
 #include "pyroclast/version.hpp"
@@ -30,25 +31,12 @@ void tell(const char* what, const std::string& found) {
   fmt::print("{:<16}{}\n", what, found);
 }
 
-/// Returns the rest of the first line of a file that begins with a name, without `=`, `:`, blanks and quotes
-/// around it; "unknown" without one.
-std::string entry(const fs::path& file, const std::string& name) {
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.starts_with(name)) continue;
-    const auto begin = line.find_first_not_of("=:\t \"", name.size());
-    const auto end = line.find_last_not_of(" \"");
-    if (begin != std::string::npos && end >= begin) return line.substr(begin, end - begin + 1);
-  }
-  return "unknown";
-}
-
 std::string gigabytes(double bytes) {
   return fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
 std::string memory() {
-  const double kilobytes = std::atof(entry("/proc/meminfo", "MemTotal").c_str());
+  const double kilobytes = std::atof(entry_of("/proc/meminfo", "MemTotal").c_str());
   return fmt::format("{}, {} of it free", gigabytes(1024.0 * kilobytes), gigabytes(available_memory()));
 }
 
@@ -84,9 +72,9 @@ int doctor() {
   tell("program", own_program().string());
   utsname system{};
   uname(&system);
-  tell("system", fmt::format("{}; {} {}, {}", entry("/etc/os-release", "PRETTY_NAME"), system.sysname,
+  tell("system", fmt::format("{}; {} {}, {}", entry_of("/etc/os-release", "PRETTY_NAME"), system.sysname,
                              system.release, system.machine));
-  tell("processor", entry("/proc/cpuinfo", "model name"));
+  tell("processor", processor_name());
   tell("instructions",
        fmt::format("{} here, of {}", name(best_instruction_set()), describe_built_instruction_sets()));
   tell("threads", fmt::format("{} at most", free_processors()));
@@ -98,9 +86,7 @@ int doctor() {
   tell("Slurm", version_of("sbatch").value_or("missing: no sbatch; studies run on this machine"));
   const auto child = start_package("pyroclast.doctor", {}, {});
   if (!child)
-    tell("Python",
-         fmt::format("missing: no {}; figures need Python 3.9 or later with NumPy, h5py and Matplotlib",
-                     python()));
+    tell("Python", "missing: " + no_python());
   else
     wait_for(*child, [] { return false; });
   return 0;

@@ -27,11 +27,6 @@ std::optional<int> draw(
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-std::string no_python() {
-  return fmt::format(
-      "there is no {}, which draws them; PYROCLAST_PYTHON in the environment names another Python", python());
-}
-
 }  // namespace
 
 int figures(const std::vector<std::string>& words) {

@@ -50,14 +50,21 @@ class Strings {
   std::vector<char*> pointers_;
 };
 
-/// Python code that runs a module as a program. Python takes no module from the current folder. While the
-/// module loads, Ctrl-C ends it as it ends any program; from then on the module may hear Ctrl-C itself.
+/// What the package needs; ends messages.
+constexpr auto kNeeded =
+    "Python 3.9 or later with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in the environment "
+    "names "
+    "another Python";
+
+/// Python code that runs a module as a program. `@` stands for the module, `?` for what it needs. Python
+/// takes no module from the current folder. While the module loads, Ctrl-C ends it as it ends any program;
+/// from then on the module may hear Ctrl-C itself.
 constexpr auto kStart = R"(import sys
 if sys.path[:1] == ['']:
     del sys.path[0]
-another = 'PYROCLAST_PYTHON in the environment names another Python'
+needed = '?'
 if sys.version_info < (3, 9):
-    sys.exit('error: %s is Python %d.%d; 3.9 or later is needed. ' % ((sys.executable,) + sys.version_info[:2]) + another)
+    sys.exit('error: %s is Python %d.%d: ' % ((sys.executable,) + sys.version_info[:2]) + needed)
 import runpy, signal
 if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -69,12 +76,13 @@ except ImportError as error:
                  'the Debian package has it, and a build' % sys.executable)
     if error.name not in ('numpy', 'h5py', 'matplotlib'):
         raise
-    sys.exit('error: %s has no %s; NumPy, h5py and Matplotlib are needed. ' % (sys.executable, error.name) + another)
+    sys.exit('error: %s has no %s: ' % (sys.executable, error.name) + needed)
 )";
 
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
   std::string start = kStart;
   start.replace(start.find('@'), 1, module);
+  start.replace(start.find('?'), 1, kNeeded);
   std::vector<std::string> arguments{python(), "-c", start};
   arguments.insert(arguments.end(), words.begin(), words.end());
   return Strings(std::move(arguments));
@@ -98,6 +106,10 @@ std::string python() {
   return named != nullptr && *named != '\0' ? named : PYROCLAST_PYTHON;
 }
 
+std::string no_python() {
+  return fmt::format("there is no {}: {}", python(), kNeeded);
+}
+
 std::optional<pid_t> start_package(const std::string& module, const std::vector<std::string>& words,
                                    const Companion& companion) {
   posix_spawn_file_actions_t files;
@@ -119,7 +131,8 @@ std::optional<pid_t> start_package(const std::string& module, const std::vector<
 void become_package(const std::string& module, const std::vector<std::string>& words) {
   std::fflush(stdout);
   execvpe(python().c_str(), arguments_of(module, words).data(), environment().data());
-  throw Error(fmt::format("{}: cannot be run ({})", python(), std::strerror(errno)));
+  throw Error(errno == ENOENT ? no_python()
+                              : fmt::format("{}: cannot be run ({})", python(), std::strerror(errno)));
 }
 
 int wait_for(pid_t child, const std::function<bool()>& skip) {

@@ -20,6 +20,9 @@ struct Companion {
 /// names in the environment, or else that of the build.
 std::string python();
 
+/// Returns a sentence for a Python that is not there: what is needed, and how to name another one.
+std::string no_python();
+
 /// Starts a module of the Python package as another process. Returns its id, or none where it cannot run.
 std::optional<pid_t> start_package(const std::string& module, const std::vector<std::string>& words,
                                    const Companion& companion);

@@ -40,7 +40,7 @@ Watcher::Watcher(std::filesystem::path folder, RunLog& log)
   process_ = start_package(kModule, {folder_.string(), "--on", on},
                            {.hears_ctrl_c = false, .prints = log_.speech() != Speech::quiet});
   if (!process_)
-    say_aside(fmt::format("warning: {} cannot be run, so nobody watches; the run goes on\n", python()));
+    say_aside(fmt::format("warning: nobody watches, and the run goes on: {}\n", no_python()));
   else if (!has_window_ && has_terminal)
     log_.keep_progress_off_screen(true);
 }

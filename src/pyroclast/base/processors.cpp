@@ -13,6 +13,7 @@
 #include <sched.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 
 namespace pyroclast {
 
@@ -134,6 +135,10 @@ std::optional<double> processor_quota(const fs::path& root) {
       if (quota && (!smallest || *quota < *smallest)) smallest = quota;
     }
   return smallest;
+}
+
+std::string processor_name() {
+  return entry_of("/proc/cpuinfo", "model name");
 }
 
 int whole_processors(int allowed, std::optional<double> quota) {

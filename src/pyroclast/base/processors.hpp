@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace pyroclast {
 
@@ -12,6 +13,9 @@ namespace pyroclast {
 ///
 /// \param root  root of the file system whose `/proc/self` and mount points are read
 std::optional<double> processor_quota(const std::filesystem::path& root = "/");
+
+/// Returns the name of the processor, as the system gives it; "unknown" where it gives none.
+std::string processor_name();
 
 /// Returns the number of threads that `allowed` processors and a quota can keep going all the time; at least
 /// 1.

@@ -33,4 +33,15 @@ std::string read_named_file(const std::filesystem::path& file) {
   return bytes;
 }
 
+std::string entry_of(const std::filesystem::path& file, std::string_view name) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with(name)) continue;
+    const auto begin = line.find_first_not_of("=:\t \"", name.size());
+    const auto end = line.find_last_not_of(" \"");
+    if (begin != std::string::npos && end >= begin) return line.substr(begin, end - begin + 1);
+  }
+  return "unknown";
+}
+
 }  // namespace pyroclast

@@ -22,4 +22,8 @@ std::string read_file(const std::filesystem::path& file);
 /// Returns all bytes of a file that the user names, which may also be a pipe.
 std::string read_named_file(const std::filesystem::path& file);
 
+/// Returns the rest of the first line of a file of the system that begins with a name, without `=`, `:`,
+/// blanks and quotes around it; "unknown" without one.
+std::string entry_of(const std::filesystem::path& file, std::string_view name);
+
 }  // namespace pyroclast
