@@ -714,5 +714,17 @@ TEST(SummaryFile, NumbersAreNamedByTheirPaths) {
   EXPECT_TRUE(std::ranges::is_sorted(names));
 }
 
+// Promise: results of the test are those that a laboratory would report; how they were computed is none.
+TEST(SummaryFile, ResultsOfTheTestAreToldFromThoseOfTheComputation) {
+  const Made r = tests();
+  const auto names = test_results(r.run), numbers = summary_numbers(r.run);
+  EXPECT_TRUE(std::ranges::includes(numbers, names));
+  for (const char* name : {"f_c_MPa", "E_GPa", "strain_at_peak", "toe_strain"})
+    EXPECT_TRUE(std::ranges::binary_search(names, name)) << name;
+  for (const char* name : {"steps", "unbalanced_ratio", "quasi_static", "kinetic_over_elastic_to_peak",
+                           "platen_difference_over_f_c_after_peak", "wall_time_s", "f_c_none_because"})
+    EXPECT_FALSE(std::ranges::binary_search(names, name)) << name;
+}
+
 }  // namespace
 }  // namespace pyroclast::summary_test

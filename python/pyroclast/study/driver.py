@@ -299,7 +299,7 @@ class Driver:
 
 
 class _Progress:
-    """Lines that say how many runs are done, how many failed, and what time is left."""
+    """Lines that say how many runs are done, how many gave no value at all, and what time is left."""
 
     def __init__(self, total: int, say: Callable[[str], None]):
         self._total, self._say = total, say
@@ -308,7 +308,8 @@ class _Progress:
 
     def count(self, result: RunResult) -> None:
         self._done += 1
-        self._failed += result.state in FAILED
+        has_value = any(value is not None for value, _ in result.outputs.values())
+        self._failed += result.state in FAILED and not has_value
         if time.monotonic() - self._last > _PROGRESS:
             self.end()
 

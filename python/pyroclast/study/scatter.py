@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import csv
 import io
-import re
 import subprocess
 import tomllib
 from collections.abc import Callable, Sequence
@@ -24,11 +23,6 @@ from ..writing import make_folder, write_text
 from .methods import ensemble
 from .study import Study
 
-# Numbers of a summary that are no results of the test: they say how it was computed and whether to believe it.
-_OF_THE_COMPUTATION = re.compile(r"steps|\w*time_s|time_step_s|t_b_m|mass_over_real_mass|is_good|estimated_E_GPa|quasi_static\w*|"
-                                 r"unbalanced_ratio|exchange_\w+|kinetic_\w+|platen_\w+|control_\w+|energy_\w+|\w+_converged|"
-                                 r"diameter_mm|wall\w*|loading_work_J|cycles|exchanges|platen|strain|load_level|load_stress_MPa|"
-                                 r"f_c_of_level_MPa|highest_temperature_degC|largest_exchange\w+|worst_\w+")
 _HEADLINE = ("f_c_MPa", "critical_temperature_degC")
 
 
@@ -70,11 +64,11 @@ def deck_text(deck: Path, changes: Sequence[str]) -> _core.DeckText:
 
 
 def result_names(deck: _core.DeckText) -> list[str]:
-    """Names of the results of a deck's run, without those numbers that say how it was computed."""
+    """Names of the results of the test that a run of a deck may have."""
     session = _core.Session.begin(deck, None, 1, "", None, None, False)
-    numbers = session.summary_numbers()
+    names = session.test_results()
     session.close()
-    return [name for name in numbers if "." not in name and not _OF_THE_COMPUTATION.fullmatch(name)]
+    return names
 
 
 def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str], names: Sequence[str],

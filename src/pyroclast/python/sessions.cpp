@@ -260,6 +260,9 @@ void bind_sessions(py::module_& m) {
           "summary_numbers", [](const Held& h) { return h.get().summary_numbers(); },
           "What may be a number in the summary when the run is over: results by name, others by path.")
       .def(
+          "test_results", [](const Held& h) { return test_results(h.get().run()); },
+          "Those of its results that a laboratory would report, by name.")
+      .def(
           "copy",
           [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
              bool overwrite) {

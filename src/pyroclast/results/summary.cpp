@@ -318,6 +318,14 @@ void add_numbers(const OrderedJson& json, const std::string& path, std::set<std:
   }
 }
 
+/// Calls `f` for each result that a stage of the run will have and that may be a number.
+template <class F>
+void for_each_number(const Run& run, F f) {
+  for (const auto& stage : run.stages())
+    for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
+      if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason)) f(result);
+}
+
 }  // namespace
 
 void warn_of_hardening(Summary& summary) {
@@ -400,11 +408,16 @@ std::string summary_text(const Summary& s, const Run& run) {
 
 std::vector<std::string> summary_numbers(const Run& run, std::span<const Reference> references) {
   std::set<std::string> names;
-  for (const auto& stage : run.stages())
-    for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
-      if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason))
-        names.insert(result.name);
+  for_each_number(run, [&](const Result& result) { names.insert(result.name); });
   add_numbers(summary_json(summarize(run, references), run), "", names);
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> test_results(const Run& run) {
+  std::set<std::string> names;
+  for_each_number(run, [&](const Result& result) {
+    if (result.of == ResultOf::test) names.insert(result.name);
+  });
   return {names.begin(), names.end()};
 }
 

@@ -51,6 +51,9 @@ Summary summarize(const Run& run, std::span<const Reference> references = {});
 /// stages by their names, "f_c_MPa", and others by their paths, "energy_J.kinetic".
 std::vector<std::string> summary_numbers(const Run& run, std::span<const Reference> references = {});
 
+/// Returns the names of those numbers that are results of the test: what a laboratory would report.
+std::vector<std::string> test_results(const Run& run);
+
 /// Returns `summary.json` as a text.
 std::string summary_text(const Summary& summary, const Run& run);
 /// Writes `summary.json`.

@@ -86,12 +86,19 @@ struct Foreseen {
   double hottest = 0.0;      ///< highest temperature that boundaries may bring about, °C
 };
 
+/// What a result is of.
+enum class ResultOf : std::uint8_t {
+  test,        ///< the test: a laboratory would report it
+  computation  ///< the computation, or what the deck asked for: steps, tolerances, times of a driven test
+};
+
 /// Result with its unit in the name: "f_c_MPa".
 struct Result {
   using Value = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
 
   std::string name;
   Value value;  ///< value; monostate where there is none
+  ResultOf of = ResultOf::test;
 };
 
 /// Returns the value where it is there, else none.

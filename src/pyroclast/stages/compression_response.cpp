@@ -292,12 +292,12 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
       {"strain_at_stress_max", value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
       {"strain_ic", value_of(r.inelastic_strain, 1.0)},
       {"strain_ic_none_because", reason_of(r.inelastic_strain)},
-      {"quasi_static", inertia.to_peak},
-      {"quasi_static_after_peak", inertia.after_peak},
-      {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak},
-      {"kinetic_over_elastic_after_peak", inertia.kinetic_after_peak},
-      {"platen_difference_over_f_c_to_peak", inertia.difference_to_peak},
-      {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak},
+      {"quasi_static", inertia.to_peak, ResultOf::computation},
+      {"quasi_static_after_peak", inertia.after_peak, ResultOf::computation},
+      {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak, ResultOf::computation},
+      {"kinetic_over_elastic_after_peak", inertia.kinetic_after_peak, ResultOf::computation},
+      {"platen_difference_over_f_c_to_peak", inertia.difference_to_peak, ResultOf::computation},
+      {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak, ResultOf::computation},
   };
   report.lines.push_back(line_of("f_c", r.strength, 1e-6, 3, " MPa"));
   if (r.strength) report.lines.back() += fmt::format(" at strain {:.2g}", curve.strain[r.peak]);

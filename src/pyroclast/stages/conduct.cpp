@@ -90,7 +90,7 @@ StageReport Conduct::report(const History& history, RowRange rows, Outcome outco
   const auto last_or_none = [&](const char* name) { return last_value(history, name, rows); };
   report.results = {
       {"steady", outcome == Outcome::steady},
-      {"heating_time_s", last_or_none("heating_time_s")},
+      {"heating_time_s", last_or_none("heating_time_s"), ResultOf::computation},
       {"temperature_mean_degC", last_or_none("temperature_degC")},
       {"temperature_min_degC", last_or_none("temperature_min_degC")},
       {"temperature_max_degC", last_or_none("temperature_max_degC")},

@@ -882,9 +882,10 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
   StageReport report;
   const bool has_rows = !rows.empty();
   const double work = has_rows ? history.values("energy_loading_J", rows).back() - kept_.first_work : 0.0;
-  report.results = {{"steps", kept_.steps},
-                    {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)},
-                    {"loading_work_J", value_if(has_rows, work)}};
+  report.results = {
+      {"steps", kept_.steps, ResultOf::computation},
+      {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows), ResultOf::computation},
+      {"loading_work_J", value_if(has_rows, work), ResultOf::computation}};
   const auto of_records =
       record_results(keys_.records, kept_.record_peaks, keys_.results, kept_.body, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
@@ -920,10 +921,11 @@ void Drive::add_control(StageReport& report, double work) const {
   const double of_peak = std::max(0.0, share(kept_.largest_with_pair, peak) - 1.0);
   const double of_work = share(std::abs(kept_.pair_work), std::abs(work));
   report.results.push_back({"largest_load_factor", kept_.largest_factor});
-  report.results.push_back({"control_force_over_peak", share(kept_.largest_pair, peak)});
+  report.results.push_back(
+      {"control_force_over_peak", share(kept_.largest_pair, peak), ResultOf::computation});
   report.results.push_back({"largest_load_with_control_N", kept_.largest_with_pair});
-  report.results.push_back({"control_error_of_largest_load", of_peak});
-  report.results.push_back({"control_work_over_loading_work", of_work});
+  report.results.push_back({"control_error_of_largest_load", of_peak, ResultOf::computation});
+  report.results.push_back({"control_work_over_loading_work", of_work, ResultOf::computation});
   report.lines.push_back(
       fmt::format("control of {}: the largest load is {:.4g} N, and {:.4g} N with what the pair bore beside "
                   "it ({:+.2g} %); the pair "

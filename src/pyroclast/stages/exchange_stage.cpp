@@ -158,17 +158,18 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const ExchangeResponse r = exchange_response(history, rows, outcome);
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   report.results = {
-      {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
-      {"platen", kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value()},
-      {"load_stress_MPa", value_if(kept_.has_press, kept_.load_stress * 1e-6)},
+      {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction", ResultOf::computation},
+      {"platen", kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value(),
+       ResultOf::computation},
+      {"load_stress_MPa", value_if(kept_.has_press, kept_.load_stress * 1e-6), ResultOf::computation},
       {"critical_temperature_degC", value_if(failed, r.critical_temperature.value_or(0.0))},
       {"critical_time_s", value_if(failed, r.critical_time)},
-      {"highest_temperature_degC", value_if(has_rows, r.highest)},
-      {"largest_exchange_increment_K", coupling().increment},
-      {"exchanges", r.exchanges},
-      {"exchanges_not_converged", r.not_converged},
-      {"worst_unbalanced_ratio", value_if(has_rows, r.worst_ratio)},
-      {"cycles", static_cast<std::int64_t>(r.cycles)},
+      {"highest_temperature_degC", value_if(has_rows, r.highest), ResultOf::computation},
+      {"largest_exchange_increment_K", coupling().increment, ResultOf::computation},
+      {"exchanges", r.exchanges, ResultOf::computation},
+      {"exchanges_not_converged", r.not_converged, ResultOf::computation},
+      {"worst_unbalanced_ratio", value_if(has_rows, r.worst_ratio), ResultOf::computation},
+      {"cycles", static_cast<std::int64_t>(r.cycles), ResultOf::computation},
       {"largest_thrust_MPa", value_if(has_rows && kept_.has_press, r.largest_thrust)},
   };
   if (!has_rows) return report;

@@ -269,18 +269,20 @@ std::vector<Result> record_results(const std::vector<RecordParameters>& records,
     const bool has_peak = known.peak().is_found(), has_largest = !peaks.empty();
     results.push_back({fmt::format("peak_{}", column.name),
                        value_if(has_peak, has_peak ? factor * known.values()[i] : 0.0)});
-    results.push_back({fmt::format("peak_{}_time_s", records[i].name), value_if(has_peak, known.time())});
+    results.push_back({fmt::format("peak_{}_time_s", records[i].name), value_if(has_peak, known.time()),
+                       ResultOf::computation});
     results.push_back(
         {fmt::format("largest_{}", column.name), value_if(has_largest, factor * known.largest())});
-    results.push_back(
-        {fmt::format("largest_{}_time_s", records[i].name), value_if(has_largest, known.largest_time())});
+    results.push_back({fmt::format("largest_{}_time_s", records[i].name),
+                       value_if(has_largest, known.largest_time()), ResultOf::computation});
   }
   Values known = values_of(body);
   for (const RecordResult& each : asked) {
     const auto value = value_of(each, records, peaks, known, history, rows);
     if (value) known[each.name] = *value;
     results.push_back({name_with_unit(each.name, each.unit),
-                       value ? Result::Value((*value - each.unit_zero) / each.unit_size) : Result::Value()});
+                       value ? Result::Value((*value - each.unit_zero) / each.unit_size) : Result::Value(),
+                       each.kind == RecordResult::Kind::given ? ResultOf::computation : ResultOf::test});
   }
   return results;
 }

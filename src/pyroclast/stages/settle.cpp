@@ -59,8 +59,9 @@ Verdict Settle::judge(Simulation& simulation) {
 
 StageReport Settle::report(const History& history, RowRange rows, Outcome) const {
   StageReport report;
-  report.results = {{"steps", kept_.steps},
-                    {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)}};
+  report.results = {
+      {"steps", kept_.steps, ResultOf::computation},
+      {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows), ResultOf::computation}};
   return report;
 }
 
