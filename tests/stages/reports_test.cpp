@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "pyroclast/base/state_copy.hpp"
@@ -426,6 +427,16 @@ TEST(Forecasts, ACompressionTakesItsWay) {
               1e-6 * a.steps);
   EXPECT_NEAR(forecast(compress("stop_strain = 0.003\n" + kControl), 1).steps, 0.2 * steps(0.003),
               1e-6 * a.steps);
+  // it takes no fewer steps than at its fastest, to which it grows by a factor of e in each ramp time
+  const auto as_fast_as = [&](double times) {
+    return forecast(compress("stop_strain = 0.003\n" +
+                             with(kControl, "10 mm/s", fmt::format("{:g} mm/s", 0.5 * times))),
+                    1)
+        .steps;
+  };
+  const double way = 0.003 * height / 0.5e-3;
+  EXPECT_NEAR(as_fast_as(2.0), (way / 2.0 + 0.02 * (0.5 + std::log(2.0))) / step, 1e-6 * a.steps);
+  EXPECT_NEAR(as_fast_as(1.0), steps(0.003), 1e-6 * a.steps);
 }
 
 // Promise: heating takes an exchange for each increment, begun ones too, and tells where it ends.

@@ -306,11 +306,20 @@ double Compress::foreseen_strain() const {
   return keys_.stop_strain;
 }
 
+/// Returns the steps that the platen will probably take for a way, m. A controlled velocity takes no fewer
+/// than its fastest one does, to which it first has to grow, nor more than its lowest one.
+double Compress::foreseen_steps(double way, double time_step) const {
+  const double slowest = way / keys_.velocity + 0.5 * keys_.ramp_time;
+  if (!keys_.control) return slowest / time_step;
+  const double fastest = keys_.control->fastest;
+  const double least = way / fastest + keys_.ramp_time * (0.5 + std::log(fastest / keys_.velocity));
+  return std::clamp(kControlledShare * slowest, std::min(least, slowest), slowest) / time_step;
+}
+
 Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
   const double strain = foreseen_strain();
   const double way = strain * simulation.press().height();
-  const double slowest = (way / keys_.velocity + 0.5 * keys_.ramp_time) / simulation.motion().time_step();
-  return {.steps = keys_.control ? kControlledShare * slowest : slowest,
+  return {.steps = foreseen_steps(way, simulation.motion().time_step()),
           .looks = strain / keys_.history_strain,
           .frames = strain / keys_.frame_strain + 1.0};
 }
