@@ -1,4 +1,5 @@
-"""Opens the folder of a run in ParaView: the specimen coloured, its cracks as lines, both deformed.
+"""Opens the folder of a run in ParaView: the specimen coloured, its cracks as lines, both deformed. The half of a
+solid towards the eye is cut away, and all its cracks are faces.
 
     pvpython scripts/paraview_run.py RUN [--magnification 20] [--save picture.png]
 
@@ -19,6 +20,7 @@ from pathlib import Path
 DISPLACEMENT, TEMPERATURE, MATERIAL, CRACK = "displacement [m]", "temperature [degC]", "material", "crack [1]"
 CRACKED = 0.5  # damage from which a contact is drawn as a crack
 MAGNIFICATION = 20.0
+TOWARDS_EYE = (0.45, 0.35, 1.0)  # of a solid: x goes to the right, y upwards, as in its figures
 
 
 class Missing(Exception):
@@ -59,7 +61,15 @@ def show(run: str | Path, magnification: float = MAGNIFICATION):
             return source
         return simple.WarpByVector(Input=source, Vectors=["POINTS", DISPLACEMENT], ScaleFactor=magnification)
 
-    blocks = deformed(simple.OpenDataFile(str(series["blocks"])))
+    whole = simple.OpenDataFile(str(series["blocks"]))
+    blocks = deformed(whole)
+    whole.UpdatePipeline()
+    bounds = whole.GetDataInformation().GetBounds()
+    middle = [0.5 * (bounds[i] + bounds[i + 1]) for i in (0, 2, 4)]
+    is_solid = bounds[5] > bounds[4]
+    if is_solid:
+        blocks = simple.Clip(Input=blocks, ClipType="Plane", Invert=1)
+        blocks.ClipType.Origin, blocks.ClipType.Normal = middle, [0.0, 0.0, 1.0]
     shown = simple.Show(blocks, view)
     simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
     simple.GetAnimationScene().GoToLast()
@@ -76,7 +86,11 @@ def show(run: str | Path, magnification: float = MAGNIFICATION):
         lines.ColorArrayName = ["CELLS", ""]  # one colour; ColorBy(lines, None) fails in ParaView 5.11
         lines.AmbientColor = lines.DiffuseColor = [0.84, 0.37, 0.0]
         lines.LineWidth = 3.0
-    view.InteractionMode = "2D"
+    view.InteractionMode = "3D" if is_solid else "2D"
+    if is_solid:
+        view.CameraFocalPoint = middle
+        view.CameraPosition = [at + along for at, along in zip(middle, TOWARDS_EYE)]
+        view.CameraViewUp = [0.0, 1.0, 0.0]
     simple.ResetCamera(view)
     simple.Render(view)
     return view
