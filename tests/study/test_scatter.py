@@ -56,6 +56,15 @@ class Seeds(StudyTest):
         self.assertEqual(len(after), 4)
         self.assertEqual({file: after[file] for file in before}, before)
 
+    def test_a_specimen_that_lacks_one_result_has_a_value(self):
+        done = self.run_deck("--seeds", "2", "--no-figures", *SMALL, "--set", "stages[1].stop_strain=0.0006")
+        with open(self.folder / "runs/starter-seeds/table.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["state"], row["f_c_MPa"]) for row in rows], [("no value", "")] * 2)
+        self.assertTrue(all(row["E_GPa"] for row in rows))
+        self.assertRegex(done.stdout, "(?m)^2 of 2 runs$")
+        self.assertNotIn("without a value", done.stdout)
+
     def test_a_deck_in_error_is_told_as_by_a_single_run(self):
         for words in (("--set", "blocks.cuont=60"), ("--set", "blocks.count=-1")):
             done = self.run_deck("--seeds", "2", *words, code=1)
