@@ -65,7 +65,7 @@ class Compress : public Stage {
   void choose_velocity(const Simulation& simulation);
   double excess(const Simulation& simulation, double time);
   double foreseen_strain() const;
-  double foreseen_steps(double way, double time_step) const;
+  double foreseen_steps(const Simulation& simulation, double way) const;
   void take_point(Simulation& simulation);
   std::optional<std::size_t> row_of_peak(const History& history, RowRange rows) const;
   double left(const Simulation& simulation) const;
