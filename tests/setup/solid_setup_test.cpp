@@ -126,7 +126,7 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
       {with_more(solid(),
                  "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"1 mm\", \"2 mm\", \"3 mm\"]\n"
                  "width = \"20 mm\"\nthickness = \"10 mm\"\ncontact = \"glued\"\n"),
-       {"bearings[0].at", "\"10 mm\", \"10 mm\", \"10 mm\"] is needed, not a list of 4"}},
+       {"bearings[0].at", "[\"150 mm\", \"150 mm\", \"150 mm\"] is needed, not a list of 4"}},
       {with_more(plane(),
                  "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"1 mm\", \"2 mm\"]\nwidth = \"20 mm\"\n"
                  "thickness = \"10 mm\"\ncontact = \"glued\"\n"),

@@ -201,12 +201,14 @@ TEST(Solid, IsSetDownOnThreePoints) {
   EXPECT_LT(std::abs(touch.tilt[1]), 0.5e-4) << "the end itself is tilted along x alone";
   press.move_evenly(touch, 1.0, true);
   motion.advance(1);
+  constexpr double kMoved =
+      1e-11;  // the platens are elastic: they move by 1e-12 m meanwhile, ends are rough by 5e-7 m
   std::vector<Vec<3>> touching;
   Vec<3> middle{};
   for (int g : model.set("bottom")) {
     const double up = motion.read().displacement(g)[1];
-    EXPECT_GT(up, -1e-14);
-    if (up < 1e-13) touching.push_back(model.place(g));
+    EXPECT_GT(up, -kMoved);
+    if (up < kMoved) touching.push_back(model.place(g));
     middle += model.place(g) * (1.0 / static_cast<double>(model.set("bottom").size()));
   }
   ASSERT_EQ(touching.size(), 3U);
@@ -215,7 +217,7 @@ TEST(Solid, IsSetDownOnThreePoints) {
     return a[0] * b[2] - a[2] * b[0] > 0.0;
   };
   EXPECT_TRUE(turn(0, 1) == turn(1, 2) && turn(1, 2) == turn(2, 0)) << "the middle is not among them";
-  EXPECT_LT(press.gap(), 1e-12);
+  EXPECT_LT(press.gap(), kMoved);
 }
 
 TEST(Solid, ABodyThatIsNoneIsRefused) {

@@ -206,14 +206,26 @@ Press::Clearances Press::clearances(const Up& up) const {
           motion_.totals().mean_displacement(summed("top_platen_face"))[between_.axis] - highest};
 }
 
+/// Returns the middle between the sides, m: about it an even motion turns and widens the specimen.
+std::array<double, 2> Press::middle_across() const {
+  std::array<double, 2> middle{};
+  for (std::size_t d = 0; d < across_.size(); ++d)
+    middle[d] = 0.5 * (mean_position(motion_.model(), summed(between_.sides[d][0]), across_[d]) +
+                       mean_position(motion_.model(), summed(between_.sides[d][1]), across_[d]));
+  return middle;
+}
+
 Press::EvenMotion Press::to_touch() const {
   std::array<double, 2> tilt{}, middle{};
-  if (across_.size() == 1)
+  if (across_.size() == 1) {
     tilt[0] = -rise_of_stand();
-  else
+    // This middle is not that of the motion, so the lift is off by the tilt times their distance: too little
+    // to change results for it.
+    middle[0] = mean_position(motion_.model(), specimen(), across_[0]);
+  } else {
     for (int d = 0; const double slope : slopes_of_stand()) tilt[d++] = -slope;
-  for (std::size_t d = 0; d < across_.size(); ++d)
-    middle[d] = mean_position(motion_.model(), specimen(), across_[d]);
+    middle = middle_across();
+  }
   const auto up = [&](int g) {
     double way = motion_.read().displacement(g)[between_.axis];
     for (std::size_t d = 0; d < across_.size(); ++d)
@@ -288,10 +300,7 @@ double Press::stress_bottom() const {
 void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
   const auto& model = motion_.model();
   const double bottom = model.place(set("bottom").front())[between_.axis];
-  std::array<double, 2> middle{};
-  for (std::size_t d = 0; d < across_.size(); ++d)
-    middle[d] = 0.5 * (mean_position(model, summed(between_.sides[d][0]), across_[d]) +
-                       mean_position(model, summed(between_.sides[d][1]), across_[d]));
+  const std::array<double, 2> middle = middle_across();
   const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
     const Vec<3> x = model.place(g);

@@ -114,6 +114,7 @@ class Press {
   double widening(std::size_t direction) const;
   double rise_of_stand() const;
   std::array<double, 2> slopes_of_stand() const;
+  std::array<double, 2> middle_across() const;
   struct Clearances {
     double below = 0.0, above = 0.0;
   };
