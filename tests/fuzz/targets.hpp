@@ -27,6 +27,8 @@ bool table(std::string_view text);
 bool tessellation(std::string_view text);
 /// A file with blocks that are made elsewhere.
 bool cells(std::string_view text);
+/// A file with blocks in space.
+bool polyhedra(std::string_view text);
 /// A number with its unit.
 bool quantity(std::string_view text);
 /// A CSV file with a path of jumps.
@@ -45,12 +47,13 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 11> kTargets{{{"deck", deck},
+inline constexpr std::array<Target, 12> kTargets{{{"deck", deck},
                                                   {"changes", changes},
                                                   {"formula", formula},
                                                   {"table", table},
                                                   {"tessellation", tessellation},
                                                   {"cells", cells},
+                                                  {"polyhedra", polyhedra},
                                                   {"quantity", quantity},
                                                   {"jump_path", jump_path},
                                                   {"checkpoint", checkpoint},

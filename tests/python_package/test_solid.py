@@ -244,9 +244,9 @@ class Cylinder(unittest.TestCase):
             bent[good["faces"][surface][0]][axis] += way
         file = self.place / "mine.json"
         for change, told in (
-                ({"faces": [[0, 1]]}, r"mine.json: face 0 .from 0. has 2 of vertices, but needs 3"),
-                ({"faces": [[0, 1, 10**6], *good["faces"][1:]]}, "names vertices 1000000"),
-                ({"cells": [[0, 1, 2]] + good["cells"][1:]}, "cell 0 .from 0. has 3 of faces, but needs 4"),
+                ({"faces": [[0, 1]]}, r"mine.json: face 0 .from 0. has 2 vertices, but needs 3"),
+                ({"faces": [[0, 1, 10**6], *good["faces"][1:]]}, "names vertex 1000000"),
+                ({"cells": [[0, 1, 2]] + good["cells"][1:]}, "cell 0 .from 0. has 3 faces, but needs 4"),
                 ({"cells": good["cells"][:-1]}, "39 cells, but the phases of 40"),
                 ({"cells": good["cells"][:-1], "phase": good["phase"][:-1]}, "is of 0 cells|lies on no side"),
                 ({"phase": [9] * 40}, "cell 0 .from 0. is of phase 9"), ({"body": None}, 'no table "body"'),

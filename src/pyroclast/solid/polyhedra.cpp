@@ -41,23 +41,33 @@ Prism body_in(const Json& json) {
   if (!length.is_number() || !(length.get<double>() > 0.0))
     throw Error("body: \"length_m\" must be a number above 0");
   if (sides.empty()) throw Error("body: \"sides\" must name a side");
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    if (std::find(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(i), sides[i]) !=
+        sides.begin() + static_cast<std::ptrdiff_t>(i))
+      throw Error(fmt::format("body: two sides are called \"{}\"", sides[i]));
   auto section = specimen::Region::polygon(std::move(corners), sides, sides.size() == 1);
   return {std::move(section), axis == "y" ? Prism::Axis::y : Prism::Axis::z, length.get<double>()};
 }
 
-void require_indices(const std::vector<std::vector<int>>& lists, const char* item, std::size_t fewest,
-                     const char* of, std::size_t there_are) {
+/// What the numbers of a list count, in words.
+struct Counted {
+  const char *one, *many;
+};
+
+/// Throws Error where a list has too few numbers, one twice, or one that nothing has.
+void require_numbers(const std::vector<std::vector<int>>& lists, const char* item, std::size_t fewest,
+                     const Counted& of, std::size_t there_are) {
   for (std::size_t i = 0; i < lists.size(); ++i) {
     std::vector<int> sorted = lists[i];
     std::ranges::sort(sorted);
     if (sorted.size() < fewest)
       throw Error(
-          fmt::format("{} {} (from 0) has {} of {}, but needs {}", item, i, sorted.size(), of, fewest));
+          fmt::format("{} {} (from 0) has {} {}, but needs {}", item, i, sorted.size(), of.many, fewest));
     if (std::cmp_greater_equal(sorted.back(), there_are))
-      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0), but there are {}", item, i, of,
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0), but there are {}", item, i, of.one,
                               sorted.back(), there_are));
     if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
-      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0) twice", item, i, of, *twice));
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0) twice", item, i, of.one, *twice));
   }
 }
 
@@ -166,8 +176,8 @@ Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
         list_in(json, "cells", "a list of faces, each by its number from 0", specimen::numbers_in);
     read.phase = list_in(json, "phase", "the number of a phase, from 0", specimen::number_in);
     if (complex.cells.empty()) throw Error("there are no cells");
-    require_indices(corners, "face", 3, "vertices", complex.vertices.size());
-    require_indices(complex.cells, "cell", 4, "faces", corners.size());
+    require_numbers(corners, "face", 3, {"vertex", "vertices"}, complex.vertices.size());
+    require_numbers(complex.cells, "cell", 4, {"face", "faces"}, corners.size());
     if (read.phase.size() != complex.cells.size())
       throw Error(
           fmt::format("there are {} cells, but the phases of {}", complex.cells.size(), read.phase.size()));
