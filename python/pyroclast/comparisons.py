@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from . import reference, style
-from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
+from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart, title_together
 from .errors import Error
-from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, over_minutes, strain_limits
-from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
+from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, mark_leaving, over_minutes, strain_limits
+from .progress import (MINUTES_LABEL, crack_extent, extent_of_cracks, heating_course, heating_minutes,
+                       loading_course, temperature_label)
 
 if TYPE_CHECKING:
     from .results import Results
@@ -102,15 +102,16 @@ def _label(group: _Group) -> str:
     return "\n".join(textwrap.fill(line, 34) for line in lines)
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def compare_total_strain(runs: Sequence[Results]) -> Figure:
     """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
     _demand_heated(runs)
-    figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
+    figure, (axes,), beside = style.panels(4.2, beside=0.42)
+    title_together(axes, runs)
     bands, timed = [], _timed(runs)
     over, label = _axis(runs)
-    for group in _by_load(runs):
+    groups = _by_load(runs)
+    for group in groups:
         asked = not timed and any(reference.TRANSIENT_STRAIN in run.references.builtin for run in group.runs)
         if asked and (band := reference.strain_band(group.runs[0].load_level)):
             bands.append(band)
@@ -119,22 +120,25 @@ def compare_total_strain(runs: Sequence[Results]) -> Figure:
     draw_tables(axes, runs, _over(runs), ("total_strain", style.PER_MILLE))
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
+    for group in groups:
+        for x, strain in _curves_of(group, over):
+            mark_leaving(axes, x, strain, group.colour)
     axes.set_xlabel(label)
     axes.set_ylabel(TOTAL_STRAIN_LABEL.replace("\n", " "))
     handles, labels = axes.get_legend_handles_labels()
     if bands:
         handles, labels = [*handles, Patch(color=style.FAINT, alpha=0.4)], [*labels, _BAND_LABEL]
-    style.legend_alone(beside, handles, labels, loc="upper left")
+    style.draw_legend(beside, axes, handles, labels, loc="upper left")
     return figure
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def compare_thrust(runs: Sequence[Results]) -> Figure:
     """Axial stress over temperature, or minutes where no run is uniform, each by itself."""
     _demand_heated(runs)
     over, label = _axis(runs)
-    figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
+    figure, (axes,), beside = style.panels(4.2, beside=0.42)
+    title_together(axes, runs)
     if len(runs) > MANY:
         draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
     else:
@@ -142,7 +146,7 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
     draw_tables(axes, runs, _over(runs), ("stress", 1.0))
     axes.set_xlabel(label)
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
-    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
+    style.draw_legend(beside, axes, loc="upper left")
     return figure
 
 
@@ -153,19 +157,21 @@ def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results],
                   linestyle=dashes, label=f"{textwrap.fill(name, 34)}\nlargest {largest:.2f} MPa")
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def compare_cracks(runs: Sequence[Results]) -> Figure:
-    """Broken contact points by mode and the mean opening while heated, or over strain if none ends heated."""
+    """Length of broken contacts, of solids their area, by mode and the mean opening while heated, or over strain if none ends heated."""
     if len({run.ends_heated for run in runs}) > 1:
         raise Error("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
     if len({course.ordered for course in courses}) > 1:
         raise Error("compare: cracks of runs that cool and of runs that do not have no common axis")
-    figure = style.new_figure(5.4)
-    grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
-    panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
-    drawn = [(_broken(course, "tension"), _broken(course, "shear"), 1e6 * course["mean_opening_m"])
-             for course in courses]
+    figure, panels, beside = style.panels(5.4, (1.0, 1.0, 1.0), beside=0.42)
+    title_together(panels[0], runs)
+    if len({extent_of_cracks(run) for run in runs}) > 1:
+        raise Error("compare: cracks of runs in the plane and in space have no common axis")
+    what, unit, _ = extent_of_cracks(runs[0])
+    drawn = [(crack_extent(course, "tension", True), crack_extent(course, "shear", True),
+              1e6 * course["mean_opening_m"]) for course in courses]
     if len(runs) > MANY:
         for axes, of_all in zip(panels, zip(*drawn)):
             draw_spread(axes, [(course.over, values) for course, values in zip(courses, of_all)], style.BLUE)
@@ -174,26 +180,26 @@ def compare_cracks(runs: Sequence[Results]) -> Figure:
             for axes, values in zip(panels, of_run):
                 axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
                           label=textwrap.fill(name, 34))
-    for axes, label in zip(panels, ("Broken contact\npoints, tension", "Broken contact\npoints, shear",
+    for axes, label in zip(panels, (f"{what} of broken\ncontacts, tension [{unit}]",
+                                    f"{what} of broken\ncontacts, shear [{unit}]",
                                     "Mean opening of\ncontacts damaged\nin tension [µm]")):
         axes.set_ylabel(label)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(left=min(course.start for course in courses))
         axes.tick_params(labelbottom=axes is panels[-1])
     panels[-1].set_xlabel(max((course.label for course in courses), key=len))  # "mean" if any has a mean
-    beside = figure.add_subplot(grid[:, 1])
-    style.legend_alone(beside, *panels[0].get_legend_handles_labels(), loc="upper left")
+    style.draw_legend(beside, panels[0], loc="upper left")
     return figure
 
 
-def _broken(course, mode: str):
-    interfaces = course.run.crack_modes.get(mode, [])
-    return sum((course[f"{mode}_{name}_broken"] for name in interfaces), np.zeros(len(course.over)))
+def _curves_of(group: _Group, over: Callable[[Results], np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """What runs are drawn over, and their total strain [10^-3], while they stood."""
+    return [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
+            for run in group.runs for rows in [run.standing[run.heated]]]
 
 
 def _draw_group(axes: Axes, group: _Group, over: Callable[[Results], np.ndarray]) -> None:
-    curves = [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
-              for run in group.runs for rows in [run.standing[run.heated]]]
+    curves = _curves_of(group, over)
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
     elif len(curves) > MANY:

@@ -29,21 +29,20 @@ class CrackStyle:
 
     @property
     def label(self) -> str:
-        state = "broken ($D=1$)" if self.broken else f"damaged by more than half (${_HALF}<D<1$)"
-        return f"{self.mode} crack, {state}"
+        return f"{self.mode}, " + ("broken ($D=1$)" if self.broken else f"damaged (${_HALF}<D<1$)")
 
     def holds(self, damage: np.ndarray) -> np.ndarray:
         return damage >= 1.0 if self.broken else (damage > _HALF) & (damage < 1.0)
 
 
-# Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
+# Drawn in this order: where a contact broke in both modes, tension is drawn on shear, see `fractures`.
 CRACKS = (
     CrackStyle("mixed", False, style.MIXED_TINT, 0.7),
+    CrackStyle("shear", False, style.SHEAR_TINT, 0.7),
     CrackStyle("tension", False, style.TENSION_TINT, 0.7),
-    CrackStyle("shear", False, style.SHEAR_TINT, 0.4),
     CrackStyle("mixed", True, style.MIXED_COLOUR, 1.8),
+    CrackStyle("shear", True, style.SHEAR_COLOUR, 1.8),
     CrackStyle("tension", True, style.TENSION_COLOUR, 1.8),
-    CrackStyle("shear", True, style.SHEAR_COLOUR, 0.8),
 )
 
 
@@ -59,8 +58,14 @@ def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
 
 
 def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Cracked contact points that `fracture` draws, by mode (of `Results.crack_modes`) and whether broken."""
+    """Cracked contact points that a figure of fracture draws, by mode (of `Results.crack_modes`) and whether broken."""
     return {(crack.mode, crack.broken): int(cracked(run, frame, crack).sum()) for crack in cracks_of(run)}
+
+
+def size_of_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], float]:
+    """Length [m], in space area [m²], of the contact points that `count_cracks` counts."""
+    extent = run.mesh.contacts.extent
+    return {(crack.mode, crack.broken): float(extent[cracked(run, frame, crack)].sum()) for crack in cracks_of(run)}
 
 
 def cracks_of(run: Results) -> list[CrackStyle]:
@@ -72,9 +77,11 @@ def crack_legend(run: Results) -> list[Artist]:
     return [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label) for crack in cracks_of(run)]
 
 
-def material_legend(blocks: BlockMesh, zones: np.ndarray | None = None) -> list[Artist]:
-    """A handle for each material of some zones; None: of all."""
+def material_legend(blocks: BlockMesh, zones: np.ndarray | None = None, bearing: str = "platen") -> list[Artist]:
+    """A handle for each material of some zones; None: of all. bearing: what bearings are called that have no name."""
     shown = blocks.material if zones is None else blocks.material[zones]
     colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
+    names = [bearing if kind in blocks.bearing_materials and name == "platen" else name
+             for kind, name in enumerate(blocks.materials)]
     return [Patch(facecolor=colour, edgecolor=style.FAINT, linewidth=0.4, label=name)
-            for kind, (name, colour) in enumerate(zip(blocks.materials, colours)) if (shown == kind).any()]
+            for kind, (name, colour) in enumerate(zip(names, colours)) if (shown == kind).any()]

@@ -8,12 +8,12 @@ from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import reference, style
+from .deck_differences import names_by_decks
 from .errors import Error
 
 if TYPE_CHECKING:
@@ -30,15 +30,13 @@ MANY = 6
 """More runs than these are drawn as a range, not as a curve each."""
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     """The run's curve beside the reference that its deck asks for (paper, Figure 8).
 
     marks: the frames to point out, by letter, as `select_frames` gives them; may be empty.
     """
-    figure = style.new_figure(4.8)
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.25, 1.0])
-    axes = figure.add_subplot(grid[0, :])
+    figure, axes, beside_table, of_table = _axes_and_table()
     axes.set_title(style.title_of(run))
     if run.parent and not run.parent.ends_heated:
         style.draw_parent(axes, run.parent, style.PER_MILLE * run.parent.loaded_strain,
@@ -53,9 +51,19 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     axes.set_xlabel(style.STRAIN_LABEL)
     axes.set_ylabel(style.STRESS_LABEL)
 
-    style.legend_alone(figure.add_subplot(grid[1, 0]), *axes.get_legend_handles_labels(), loc="center left")
-    _draw_table(figure.add_subplot(grid[1, 1]), run)
+    style.draw_legend(beside_table, axes, loc="center left")
+    _draw_table(of_table, run)
     return figure
+
+
+def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes]:
+    """Figure with axes for the curve, for a legend (None where it stands in the first), and for the table."""
+    if style.page().is_column:
+        figure, (axes, table), _ = style.panels(0.0, (1.0, 0.3))
+        return figure, axes, None, table
+    figure = style.new_figure(4.8)
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.25, 1.0])
+    return figure, *(figure.add_subplot(grid[place]) for place in ((0, slice(None)), (1, 0), (1, 1)))
 
 
 def _draw_run(axes: Axes, run: Results) -> None:
@@ -137,16 +145,17 @@ def _draw_table(axes: Axes, run: Results) -> None:
         rowLabels=["$E$ [GPa]", "$f_c$ [MPa]", "$\\varepsilon_{ic}$ [–]"],
         colLabels=columns,
         cellLoc="center",
-        bbox=[0.16, 0.05, 0.28 * len(columns), 0.9],
+        bbox=[0.16, 0.05, 0.28 * len(columns), 0.9] if not style.page().is_column else
+        [0.15, 0.0, 0.85 * len(columns) / 3.0, 1.0],
     )
     table.auto_set_font_size(False)
-    table.set_fontsize(7.5)
+    table.set_fontsize(style.page().size(7.5))
     for cell in table.get_celld().values():
         cell.set_linewidth(0.4)
         cell.set_edgecolor(style.FAINT)
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
     """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
 
@@ -159,8 +168,8 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
         raise Error("compare: no runs were given")
     if heated := [run for run in runs if run.ends_heated]:
         raise Error(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
-    figure = style.new_figure(4.2)
-    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.42]})
+    figure, (axes,), beside = style.panels(4.2, beside=0.42)
+    title_together(axes, runs)
     curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
     if are_seeds and len(runs) > 1:
         for curve in curves:
@@ -185,7 +194,7 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(style.STRAIN_LABEL)
     axes.set_ylabel(style.STRESS_LABEL)
-    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
+    style.draw_legend(beside, axes, loc="upper left")
     return figure
 
 
@@ -269,11 +278,19 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
 
 
 def names_apart(runs: Sequence[Results]) -> list[str]:
-    """Titles, or the shortest ends of the folders' paths where titles do not tell the runs apart; warnings stay."""
+    """Titles; where these do not tell the runs apart, what differs between their decks, else the shortest ends of the
+    folders' paths. Warnings stay.
+    """
     names = [style.plain(run.title) for run in runs]
     if len(set(names)) < len(names):
-        names = [style.plain(end) for end in _ends_apart([run.folder.resolve() for run in runs])]
+        names = names_by_decks(runs) or [style.plain(end) for end in _ends_apart([run.folder.resolve() for run in runs])]
     return [" – ".join([name, *style.warnings_of(run)]) for name, run in zip(names, runs)]
+
+
+def title_together(axes: Axes, runs: Sequence[Results]) -> None:
+    """Heads a comparison with the title that its runs have in common."""
+    if len({run.title for run in runs}) == 1:
+        axes.set_title("\n".join(style.lines_of(style.plain(runs[0].title), style.page().letters)))
 
 
 def _ends_apart(folders: Sequence[Path]) -> list[str]:

@@ -22,9 +22,11 @@ from __future__ import annotations
 
 import argparse
 import gc
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -33,6 +35,7 @@ from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
 from .errors import Error
 from .files import GapWarning
+from .fractures import Rows, fracture, fracture_panels, select_frames, write_counts
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
 from .profiles import isotherm, read_profile, temperature_profile, write_profile
@@ -40,17 +43,30 @@ from .progress import cracks, energy, heating_course, heating_cracks, loading_co
 from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
 from .results import Results, SpecimenFolder
-from .sections import fracture, gradation, morphology, select_frames
+from .sections import gradation, morphology
 from .solid_sections import cracks_inside, plane_section
-from .style import save
+from .style import page_of, save
 from .writing import make_folder
 
 _FORMATS = ("png", "svg", "pdf")
+_PER_INCH = {"mm": 25.4, "cm": 2.54, "in": 1.0}
+NARROWEST, WIDEST = 70.0 / 25.4, 400.0 / 25.4
+"""Inches: widths for which figures can be drawn."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure that a run has."""
+
+    name: str
+    draw: Callable[[], Figure]
+    write: Callable[[Path, Path], object] | None = None
+    """Writes the tables that come with it: into the folder of the figures, or that of the run."""
 
 
 def figures_of(run: Results, magnification: float | None = None,
-               temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
+               temperatures: Sequence[float] | None = None) -> Iterator[Picture]:
+    """The figures that a run has; the arguments are those of `draw_run`."""
     if temperatures is not None and not run.has_fields:
         raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
     if run.moves and not run.has_platens:
@@ -65,85 +81,92 @@ def figures_of(run: Results, magnification: float | None = None,
     elif not run.ends_heated:
         yield from _of_compression(run, magnification)
     if run.moves and records_of(run):
-        yield "records", lambda: records(run)
+        yield Picture("records", lambda: records(run))
 
 
-def _of_heating(run: Results, magnification: float | None,
-                temperatures: Sequence[float] | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _fractured(name: str, drawn: Rows, magnification: float | None) -> Picture:
+    return Picture(name, lambda: fracture_panels(drawn, magnification),
+                   lambda figures, _: write_counts(figures / f"{name}.csv", drawn))
+
+
+def _of_heating(run: Results, magnification: float | None, temperatures: Sequence[float] | None) -> Iterator[Picture]:
     if run.restrained:
-        yield "thrust", lambda: thrust(run)
+        yield Picture("thrust", lambda: thrust(run))
     else:
-        yield "total_strain", lambda: total_strain(run)
-    yield "heating_cracks", lambda: heating_cracks(run)
-    yield "heating_energy", lambda: energy(heating_course(run))
+        yield Picture("total_strain", lambda: total_strain(run))
+    yield Picture("heating_cracks", lambda: heating_cracks(run))
+    yield Picture("heating_energy", lambda: energy(heating_course(run)))
     if run.unconverged.any():
-        yield "convergence", lambda: convergence(run)
+        yield Picture("convergence", lambda: convergence(run))
     if run.heats:
         yield from _of_conduction(run)
     if run.has_fields:
-        yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+        yield _fractured("heating_fracture", heating_fracture(run, temperatures), magnification)
         if run.frames and run.ends_heated and run.mesh.blocks.dimension == 3:
-            yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
+            yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
 
 
-def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_records(run: Results, magnification: float | None) -> Iterator[Picture]:
     if records_of(run):
-        yield "records", lambda: records(run)
-        yield "energy", lambda: energy(record_course(run))
+        yield Picture("records", lambda: records(run))
+        yield Picture("energy", lambda: energy(record_course(run)))
     if run.unconverged.any():
-        yield "convergence", lambda: convergence(run)
+        yield Picture("convergence", lambda: convergence(run))
     if run.heats:
         yield from _of_conduction(run)
     if run.has_fields:
-        yield "fracture", lambda: record_fracture(run, magnification)
+        yield _fractured("fracture", record_fracture(run), magnification)
         if run.frames and run.mesh.blocks.dimension == 3:
-            yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
+            yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
 
 
-def _of_conduction(run: Results) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    yield "temperature_history", lambda: temperature_history(run)
-    if not run.has_fields:
+def _of_conduction(run: Results) -> Iterator[Picture]:
+    if not run.has_fields or run.mesh.blocks.dimension == 3:  # the depth of heat is not drawn in a solid yet
+        yield Picture("temperature_history", lambda: temperature_history(run))
+        if run.has_fields:
+            yield Picture("temperature", lambda: temperature_field(run))
         return
-    yield "temperature", lambda: temperature_field(run)
-    if run.mesh.blocks.dimension == 3:
-        return  # the depth of heat is not drawn in a solid yet
     profile = read_profile(run)
-    yield "temperature_profile", lambda: temperature_profile(run, profile)
+    yield Picture("temperature_history", lambda: temperature_history(run, profile))
+    yield Picture("temperature", lambda: temperature_field(run))
+    yield Picture("temperature_profile", lambda: temperature_profile(run, profile),
+                  lambda _, folder: write_profile(profile, folder))
     if profile.isotherm.any():
-        yield "isotherm", lambda: isotherm(run, profile)
+        yield Picture("isotherm", lambda: isotherm(run, profile))
 
 
-def _of_compression(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_compression(run: Results, magnification: float | None) -> Iterator[Picture]:
     marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
-    yield "stress_strain", lambda: stress_strain(run, marks)
-    yield "cracks", lambda: cracks(run)
-    yield "energy", lambda: energy(loading_course(run))
+    yield Picture("stress_strain", lambda: stress_strain(run, marks))
+    yield Picture("cracks", lambda: cracks(run))
+    yield Picture("energy", lambda: energy(loading_course(run)))
     if not run.has_fields:
         return
     if not marks:
         path = run.folder / "fields" / "frames.csv"
         raise Error(f"{path}: no frame of the loading stage; fracture cannot be drawn")
-    yield "fracture", lambda: fracture(run, marks, magnification)
+    yield _fractured("fracture", fracture(run, marks), magnification)
     if run.mesh.blocks.dimension == 3:
-        yield "cracks_inside", lambda: cracks_inside(run, run.frames[-1])
+        yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
 
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
              temperatures: Sequence[float] | None = None, out: Path | None = None) -> Iterator[Path]:
-    """Draws all figures of a run into its figures/ folder; yields each path once written. Where the run conducts heat,
-    it also writes temperature_profile.csv and isotherm.csv into the folder.
+    """Draws all figures of a run into its figures/ folder; yields each path once written. Beside a figure of fracture
+    stands a table of its cracks. Where the run conducts heat, temperature_profile.csv and isotherm.csv are written
+    into the folder of the run.
 
     out: folder for all of these in the place of the run's own, which is then only read.
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
     run = Results(folder)
-    for name, draw in figures_of(run, magnification, temperatures):
-        if name == "temperature_profile":
-            if out is not None:
-                out.mkdir(parents=True, exist_ok=True)
-            write_profile(read_profile(run), out or run.folder)
-        yield save(draw(), (out or make_folder(run.folder / "figures")) / f"{name}.{file_format}")
+    for picture in figures_of(run, magnification, temperatures):
+        place = out or make_folder(run.folder / "figures")
+        if picture.write is not None:
+            place.mkdir(parents=True, exist_ok=True)
+            picture.write(place, out or run.folder)
+        yield save(picture.draw(), place / f"{picture.name}.{file_format}")
         gc.collect()  # a figure refers to itself; of a long history it holds much
 
 
@@ -188,9 +211,13 @@ def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None)
 
 def draw_levels(folders: Sequence[Path], out: Path, temperatures: Sequence[float] = LEVEL_TEMPERATURES,
                 magnification: float | None = None) -> Iterator[Path]:
-    """Draws the fracture patterns of several heated runs into one file, its format by its ending."""
+    """Draws the fracture patterns of several heated runs into one file, its format by its ending, and beside it
+    a table of their cracks.
+    """
     _check_ending(out)
-    yield save(levels([Results(folder) for folder in folders], temperatures, magnification), out)
+    drawn = levels([Results(folder) for folder in folders], temperatures)
+    yield save(fracture_panels(drawn, magnification), out)
+    write_counts(out.with_suffix(".csv"), drawn)
 
 
 def _check_ending(out: Path) -> None:
@@ -203,6 +230,17 @@ def _positive(text: str) -> float:
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number")
     return value
+
+
+def _width(text: str) -> float:
+    """Inches, of a length such as 90mm."""
+    match = re.fullmatch(r"\s*([0-9]*\.?[0-9]+)\s*(mm|cm|in)\s*", text)
+    inches = float(match[1]) / _PER_INCH[match[2]] if match else 0.0
+    if not NARROWEST <= inches <= WIDEST:
+        raise argparse.ArgumentTypeError(
+            f"{text} is not a length from {_PER_INCH['mm'] * NARROWEST:.0f}mm to {_PER_INCH['mm'] * WIDEST:.0f}mm with its "
+            f"unit, {', '.join(_PER_INCH)}, such as 90mm")
+    return inches
 
 
 def _share(text: str) -> float:
@@ -275,6 +313,10 @@ def parser() -> argparse.ArgumentParser:
                           help="of displacements (default: chosen from the last frames, and stated)")
     patterns.set_defaults(draw=lambda asked: draw_levels(asked.folders, asked.out, asked.temperatures,
                                                          asked.magnification))
+    for command in commands.choices.values():
+        command.add_argument("--width", type=_width, metavar="LENGTH",
+                             help="of the figures, such as 90mm, with all text of 8 pt and legends in the axes "
+                                  "(default: a page of two columns, 183mm)")
     return parser
 
 
@@ -285,8 +327,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         warnings.simplefilter("always", GapWarning)
         warnings.showwarning = lambda message, *_: _tell(message)
         try:
-            for path in asked.draw(asked):
-                print(path)
+            with page_of(asked.width):
+                for path in asked.draw(asked):
+                    print(path)
         except (Error, OSError) as problem:
             _tell(problem)
             return 1

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -15,10 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
-from .crack_styles import count_cracks
 from .errors import Error
-from .sections import (Panel, draw_scale_bar, fracture_panels, frame_section, height_over_width,
-                       points_of_contact)
+from .fractures import Panel, Rows, broken_share
+from .mesh import BlockMesh
+from .sections import draw_scale_bar, frame_section, height_over_width
 from .solid_sections import draw_temperature_cut_open
 
 if TYPE_CHECKING:
@@ -30,8 +29,14 @@ LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
 """°C, the columns of `levels` unless others are asked for, before the last frame."""
 
 _NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
+_NOTE = "Broken: share of the length, in space of the area, of all contacts that can break."
 _MOST_PANELS = 5
 _FIELDS = 4
+_NARROWEST = 1.5  # inches, of a panel with its caption in a column
+_ROOM = 20.0  # °C, from which the colours of temperatures start
+_MEET = 1e-6  # of the size of a body: gridpoints so near to each other are one
+ISOTHERMS = (300.0, 500.0, 700.0)
+"""°C, of the lines in fields of temperature."""
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
@@ -59,12 +64,11 @@ def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
     return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
 
 
-def heating_fracture(run: Results, temperatures: Sequence[float] | None = None,
-                     magnification: float | None = None) -> Figure:
+def heating_fracture(run: Results, temperatures: Sequence[float] | None = None) -> Rows:
     """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
 
     temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
-    when None, as `select_heated_frames` has it. magnification: as `fracture_panels` takes it.
+    when None, as `select_heated_frames` has it.
     """
     frames = run.heated_frames
     if temperatures is None:
@@ -73,7 +77,7 @@ def heating_fracture(run: Results, temperatures: Sequence[float] | None = None,
     else:
         selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
     panels = [_panel(run, frame) for frame in selected]
-    return fracture_panels([("", panels)], style.title_of(run), magnification, _note(run))
+    return Rows([("", panels)], style.title_of(run), _NOTE)
 
 
 def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) -> Frame:
@@ -86,22 +90,16 @@ def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) 
     return frame
 
 
-def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
-           magnification: float | None = None) -> Figure:
+def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES) -> Rows:
     """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
 
     temperatures: °C; a panel stays empty where a run has no frame within 25 K.
-    magnification: the same in all panels, as `fracture_panels` takes it.
     """
     if not runs:
         raise Error("levels: no runs were given")
     ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
     rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
-    return fracture_panels(rows, "", magnification, _note(ordered[0]))
-
-
-def _note(run: Results) -> str:
-    return f"Counts are contact points ({points_of_contact(run)}): broken | damaged by more than half."
+    return Rows(rows, "", _NOTE)
 
 
 def _row_labels(runs: Sequence[Results]) -> list[str]:
@@ -133,57 +131,64 @@ def _panel_near(run: Results, frames: Sequence[Frame], temperature: float) -> Pa
 def _panel(run: Results, frame: Frame) -> Panel:
     last = frame.step == run.heated_frames[-1].step
     title, mean = f"{frame.temperature:.0f} °C", ""
-    if not run.uniform and frame.heating_time is not None and np.isfinite(frame.heating_time):
+    if not run.uniform and _is_timed(frame):
         title, mean = f"{frame.heating_time / 60.0:.0f} min", f"mean {title}\n"
     if last and run.critical_temperature is not None:
         title = f"failed, {title}"
     elif last:
         title = f"end, {title}"
-    counts = count_cracks(run, frame)
     stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if run.restrained else ""
-    strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
-    modes = "\n".join(f"{mode}: {counts[mode, True]} | {counts[mode, False]}" for mode in run.crack_modes)
-    caption = f"{mean}$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
-    return Panel(run, frame, title, caption)
+    strain = "" if mean and stress else (f"$\\varepsilon_{{\\mathrm{{tot}}}} = "
+                                         f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}$\n")
+    return Panel(run, frame, title, f"{mean}{strain}{stress}broken {100.0 * broken_share(run, frame):.2g} %")
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def temperature_field(run: Results) -> Figure:
-    """Temperature of the specimen at up to four times while heated, one colour scale for all."""
+    """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
-    blocks = run.mesh.blocks
+    blocks, page = run.mesh.blocks, style.page()
     specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]
-    scale = Normalize(min(field.min() for field in within), max(field.max() for field in within))
-    panel_height = (style.WIDTH / (_FIELDS + 0.4) - 0.12) * height_over_width(blocks)
-    figure = style.new_figure(panel_height + 1.1)
-    all_axes = figure.subplots(1, len(frames), squeeze=False)[0]
+    scale = _scale_of(within)
+    across = page.fitting(_NARROWEST) if page.is_column else _FIELDS
+    lines = -(-len(frames) // across)
+    panel_height = (page.width / (across + 0.4) - 0.12) * height_over_width(blocks)
+    figure = style.new_figure(lines * (panel_height + 0.75) + 0.35)
+    all_axes = figure.subplots(lines, min(across, len(frames)), squeeze=False).ravel()
+    for axes in all_axes[len(frames):]:
+        axes.axis("off")
     for axes, frame, field, values in zip(all_axes, frames, fields, within):
         colours = _draw_temperature(axes, run, field, scale)
-        axes.set_title(f"mean {frame.temperature:.0f} °C", fontweight="bold")
-        axes.set_xlabel(f"{_after(frame)}{values.min():.0f} to {values.max():.0f} °C", fontsize=7.0,
-                        linespacing=1.4)
+        mean = f"mean {frame.temperature:.0f} °C"
+        axes.set_title(f"{frame.heating_time / 60.0:.0f} min" if _is_timed(frame) else mean, fontweight="bold")
+        axes.set_xlabel((f"{mean}\n" if _is_timed(frame) else "") + f"{values.min():.0f} to {values.max():.0f} °C",
+                        fontsize=page.size(7.0), linespacing=1.4)
     draw_scale_bar(all_axes[0], blocks)
-    figure.colorbar(colours, ax=all_axes, label="Temperature [°C]", shrink=0.8, pad=0.02)
-    figure.suptitle(style.title_of(run), fontsize=9.0)
+    figure.colorbar(colours, ax=list(all_axes), label="Temperature [°C]", shrink=0.8, pad=0.02)
+    figure.suptitle(style.title_of(run), fontsize=page.size(9.0))
     return figure
 
 
+def _scale_of(fields: Sequence[np.ndarray]) -> Normalize:
+    """From room temperature, or what is cooler, to the hottest."""
+    coolest, hottest = min(field.min() for field in fields), max(field.max() for field in fields)
+    return Normalize(min(_ROOM, coolest), max(_ROOM + 1.0, hottest))
+
+
+def _is_timed(frame: Frame) -> bool:
+    return frame.heating_time is not None and bool(np.isfinite(frame.heating_time))
+
+
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
-    """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
+    """The temperature of the specimen, alone in its axes, coloured up to its hottest. Returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]
-    colours = _draw_temperature(axes, run, field, Normalize(within.min(), within.max()))
+    colours = _draw_temperature(axes, run, field, _scale_of([within]))
     draw_scale_bar(axes, blocks)
     return colours
-
-
-def _after(frame: Frame) -> str:
-    if frame.heating_time is None or np.isnan(frame.heating_time):
-        return ""
-    return f"after {frame.heating_time / 60.0:.0f} min\n"
 
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:
@@ -200,10 +205,35 @@ def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normal
         colours = draw_temperature_cut_open(axes, blocks, field, scale)
         frame_section(axes, blocks)
         return colours
+    outlines, material = blocks.outlines
+    of_bearing = np.isin(material, blocks.bearing_materials)
+    bearings = [style.MILLI * blocks.points[outline] for outline, is_one in zip(outlines, of_bearing) if is_one]
+    axes.add_collection(PolyCollection(bearings, color=style.PLATEN_COLOUR, linewidths=0.3, rasterized=True))
     x, y = style.MILLI * blocks.points.T
-    platens = style.MILLI * blocks.points[blocks.zones[blocks.of_bearing]]
-    axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
-    specimen = Triangulation(x, y, blocks.zones[~blocks.of_bearing])
-    colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
+    zones = blocks.zones[~blocks.of_bearing]
+    colours = axes.tripcolor(Triangulation(x, y, zones), field, norm=scale, cmap=style.HEAT_MAP, shading="gouraud",
+                             rasterized=True)
     frame_section(axes, blocks)
+    _draw_isotherms(axes, blocks, zones, field)
     return colours
+
+
+def _draw_isotherms(axes: Axes, blocks: BlockMesh, zones: np.ndarray, field: np.ndarray) -> None:
+    """Lines of ISOTHERMS with their temperatures, through all blocks whose gridpoints meet."""
+    within = field[np.unique(zones)]
+    passed = [level for level in ISOTHERMS if within.min() < level < within.max()]
+    if not passed:
+        return
+    # blocks have gridpoints of their own: those in one place become one, so that lines run on from block to block
+    cell = _MEET * np.ptp(blocks.points, axis=0).max()
+    _, first, joined = np.unique(np.round(blocks.points / cell).astype(np.int64), axis=0, return_index=True,
+                                 return_inverse=True)
+    joined = joined.ravel()
+    mean = np.bincount(joined, weights=field) / np.bincount(joined)
+    x, y = style.MILLI * blocks.points[first].T
+    corners = joined[zones]
+    apart = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    lines = axes.tricontour(Triangulation(x, y, corners[apart]), mean, levels=passed, colors=style.BLACK,
+                            linewidths=0.6)
+    for label in axes.clabel(lines, fmt="%g", fontsize=style.page().size(6.0), inline_spacing=1):
+        label.set_clip_on(True)

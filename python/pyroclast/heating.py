@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from . import reference, style
 from .curves import draw_tables
+from .profiles import Profile
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, temperature_label
 from .records import records_of
 
@@ -21,12 +23,18 @@ if TYPE_CHECKING:
     from .results import Results
 
 TOTAL_STRAIN_LABEL = "Total axial strain, expansion\npositive, load included [$10^{-3}$]"
+DEPTHS = (0.010, 0.020, 0.030, 0.050)
+"""m below the heated face, at which temperatures are drawn over the time."""
+GAS = "gas_max_degC"
+"""Column of the temperature of the hottest gas, where the deck has one."""
+_FALLING = 8.0  # times the usual change of strain from row to row: the specimen fails
+_TOLD = 0.01  # of the range of a curve, within which another tells the same
 THRUST_LABEL = "Axial stress, compression\npositive [MPa]"
 _BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests, not measured points;\n"
                f"dashed: its centre; pale above {reference.TRUSTED_TO:g} °C: order only")
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def total_strain(run: Results) -> Figure:
     """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
     figure, over, upper, lower, below = _two_while_heated(run)
@@ -43,14 +51,15 @@ def total_strain(run: Results) -> Figure:
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
     shown = [run, run.parent] if run.parent and run.parent.heated.any() else [run]
     upper.set_ylim(*strain_limits(shown, [band] if band else []))
+    mark_leaving(upper, over, strain, style.BLUE)
     upper.set_ylabel(TOTAL_STRAIN_LABEL)
     _mark_unconverged(upper, run, over, strain)
     _mark_failure(upper, run, over)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=2)
+    style.draw_legend(below, upper, loc="center", ncol=2)
     return figure
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def thrust(run: Results) -> Figure:
     """Stress that a restrained specimen builds up against its platens, and lateral strain."""
     figure, over, upper, lower, below = _two_while_heated(run)
@@ -66,7 +75,7 @@ def thrust(run: Results) -> Figure:
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, over, stress)
     _mark_failure(upper, run, over)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=2)
+    style.draw_legend(below, upper, loc="center", ncol=2)
     return figure
 
 
@@ -78,13 +87,12 @@ def _draw_heated_parent(axes: Axes, run: Results, column: str, factor: float) ->
         style.draw_parent(axes, run.parent, over[rows], factor * history[column][rows])
 
 
-def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
+def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axes | None]:
     """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
     the temperature, or minutes where the run is `timed`.
     """
     over = heating_minutes(run) if run.timed else run.heated_history("temperature_degC")
-    figure = style.new_figure(5.2)
-    upper, lower, below = figure.subplots(3, 1, gridspec_kw={"height_ratios": [1.0, 0.5, 0.26]})
+    figure, (upper, lower), below = style.panels(5.2, (1.0, 0.5), below=0.26)
     upper.set_title(style.title_of(run))
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
@@ -114,11 +122,42 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
     axes.plot(band.temperature, central, color=colour, linewidth=0.8, linestyle=(0, (4, 2)))
 
 
+def mark_leaving(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
+    """An arrow where a curve leaves the axes downwards for good, with how far it goes."""
+    low, high = axes.get_ylim()
+    known = np.isfinite(x) & np.isfinite(y)
+    x, y = x[known], y[known]
+    inside = np.flatnonzero(y >= low)
+    if not len(inside) or inside[-1] == len(y) - 1:
+        return
+    i = inside[-1]
+    at = x[i] + (x[i + 1] - x[i]) * (y[i] - low) / (y[i] - y[i + 1])
+    axes.annotate(f"to {y[i + 1:].min():.0f}".replace("-", "−"), (at, low), xytext=(at, low + 0.16 * (high - low)),
+                  ha="center", va="bottom", color=colour, fontsize=style.page().size(7.0), zorder=5,
+                  arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 0.8, "shrinkA": 0.0, "shrinkB": 0.0},
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
+
+
+def _before_failing(run: Results) -> np.ndarray:
+    """(n,) total strain while the specimen stood, without the rows at the end in which it fell by far more each than
+    before, where it failed.
+    """
+    strain = run.total_strain[run.standing[run.heated]]
+    if run.critical_temperature is None or len(strain) < 3:
+        return strain
+    steps = np.abs(np.diff(strain))
+    usual = np.nanmedian(steps)
+    last = len(strain)
+    while last > 2 and steps[last - 2] > _FALLING * usual:
+        last -= 1
+    return strain[:last]
+
+
 def strain_limits(runs: Sequence[Results], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Limits [10^-3] that show bands, tables and total strains, but not how far a failing specimen went."""
+    """Limits [10^-3] that show bands, tables and total strains to failure, but not how far a failing specimen went."""
     tables = [values for run in runs for own in run.references.tables if own.of == "total_strain"
               for values in (own.low, own.high)]
-    strains = [run.total_strain[run.standing[run.heated]] for run in runs]
+    strains = [_before_failing(run) for run in runs]
     for run in runs:
         run.history.known("specimen_strain", run.standing)
     return _padded(style.PER_MILLE * np.concatenate([*strains, *tables,
@@ -146,14 +185,13 @@ def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
     axes.axvline(over[-1], color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)), label=f"failed at {at}")
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def convergence(run: Results) -> Figure:
     """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
     course = heating_course(run)
     exchanged = course["exchange"] > 0
     over, converged = course.over[exchanged], course["converged"][exchanged] > 0
-    figure = style.new_figure(4.2)
-    upper, lower, below = figure.subplots(3, 1, gridspec_kw={"height_ratios": [1.0, 1.0, 0.14]})
+    figure, (upper, lower), below = style.panels(4.2, (1.0, 1.0), below=0.14)
     lower.sharex(upper)
     upper.set_title(style.title_of(run))
     for axes, name, label in ((upper, "cycles", "Cycles after\nthe exchange"),
@@ -172,18 +210,23 @@ def convergence(run: Results) -> Figure:
     lower.set_yscale("log")
     lower.set_xlabel(course.label)
     upper.tick_params(labelbottom=False)
-    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncol=3,
-                       title=f"{np.nansum(course['cycles'][exchanged]):,.0f} cycles in all")
+    style.draw_legend(below, upper, loc="center", ncol=3,
+                      title=f"{np.nansum(course['cycles'][exchanged]):,.0f} cycles in all")
     return figure
 
 
-@matplotlib.rc_context(style.STYLE)
-def temperature_history(run: Results) -> Figure:
-    """Least, mean and greatest temperature of the specimen, its probes and records of temperature, over the time."""
+@style.in_style
+def temperature_history(run: Results, profile: Profile | None = None) -> Figure:
+    """Least, mean and greatest temperature of the specimen, its probes and records of temperature, temperatures at
+    DEPTHS, and of the hottest gas, over the time.
+
+    profile: temperatures over the depth of the frames, see `read_profile`; None: none at DEPTHS.
+    """
     minutes = run.history["heating_time_s"] / 60.0
-    figure = style.new_figure(3.8)
-    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.3]})
+    figure, (axes,), beside = style.panels(3.8, beside=0.3)
     axes.set_title(style.title_of(run))
+    if GAS in run.history:
+        axes.plot(minutes, run.history[GAS], color=style.FAINT, linestyle=(0, (4, 2)), label="gas")
     axes.fill_between(minutes, run.history["temperature_min_degC"], run.history["temperature_max_degC"],
                       color=style.FAINT, alpha=0.25, linewidth=0.0, label="least to greatest")
     axes.plot(minutes, run.history["temperature_degC"], color=style.BLACK, label="mean")
@@ -192,9 +235,26 @@ def temperature_history(run: Results) -> Figure:
                *((name, name, values) for name, values in records.items())]
     for (_, label, values), (colour, dashes) in zip(watched, cycle(style.LOOKS)):
         axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=label)
+    if profile is not None:
+        _draw_depths(axes, profile, minutes, [values for *_, values in watched])
     draw_tables(axes, [run], over_minutes(True), *((name, 1.0) for name in ["temperature", *(w[0] for w in watched)]))
     axes.set_xlim(left=0.0)
     axes.set_xlabel("Time [min]")
     axes.set_ylabel("Temperature [°C]")
-    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
+    style.draw_legend(beside, axes, loc="upper left")
     return figure
+
+
+def _draw_depths(axes: Axes, profile: Profile, minutes: np.ndarray, watched: Sequence[np.ndarray]) -> None:
+    """At the times of the frames; none that a curve of the deck's own tells already."""
+    heated = ScalarMappable(Normalize(-15.0, 65.0), "inferno_r")
+    for depth in DEPTHS:
+        if depth >= profile.depth[-1]:
+            continue
+        values = np.array([np.interp(depth, profile.depth, temperature) for temperature in profile.temperature])
+        known = [np.interp(profile.time / 60.0, minutes[rows], own[rows]) for own in watched
+                 for rows in [np.isfinite(minutes) & np.isfinite(own)] if rows.any()]
+        if any(np.abs(values - own).max() < _TOLD * (np.ptp(values) or 1.0) for own in known):
+            continue
+        axes.plot(profile.time / 60.0, values, "o-", color=heated.to_rgba(style.MILLI * depth), markersize=2.0,
+                  linewidth=1.0, label=f"{style.MILLI * depth:.0f} mm below\nthe {profile.face} face")

@@ -19,9 +19,10 @@ from . import style
 from .columns import Columns
 from .errors import Error
 from .heated_sections import draw_temperature
+from .fractures import draw_specimen
 from .mesh import BlockMesh, ContactMesh, Mesh, cells_of_contacts
 from .records import abscissa, leading, records_in
-from .sections import draw_blocks, draw_specimen, frame_section
+from .sections import draw_blocks, frame_section
 from .solid_sections import crack_lines, flat
 
 if TYPE_CHECKING:

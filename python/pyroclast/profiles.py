@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
@@ -113,30 +112,30 @@ def _write(path: Path, header: tuple[str, ...], rows: list[tuple[float, ...]]) -
         writer.writerows([f"{value:.9g}" for value in row] for row in rows)
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def temperature_profile(run: Results, profile: Profile) -> Figure:
     """Temperature over the depth at up to eight times, evenly among the frames, the last among them."""
-    figure = style.new_figure(3.8)
-    axes, beside = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.2]})
+    figure, (axes,), beside = style.panels(3.8, beside=0.2)
     axes.set_title(style.title_of(run))
     chosen = sorted({round(i) for i in np.linspace(0, len(profile.time) - 1, min(_CURVES, len(profile.time)))})
     shades = ScalarMappable(cmap="inferno").cmap
+    times = profile.time[chosen] / 60.0
+    digits = next((n for n in range(3) if len({f"{time:.{n}f}" for time in times}) == len(times)), 3)
     for number, i in enumerate(chosen):
         colour = shades(0.85 * number / max(len(chosen) - 1, 1))
         axes.plot(style.MILLI * profile.depth, profile.temperature[i], color=colour,
-                  label=f"{profile.time[i] / 60.0:.3g} min")
+                  label=f"{times[number]:.{digits}f} min")
     axes.set_xlim(0.0, style.MILLI * profile.depth[-1])
     axes.set_xlabel(f"Depth below the {profile.face} face, midway [mm]")
     axes.set_ylabel("Temperature [°C]")
-    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
+    style.draw_legend(beside, axes, loc="upper left")
     return figure
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def isotherm(run: Results, profile: Profile) -> Figure:
     """How deep the isotherm of ISOTHERM has come, over the time."""
-    figure = style.new_figure(3.2)
-    axes = figure.add_subplot()
+    figure, (axes,), _ = style.panels(3.2)
     axes.set_title(style.title_of(run))
     axes.plot(profile.time / 60.0, style.MILLI * profile.isotherm, "o-", color=style.VERMILLION, markersize=3.0)
     axes.set_xlim(left=0.0)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -32,9 +31,7 @@ _ENERGY_OUT = (
 )
 _LEAST_SHARE = 5e-4  # of the energy turned over, that an energy needs to be drawn and listed
 _MORE_LOSSES = (style.PURPLE, "#8c6d31", "#66c2a4")  # colours
-_DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
-_COUNTS_NOTE = "broken: $D=1$; damaged: $D>0$, the broken among them"
 MINUTES_LABEL = "Time of heating [min]"
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
 
@@ -78,62 +75,78 @@ def temperature_label(run: Results) -> str:
     return "Temperature [°C]" if run.uniform else "Mean temperature of the specimen [°C]"
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def cracks(run: Results) -> Figure:
-    """Cracked contact points by mode and interface over strain, the stress curve behind."""
-    modes = list(run.crack_modes) or ["tension"]
-    figure = style.new_figure(1.2 + 1.8 * len(modes))
-    *panels, below = figure.subplots(len(modes) + 1, 1, gridspec_kw={"height_ratios": [1.0] * len(modes) + [0.3]})
-    panels[0].set_title(style.title_of(run))
+    """Length of cracks, of a solid their area, by mode over strain, the stress curve behind."""
+    figure, (axes,), below = style.panels(4.8, below=0.16)
+    axes.set_title(style.title_of(run))
     course = loading_course(run)
     run.history.known("strain", run.loaded)
-    for axes, mode in zip(panels, modes):
-        axes.sharex(panels[0]) if axes is not panels[0] else None
-        _draw_stress_behind(axes, course)
-        _draw_counts(axes, course, mode)
-        axes.tick_params(labelbottom=axes is panels[-1])
-    panels[0].set_xlim(left=0.0)
-    panels[-1].set_xlabel(course.label)
-    style.legend_alone(below, *_legends(*panels), loc="center", ncol=2, title=_COUNTS_NOTE, title_fontsize=7.0)
+    _draw_stress_behind(axes, course)
+    _draw_extents(axes, course)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel(course.label)
+    style.draw_legend(below, axes, loc="center", ncol=2)
     return figure
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def heating_cracks(run: Results) -> Figure:
-    """Cracked contact points and crack length, of a solid area, by mode and interface, and the mean opening, while heated."""
-    figure = style.new_figure(5.4)
-    figure.suptitle(style.title_of(run), fontsize=9.0)
-    modes = list(run.crack_modes) or ["tension"]
-    rows = figure.add_gridspec(3, 1, height_ratios=[1.0, 1.0, 0.32])
-    upper, lower = rows[0].subgridspec(1, len(modes)), rows[1].subgridspec(1, 2)
-    counts = [figure.add_subplot(upper[i]) for i in range(len(modes))]
-    length, opening = (figure.add_subplot(lower[i]) for i in range(2))
-    panels = [*counts, length, opening]
+    """Length of cracks, of a solid their area, by mode, and the mean opening, while heated."""
+    figure, (lengths, opening), below = style.panels(5.4, (1.0, 0.6), below=0.2)
+    lengths.set_title(style.title_of(run))
     course = heating_course(run)
-    in_space = any(name.endswith("_area_m2") for name in run.history.names)
-    extent, label = ("area_m2", "Area of all cracks, $D>0$ [m²]") if in_space else (
-        "length_m", "Length of all cracks, $D>0$ [m]")
-    for axes, mode in zip(counts, modes):
-        _draw_counts(axes, course, mode)
-        for interface, dashes in zip(run.crack_modes.get(mode, []), cycle(_DASHES)):
-            length.plot(*style.thinned(course.over, course[f"{mode}_{interface}_{extent}"]), color=_MODE_COLOURS[mode],
-                        linestyle=dashes, linewidth=0.7)
-    length.set_ylabel(label)
+    _draw_extents(lengths, course)
     opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
-    for axes in panels:
-        axes.set_xlim(course.start, np.nanmax(course.over))
-        axes.set_ylim(bottom=0.0)
-        axes.set_xlabel(course.label)
-    style.legend_alone(figure.add_subplot(rows[2]), *_legends(*counts), loc="center", ncol=2, title=_COUNTS_NOTE,
-                       title_fontsize=7.0)
+    opening.set_ylim(bottom=0.0)
+    opening.sharex(lengths)
+    lengths.tick_params(labelbottom=False)
+    lengths.set_xlim(course.start, np.nanmax(course.over))
+    opening.set_xlabel(course.label)
+    style.draw_legend(below, lengths, loc="center", ncol=2)
     return figure
+
+
+def extent_of_cracks(run: Results) -> tuple[str, str, str]:
+    """What cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
+    in_space = any(name.endswith("_area_m2") for name in run.history.names)
+    return ("Area", "m²", "area_m2") if in_space else ("Length", "m", "length_m")
+
+
+def crack_extent(course: Course, mode: str, is_broken: bool) -> np.ndarray:
+    """(n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage."""
+    ending = ("broken_" if is_broken else "") + extent_of_cracks(course.run)[2]
+    interfaces = course.run.crack_modes.get(mode, [])
+    return sum((course[f"{mode}_{name}_{ending}"] for name in interfaces), np.zeros(len(course.over)))
+
+
+def _draw_extents(axes: Axes, course: Course) -> None:
+    """On a logarithmic axis, on which a tenth of all cracks can be seen: broken as lines, damaged as light areas."""
+    what, unit, _ = extent_of_cracks(course.run)
+    drawn = [(mode, is_broken, crack_extent(course, mode, is_broken)) for is_broken in (False, True)
+             for mode in course.run.crack_modes]
+    drawn = [(mode, is_broken, values) for mode, is_broken, values in drawn if (values > 0.0).any()]
+    axes.set_ylabel(f"{what} of cracks [{unit}]")
+    if not drawn:
+        axes.set_ylim(0.0, 1.0)
+        axes.set_title(f"{axes.get_title()}\nno contact is damaged".lstrip())
+        return
+    axes.set_yscale("log")
+    least = 0.7 * min(values[values > 0.0].min() for *_, values in drawn)
+    for mode, is_broken, values in drawn:
+        colour, seen = _MODE_COLOURS[mode], np.where(values > 0.0, values, np.nan)
+        rows = style.kept(course.over, seen)
+        if is_broken:
+            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8, label=f"{mode}, broken ($D=1$)")
+        else:
+            axes.fill_between(course.over[rows], least, seen[rows], color=colour, alpha=0.18, linewidth=0.0,
+                              label=f"{mode}, damaged ($D>0$), the broken among them")
+    axes.set_ylim(least, 1.5 * max(np.nanmax(values) for *_, values in drawn))
 
 
 def _draw_stress_behind(axes: Axes, course: Course) -> None:
     behind = axes.twinx()
-    rows = style.kept(course.over, course["stress_MPa"])
-    behind.fill_between(course.over[rows], course["stress_MPa"][rows], color="#ededed", linewidth=0.0)
     behind.plot(*style.thinned(course.over, course["stress_MPa"]), color=style.FAINT, linewidth=0.8)
     behind.set_ylim(bottom=0.0)
     behind.set_ylabel("Axial stress [MPa]", color="#6a6a6a")
@@ -144,38 +157,22 @@ def _draw_stress_behind(axes: Axes, course: Course) -> None:
     axes.patch.set_visible(False)
 
 
-def _draw_counts(axes: Axes, course: Course, mode: str) -> None:
-    colour = _MODE_COLOURS[mode]
-    for interface, dashes in zip(course.run.crack_modes.get(mode, []), cycle(_DASHES)):
-        name = interface.replace("_", "–")
-        axes.plot(*style.thinned(course.over, course[f"{mode}_{interface}_broken"]), color=colour, linestyle=dashes,
-                  linewidth=1.8, label=f"{mode}, {name}: broken")
-        axes.plot(*style.thinned(course.over, course[f"{mode}_{interface}_damaged"]), color=colour, linestyle=dashes,
-                  linewidth=0.7, label=f"{mode}, {name}: damaged")
-    axes.set_ylim(bottom=0.0)
-    axes.set_ylabel(f"Cracked contact points,\n{mode}")
-
-
-def _legends(*all_axes: Axes) -> tuple[list, list[str]]:
-    handles, labels = [], []
-    for axes in all_axes:
-        more_handles, more_labels = axes.get_legend_handles_labels()
-        handles += more_handles
-        labels += more_labels
-    return handles, labels
-
-
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def energy(course: Course) -> Figure:
-    """Where the work went, stacked, against the work put in; below, the ledger's error.
+    """Where the work went, stacked, against the work put in; below, what the change of properties put in, where
+    properties changed, and the ledger's error.
 
     Shares are of the energy turned over: all that was put in or taken out, each by its size.
     """
-    figure = style.new_figure(4.8)
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.0, 0.4])
-    upper, beside, lower = (figure.add_subplot(grid[place]) for place in ((0, 0), (0, 1), (1, 0)))
-    lower.sharex(upper)
-    figure.suptitle(style.title_of(course.run), fontsize=9.0)
+    changes = course["energy_property_change_J"]
+    heights = (1.0, 0.45, 0.3) if changes.any() else (1.0, 0.3)
+    figure, all_axes, beside = style.panels(4.8 if len(heights) == 2 else 5.6, heights, beside=0.4)
+    upper, lower = all_axes[0], all_axes[-1]
+    for axes in all_axes[1:]:
+        axes.sharex(upper)
+    for axes in all_axes[:-1]:
+        axes.tick_params(labelbottom=False)
+    figure.suptitle(style.title_of(course.run), fontsize=style.page().size(9.0))
     parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
     work_in = sum(parts)
     turned_over = sum(map(np.abs, parts))
@@ -185,17 +182,17 @@ def energy(course: Course) -> Figure:
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
                label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
-    if course["energy_property_change_J"].any():
-        upper.plot(*style.thinned(course.over, course["energy_property_change_J"]), color=style.PURPLE, linewidth=1.4,
-                   linestyle=(0, (1.5, 1)), label="put in by the change of\nproperties alone")
     upper.set_xlim(course.start, np.nanmax(course.over))
-    upper.tick_params(labelbottom=False)
-    if not (work_in < 0.0).any() and not (course["energy_property_change_J"] < 0.0).any():
+    if not (work_in < 0.0).any():
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
-    style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left", alignment="left",
-                       title="at the end, share of\nthe energy turned over")
+    style.draw_legend(beside, upper, handles[::-1], labels[::-1], loc="upper left", alignment="left",
+                      title="at the end, share of\nthe energy turned over")
+    if len(all_axes) == 3:
+        all_axes[1].plot(*style.thinned(course.over, changes), color=style.PURPLE, linewidth=1.4)
+        all_axes[1].axhline(0.0, color=style.BLACK, linewidth=0.6)
+        all_axes[1].set_ylabel("Put in by\nthe change of\nproperties [J]")
 
     lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
@@ -225,7 +222,13 @@ def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
         if np.nanmax(np.abs(values), initial=0.0) < _LEAST_SHARE * turnover:
             continue
         known = values[np.isfinite(values)]
-        share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"
         axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,
-                          edgecolor="white", linewidth=0.3, label=f"{name}: {share}")
+                          edgecolor="white", linewidth=0.3, label=f"{name}: {_share(known, turnover)}")
         below = below + values[rows]
+
+
+def _share(known: np.ndarray, turnover: float) -> str:
+    if not len(known):
+        return "not known"
+    share = known[-1] / turnover
+    return f"{100.0 * share:.1f} %" if abs(share) >= _LEAST_SHARE else "none left"

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import cycle
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -60,7 +59,7 @@ def read_properties(path: Path) -> dict[str, Property]:
             for name, entries in rows.items()}
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def properties(table: Mapping[str, Property]) -> Figure:
     """One panel for each kind of property that the table holds."""
     panels: list[Callable[[Axes, Mapping[str, Property]], None]] = [_modulus, _strengths, _thermal_strain]
@@ -68,12 +67,13 @@ def properties(table: Mapping[str, Property]) -> Figure:
         panels.append(_conductivity)
     if any(f"materials.{solid}.heat_capacity" in table for solid in _solids(table)):
         panels.append(_heat_capacity)
-    rows = (len(panels) + 1) // 2
+    across = 1 if style.page().is_column else 2
+    rows = -(-len(panels) // across)
     figure = style.new_figure(2.5 * rows)
-    all_axes = figure.subplots(rows, 2, squeeze=False, sharex=True).ravel()
+    all_axes = figure.subplots(rows, across, squeeze=False, sharex=True).ravel()
     for axes, draw in zip(all_axes, panels):
         draw(axes, table)
-        axes.legend(loc="best")
+        style.draw_own_legend(axes)
         axes.tick_params(labelbottom=True)
         axes.set_xlabel("Temperature [°C]")
     for axes in all_axes[len(panels):]:

@@ -6,16 +6,14 @@ from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from . import style
-from .crack_styles import count_cracks
 from .curves import draw_tables
 from .errors import Error
+from .fractures import Panel, Rows
 from .progress import MINUTES_LABEL, Course
-from .sections import Panel, fracture_panels, points_of_contact
 
 if TYPE_CHECKING:
     from .results import Frame, Results
@@ -28,6 +26,12 @@ _KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force"
 _TIME_LABEL = "Time [s]"
 _AT_PEAK = 0.95
 """Where a record has this share of its largest value, it is at its peak."""
+
+
+_ALIKE, _ALIKE_ROWS = 0.01, 0.95
+"""Of its largest value, by which a curve may leave another that is drawn in its place, and the share of rows in which it
+must not leave it farther: where a contact gives way, reactions differ for a row.
+"""
 
 
 class HasHistory(Protocol):
@@ -62,7 +66,7 @@ class Record:
 
     @property
     def title(self) -> str:
-        return f"{self.name}: {self.label}"
+        return f"{self.name}, {self.label[0].lower()}{self.label[1:]}"
 
 
 def records_of(run: Results) -> list[Record]:
@@ -144,7 +148,7 @@ def _panels(run: Results) -> list[_Panel]:
     return panels
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def records(run: Results) -> Figure:
     """Each kind of record in a panel of its own, over the first opening or displacement that there is. References
     stand beside them, those over something else in panels of their own.
@@ -152,17 +156,19 @@ def records(run: Results) -> Figure:
     panels = _panels(run)
     if not panels:
         raise Error(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
-    figure = style.new_figure(0.9 + 2.2 * len(panels))
-    all_axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
-    figure.suptitle(style.title_of(run), fontsize=9.0)
+    figure, all_axes, _ = style.panels(0.9 + 2.2 * len(panels), [1.0] * len(panels))
+    figure.suptitle(style.title_of(run), fontsize=style.page().size(9.0))
     last_of = {panel.label: axes for panel, axes in zip(panels, all_axes)}
     for panel, axes in zip(panels, all_axes):
-        for record, colour in zip(panel.records, _colours()):
-            axes.plot(panel.values, record.of(run), color=colour, linewidth=1.5, label=record.name)
+        alike = _drawn_once(run, panel.records)
+        for (record, *same), colour in zip(alike, _colours()):
+            axes.plot(panel.values, record.of(run), color=colour, linewidth=1.5,
+                      label=" and ".join(one.name for one in (record, *same)) + ", within 1 %" * bool(same))
         draw_tables(axes, [run], (panel.over, panel.factor), *((r.name, r.factor) for r in panel.records))
-        axes.set_ylabel(panel.records[0].label)
+        axes.set_ylabel(panel.records[0].label if len(panel.records) > 1 else panel.records[0].title)
         axes.axhline(0.0, color=style.BLACK, linewidth=0.5)
-        axes.legend(loc="best")
+        if len(axes.lines) > 2 or len(panel.records) > 1 or axes.collections:
+            style.draw_own_legend(axes)
         below = last_of[panel.label]
         if axes is below:
             axes.set_xlabel(panel.label)
@@ -172,12 +178,32 @@ def records(run: Results) -> Figure:
     return figure
 
 
+def _three_digits(value: float) -> str:
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
+
+
+def _drawn_once(run: Results, found: list[Record]) -> list[list[Record]]:
+    """The records, those together whose curves lie on one another, but for a row here and there."""
+    groups: list[list[Record]] = []
+    for record in found:
+        values = np.nan_to_num(record.of(run))
+        near = _ALIKE * np.abs(values).max(initial=0.0)
+        for group in groups:
+            off = np.abs(values - np.nan_to_num(group[0].of(run)))
+            if (off <= near).mean() >= _ALIKE_ROWS:
+                group.append(record)
+                break
+        else:
+            groups.append([record])
+    return groups
+
+
 def _colours() -> Iterator[str]:
     while True:
         yield from (style.BLUE, style.VERMILLION, style.ORANGE, style.PURPLE, style.BLACK)
 
 
-def record_fracture(run: Results, magnification: float | None = None) -> Figure:
+def record_fracture(run: Results) -> Rows:
     """The specimen where the first force, else the first stress, was largest, and at the end."""
     if not run.frames:
         raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
@@ -191,15 +217,19 @@ def record_fracture(run: Results, magnification: float | None = None) -> Figure:
         then = values[np.searchsorted(run.history["step"], frame.step)]
         is_peak = then >= _AT_PEAK * values.max()
         marks = {f"{'at' if is_peak else 'nearest to'} the largest {loaded.kind}": frame, **marks}
-    panels = [Panel(run, frame, letter, f"{what}\n{_caption(run, frame, found)}")
+    panels = [Panel(run, frame, f"{letter}, {what}" if len(marks) > 1 else what, _caption(run, frame, found))
               for letter, (what, frame) in zip("ABC", marks.items())]
-    return fracture_panels([("", panels)], style.title_of(run), magnification,
-                           f"Counts are contact points ({points_of_contact(run)}) of A–M and M–M contacts.")
+    return Rows([("", panels)], style.title_of(run))
 
 
 def _caption(run: Results, frame: Frame, found: list[Record]) -> str:
+    """What the test is about, what it is drawn over, and the share of its largest value."""
     row = int(np.searchsorted(run.history["step"], frame.step))
-    told = [f"{record.name} {record.of(run)[row]:.3g} {record.unit}" for record in found if row < run.history.rows]
-    counts = count_cracks(run, frame)
-    broken = ", ".join(f"{count} {mode}" for (mode, is_broken), count in counts.items() if is_broken)
-    return "\n".join([*told[:4], f"broken: {broken}"])
+    if row >= run.history.rows:
+        return ""
+    main, (over, *_) = leading(found), abscissa(run, found)
+    told = [f"{record.name} {_three_digits(record.of(run)[row])} {record.unit}"
+            for record in dict.fromkeys((main, over)) if record is not None]
+    if main is not None and (largest := np.nanmax(np.abs(main.of(run)))) > 0.0:
+        told.append(f"{100.0 * abs(main.of(run)[row]) / largest:.0f} % of the largest")
+    return "\n".join(told)

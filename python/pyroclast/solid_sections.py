@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -183,7 +182,7 @@ def draw_triad(axes: Axes, blocks: BlockMesh) -> None:
         tip = start + VIEW.flat(length * np.eye(3)[axis])
         axes.annotate("", style.MILLI * tip, style.MILLI * start, annotation_clip=False,
                       arrowprops={"arrowstyle": "->", "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0})
-        axes.text(*(style.MILLI * (start + 1.25 * (tip - start))), name, fontsize=6.5, ha="center", va="center")
+        axes.text(*(style.MILLI * (start + 1.25 * (tip - start))), name, fontsize=style.page().size(6.5), ha="center", va="center")
 
 
 @dataclass(frozen=True)
@@ -232,7 +231,7 @@ def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
                       np.array(modes)[values.argmax(axis=0)[which]])
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
     """Crack faces inside the ghost of the body, the rose and the inclination of their normals, and damage by height.
 
@@ -243,9 +242,7 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
     ghost = outline(blocks)
     box = VIEW.flat(blocks.points)
     ratio = np.ptp(box[:, 1]) / np.ptp(box[:, 0])
-    figure = style.new_figure(0.55 * style.WIDTH * min(ratio, 1.7) + 0.5)
-    grid = figure.add_gridspec(3, 2, width_ratios=[1.25, 1.0])
-    axes = figure.add_subplot(grid[:, 0])
+    figure, axes, (rose, inclination, heights) = _axes_inside(0.55 * style.page().width * min(ratio, 1.7))
     colours = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
     axes.add_collection(PolyCollection(style.MILLI * VIEW.flat(ghost.corners), facecolors=style.BLACK, alpha=_GHOST,
                                        edgecolors="none", rasterized=True))
@@ -258,16 +255,30 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
     draw_triad(axes, blocks)
     _frame(axes, box)
     axes.set_title(f"crack faces, damaged by more than {least:g}" if len(drawn.area) else
-                   f"no crack face is damaged by more than {least:g}", fontsize=8.0)
+                   f"no crack face is damaged by more than {least:g}", fontsize=style.page().size(8.0))
     for mode in dict.fromkeys(drawn.mode.tolist()):
         axes.plot([], [], color=colours[mode], linewidth=4.0, label=mode)
     if len(drawn.area):
         axes.legend(loc="upper left")
-    _draw_rose(figure.add_subplot(grid[0, 1], projection="polar"), drawn)
-    _draw_inclination(figure.add_subplot(grid[1, 1]), drawn)
-    _draw_heights(figure.add_subplot(grid[2, 1]), all_damaged, blocks)
-    figure.suptitle(style.title_of(run), fontsize=9.0)
+    _draw_rose(rose, drawn)
+    _draw_inclination(inclination, drawn)
+    _draw_heights(heights, all_damaged, blocks)
+    figure.suptitle(style.title_of(run), fontsize=style.page().size(9.0))
     return figure
+
+
+def _axes_inside(height: float) -> tuple[Figure, Axes, tuple[Axes, Axes, Axes]]:
+    """Figure with axes for the body, and for rose, inclination and heights: beside it, in a column below."""
+    if style.page().is_column:
+        figure = style.new_figure(1.8 * height + 1.55 * style.page().width + 0.5)
+        grid = figure.add_gridspec(4, 1, height_ratios=[1.8 * height, *(3 * [0.5 * style.page().width])])
+        places = [grid[i, 0] for i in range(4)]
+    else:
+        figure = style.new_figure(height + 0.5)
+        grid = figure.add_gridspec(3, 2, width_ratios=[1.25, 1.0])
+        places = [grid[:, 0], grid[0, 1], grid[1, 1], grid[2, 1]]
+    rose = figure.add_subplot(places[1], projection="polar")
+    return figure, figure.add_subplot(places[0]), (rose, figure.add_subplot(places[2]), figure.add_subplot(places[3]))
 
 
 def _frame(axes: Axes, box: np.ndarray) -> None:
@@ -288,8 +299,8 @@ def _draw_rose(axes: Axes, faces: CrackFaces) -> None:
              edgecolor="white", linewidth=0.3)
     axes.set_yticks([])
     axes.set_xticks(np.radians([0, 90, 180, 270]))
-    axes.set_xticklabels(["x", "z", "−x", "−z"], fontsize=6.5)
-    axes.set_title("normals around the vertical, by area", fontsize=7.0)
+    axes.set_xticklabels(["x", "z", "−x", "−z"], fontsize=style.page().size(6.5))
+    axes.set_title("normals around the vertical, by area", fontsize=style.page().size(7.0))
 
 
 def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
@@ -301,10 +312,10 @@ def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
     axes.step(bins, [*of_any, of_any[-1]], where="post", color=style.BLACK, linewidth=0.9, label="if all ways alike")
     axes.set_xlim(0.0, 90.0)
     axes.set_xticks([0, 30, 60, 90])
-    axes.set_xlabel("normal from the horizontal [°]", fontsize=7.0)
-    axes.set_ylabel("share of area", fontsize=7.0)
+    axes.set_xlabel("normal from the horizontal [°]", fontsize=style.page().size(7.0))
+    axes.set_ylabel("share of area", fontsize=style.page().size(7.0))
     axes.set_ylim(top=1.35 * max(*share, *of_any))
-    axes.legend(loc="upper right", fontsize=6.5)
+    axes.legend(loc="upper right", fontsize=style.page().size(6.5))
 
 
 def _draw_heights(axes: Axes, faces: CrackFaces, blocks: BlockMesh) -> None:
@@ -313,11 +324,11 @@ def _draw_heights(axes: Axes, faces: CrackFaces, blocks: BlockMesh) -> None:
     heights = style.MILLI * np.linspace(low, high, len(share) + 1)
     axes.barh(heights[:-1], share, height=np.diff(heights), align="edge", color=style.BLUE, edgecolor="white",
               linewidth=0.3)
-    axes.set_ylabel("height [mm]", fontsize=7.0)
-    axes.set_xlabel("share of the area, by its damage $D>0$", fontsize=7.0)
+    axes.set_ylabel("height [mm]", fontsize=style.page().size(7.0))
+    axes.set_xlabel("share of the area, by its damage $D>0$", fontsize=style.page().size(7.0))
 
 
-@matplotlib.rc_context(style.STYLE)
+@style.in_style
 def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnification: float = 1.0) -> Figure:
     """A plane through a solid at a frame: blocks by material, and the cracks of each mode that it meets.
 
@@ -342,16 +353,19 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
         lines, _ = traces(cells[cracked(run, frame, crack)], plane)
         axes.add_collection(LineCollection(style.MILLI * lines[..., [across, up]], colors=crack.colour,
                                            linewidths=crack.width, capstyle="round", rasterized=True))
-    handles = crack_legend(run) + material_legend(blocks, cut.owner)
+    handles = crack_legend(run) + material_legend(blocks, cut.owner, "platen" if run.has_platens else "bearing")
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.grid(False)
     axes.set_xlabel(f"{'xyz'[across]} [mm]")
     axes.set_ylabel(f"{'xyz'[up]} [mm]")
-    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncol=2)
+    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center",
+                       ncol=1 if style.page().is_column else 2)
     at_strain = f", strain {style.PER_MILLE * frame.strain:.2f}×10⁻³" if np.isfinite(frame.strain) else ""
-    axes.set_title(f"{style.title_of(run)}\n{axis} = {style.MILLI * plane.offset:.4g} mm, frame {frame.number}{at_strain}, "
-                   f"displacements ×{magnification:g}", fontsize=8.0)
+    told = (f"{axis} = {style.MILLI * plane.offset:.4g} mm, frame {frame.number}{at_strain}, "
+            f"displacements ×{magnification:g}")
+    axes.set_title("\n".join([style.title_of(run), *style.lines_of(told, style.page().letters)]),
+                   fontsize=style.page().size(8.0))
     return figure
 
 
@@ -384,7 +398,7 @@ def draw_temperature_cut_open(axes: Axes, blocks: BlockMesh, field: np.ndarray, 
     """
     whole, cuts = without_corner(blocks, middle_planes(blocks))
     polygons = joined([whole, _towards(cuts)])
-    scaled = ScalarMappable(scale, "inferno")
+    scaled = ScalarMappable(scale, style.HEAT_MAP)
     colours = scaled.to_rgba(_in_the_middle(polygons, blocks, field))[:, :3]
     colours[blocks.of_bearing[polygons.owner]] = to_rgb(style.PLATEN_COLOUR)
     draw_polygons(axes, polygons, colours)

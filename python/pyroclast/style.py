@@ -3,25 +3,41 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import wraps
 from itertools import cycle
 from pathlib import Path
+from typing import Any, TypeVar
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from .writing import whole
+
+Made = TypeVar("Made")
 
 WIDTH = 7.2
 """Width of a page of two columns, inches."""
 DPI = 300
 
+COLUMN_TEXT = 8.0
+"""Points, of all text where a width is asked for."""
+_LETTER = 0.062  # inches, mean width of a letter of such text
+_LEAST_PLOT = 0.52  # of the width, inches: height of a panel without the legend in it
+_PANEL_OF_COLUMN = 0.66  # of the width: height of a panel with its labels
+_SHORT_TITLE = 25  # letters: a longer one is that of the figure
+_LOWEST = 0.42  # height of a panel over that of the highest
+_LEGEND_GAP = 4.0  # points between a legend and curves below it
 _MOST_POINTS = 20_000  # of a line in a figure: more than its width has dots
-_TITLE_WIDTH = 100  # characters that fit a page
+_TITLE_WIDTH = 100  # characters that fit a page of two columns
 _MOST_OF_A_TEXT = 200  # characters of a user's text
 
 STYLE = {
@@ -42,6 +58,57 @@ STYLE = {
     "svg.hashsalt": "pyroclast",  # the same figure gives the same file
 }
 
+
+@dataclass(frozen=True)
+class Page:
+    """What figures are drawn for."""
+
+    width: float = WIDTH  #: inches
+    is_column: bool = False  #: a width was asked for: all text has 8 pt, and legends stand in the axes
+
+    def size(self, points: float) -> float:
+        """Of a text, which has these points unless a width is asked for."""
+        return COLUMN_TEXT if self.is_column else points
+
+    @property
+    def letters(self) -> int:
+        """That fit a line of a title."""
+        return int((self.width - 0.65) / _LETTER) if self.is_column else _TITLE_WIDTH
+
+    def fitting(self, least: float) -> int:
+        """How many panels of a width, inches, stand side by side."""
+        return max(1, int(self.width / least))
+
+
+_page: ContextVar[Page] = ContextVar("page", default=Page())
+
+
+def page() -> Page:
+    """What figures are drawn for now."""
+    return _page.get()
+
+
+@contextmanager
+def page_of(width: float | None) -> Iterator[None]:
+    """Draws figures for a width, inches; None: for a page of two columns, as they are drawn without this."""
+    before = _page.set(Page() if width is None else Page(width, is_column=True))
+    try:
+        yield
+    finally:
+        _page.reset(before)
+
+
+def in_style(draw: Callable[..., Made]) -> Callable[..., Made]:
+    """Makes a function draw in the look of all figures."""
+    @wraps(draw)
+    def drawn(*arguments: Any, **options: Any) -> Made:
+        sizes = {"axes.titlesize": COLUMN_TEXT, "legend.fontsize": COLUMN_TEXT} if page().is_column else {}
+        with matplotlib.rc_context({**STYLE, **sizes}):
+            return draw(*arguments, **options)
+
+    return drawn
+
+
 # Colours of Okabe and Ito, with greys for the materials.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
@@ -51,6 +118,8 @@ TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
 TENSION_TINT, SHEAR_TINT = "#f2a566", "#7787bd"
 MIXED_COLOUR, MIXED_TINT = PURPLE, "#e3bdd2"
 FAINT = "#9a9a9a"
+HEAT_MAP = "YlOrRd"
+"""Colours of temperatures, from cool to hot: cool ones are light."""
 
 # One colour and dash after the other, for curves that stand side by side.
 LOOKS = tuple((colour, dashes) for dashes in ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))
@@ -71,8 +140,141 @@ def phase_colours(names: Sequence[str], bearings: Container[int]) -> list[str]:
 
 
 def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> Figure:
-    """Empty figure; inches, dots per inch (DPI where it is not stated)."""
-    return Figure(figsize=(width, height), dpi=dpi or DPI)
+    """Empty figure for the page; inches, dots per inch (DPI where it is not stated). width: the most that it takes."""
+    figure = Figure(figsize=(page().width if width == WIDTH else min(width, page().width), height), dpi=dpi or DPI)
+    figure.is_of_column = page().is_column  # type: ignore[attr-defined]
+    return figure
+
+
+def panels(height: float, rows: Sequence[float] = (1.0,), beside: float | None = None,
+           below: float | None = None) -> tuple[Figure, list[Axes], Axes | None]:
+    """Figure of panels, one below the other, and axes for a legend, see `draw_legend`; None for these where legends
+    stand in the panels.
+
+    height: inches, of the figure on a page of two columns. rows: heights of the panels, one over the other.
+    beside, below: width of the axes for the legend over that of the panels, or height over the panels'.
+    """
+    if page().is_column:
+        rows = [max(_LOWEST * max(rows), row) for row in rows]
+        figure = new_figure(0.2 + _PANEL_OF_COLUMN * page().width * sum(rows) / max(rows))
+        grid = figure.add_gridspec(len(rows), 1, height_ratios=rows)
+        return figure, [figure.add_subplot(grid[i]) for i in range(len(rows))], None
+    figure = new_figure(height)
+    columns = [1.0] if beside is None else [1.0, beside]
+    grid = figure.add_gridspec(len(rows) + (below is not None), len(columns), width_ratios=columns,
+                               height_ratios=[*rows] if below is None else [*rows, below])
+    all_axes = [figure.add_subplot(grid[i, 0]) for i in range(len(rows))]
+    if beside is None and below is None:
+        return figure, all_axes, None
+    return figure, all_axes, figure.add_subplot(grid[-1, 0] if beside is None else grid[:, 1])
+
+
+def draw_legend(place: Axes | None, axes: Axes, handles: Sequence | None = None, labels: Sequence[str] | None = None,
+                alignment: str = "center", **options: Any) -> None:
+    """Draws a legend in the place that `panels` left for it, or in the axes, above all that they show."""
+    if handles is None or labels is None:
+        handles, labels = axes.get_legend_handles_labels()
+    if place is not None:
+        legend_alone(place, list(handles), list(labels), alignment, **options)
+    elif handles:
+        title = options.get("title")
+        legend = axes.legend(handles, [_broken(label) for label in labels], loc="upper left", borderaxespad=0.2,
+                             title=title and _broken(title), title_fontsize=COLUMN_TEXT)
+        legend.set_in_layout(False)  # it would make axes narrower that are hardly wider
+        legend.stands_on_top = True
+
+
+def draw_own_legend(axes: Axes) -> None:
+    """Draws a legend of the axes in them: where it covers least, or above all that they show."""
+    if page().is_column:
+        draw_legend(None, axes)
+    else:
+        axes.legend(loc="best")
+
+
+def _broken(text: str) -> str:
+    """A text of a legend in lines that fit into the axes."""
+    return _lines(text, max(14, int((page().width - 1.5) / _LETTER)))
+
+
+def lines_of(text: str, letters: int) -> list[str]:
+    """A text in lines of at most so many letters, longer words apart."""
+    return textwrap.wrap(" ".join(text.split()), letters, break_long_words=False, break_on_hyphens=False)
+
+
+def _lines(text: str, letters: int) -> str:
+    return "\n".join(lines_of(text, letters))
+
+
+def settle(figure: Figure) -> Figure:
+    """Makes room in a figure of a column: breaks labels that are longer than their axes, and lifts the upper ends of
+    axes that have a legend on top until it covers nothing. Returns the figure.
+    """
+    if not getattr(figure, "is_of_column", False):
+        return figure
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    scale = figure.dpi / 72.0
+    for _ in range(4):
+        figure.draw(renderer)
+        _break_labels(figure, renderer)
+        figure.draw(renderer)
+        lacking = max((_room_of_legend(axes, renderer) + _LEAST_PLOT * figure.get_figwidth() * figure.dpi
+                       - axes.bbox.height for axes in _with_legend_on_top(figure)), default=0.0)
+        if lacking < scale:
+            break
+        count = len({round(axes.bbox.y0) for axes in figure.axes})
+        figure.set_figheight(figure.get_figheight() + count * lacking / figure.dpi)
+    for axes in _with_legend_on_top(figure):
+        share = min(0.8, _room_of_legend(axes, renderer) / axes.bbox.height)
+        for one in figure.axes:
+            if one.bbox.bounds == axes.bbox.bounds:
+                _lift(one, share)
+    return figure
+
+
+def _with_legend_on_top(figure: Figure) -> list[Axes]:
+    return [axes for axes in figure.axes if getattr(axes.get_legend(), "stands_on_top", False)]
+
+
+def _room_of_legend(axes: Axes, renderer: Any) -> float:
+    """Height, pixels."""
+    return axes.get_legend().get_window_extent(renderer).height + _LEGEND_GAP * axes.figure.dpi / 72.0
+
+
+def _lift(axes: Axes, share: float) -> None:
+    """Moves the upper end of an axis up, so that a share of it above what it shows is empty."""
+    transform = axes.yaxis.get_transform()
+    low, high = transform.transform(np.array(axes.get_ylim()))
+    axes.set_ylim(top=float(transform.inverted().transform(np.array([low + (high - low) / (1.0 - share)]))[0]))
+
+
+def _break_labels(figure: Figure, renderer: Any) -> None:
+    """Breaks titles and labels that are too long, and puts titles over the middle of the figure."""
+    room = figure.bbox.width - figure.dpi / 9.0
+    titles = [axes.title for axes in figure.axes if axes.axison and len(axes.title.get_text()) > _SHORT_TITLE]
+    for title in [*titles, *filter(None, [figure._suptitle])]:
+        taken = title.get_window_extent(renderer).width
+        letters = max(map(len, title.get_text().split("\n")))
+        if taken > room:
+            title.set_text("\n".join(line for text in title.get_text().split("\n")
+                                     for line in lines_of(text, int(letters * room / taken))))
+    for title in titles:
+        box = title.axes.bbox
+        title.set_x((0.5 * figure.bbox.width - box.x0) / box.width)
+    for axes in figure.axes:
+        if not axes.axison:
+            continue
+        for label, room, side in ((axes.xaxis.label, min(axes.bbox.width * 1.1, figure.bbox.width), "width"),
+                                  (axes.yaxis.label, axes.bbox.height, "height")):
+            _break(label, room, getattr(label.get_window_extent(renderer), side))
+
+
+def _break(label: Text, room: float, taken: float) -> None:
+    text = " ".join(label.get_text().split())
+    if not text or taken <= room:
+        return
+    longest = max(map(len, label.get_text().split("\n")))
+    label.set_text(_lines(text, max(8, int(longest * room / taken))))
 
 
 def legend_alone(axes: Axes, handles: list, labels: list[str], alignment: str = "center", **options) -> None:
@@ -104,7 +306,7 @@ def draw_parent(axes: Axes, parent, over, values) -> None:
 def title_of(run) -> str:
     """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page."""
     return "\n".join(line for text in (plain(run.title), *facts_of(run), *warnings_of(run))
-                     for line in textwrap.wrap(text, _TITLE_WIDTH))
+                     for line in textwrap.wrap(text, page().letters))
 
 
 def facts_of(run) -> list[str]:
@@ -214,6 +416,7 @@ def save(figure: Figure, path: Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     ending = path.suffix.lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    settle(thin(figure))
     with whole(path) as aside, _laid_out_once(figure):
-        thin(figure).savefig(aside, format=ending[1:], metadata=undated.get(ending))
+        figure.savefig(aside, format=ending[1:], metadata=undated.get(ending))
     return path

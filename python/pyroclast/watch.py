@@ -47,13 +47,13 @@ from matplotlib.figure import Figure
 from . import style
 from .errors import Error
 from .files import GapWarning, Lock, Writer, read_json
+from .fractures import draw_specimen, fracture_legend
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .interrupts import hear_ctrl_c
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
 from .results import Frame, GrowingResults
-from .sections import draw_specimen, fracture_legend
 from .style import save
 from .textplot import curve, plain_label
 

@@ -15,9 +15,11 @@ PEAK_STRAIN, PEAK_STRESS, LAST_STRAIN = 0.003, 34.0, 0.006
 
 HISTORY_COLUMNS = (
     "stage,step,time_s,strain,stress_MPa,stress_top_MPa,stress_bottom_MPa,lateral_strain,unbalanced_ratio,"
-    "kinetic_over_strain,largest_jump,tension_aggregate_mortar_damaged,tension_aggregate_mortar_broken,tension_aggregate_mortar_length_m,"
-    "tension_mortar_mortar_damaged,tension_mortar_mortar_broken,tension_mortar_mortar_length_m,shear_aggregate_mortar_damaged,shear_aggregate_mortar_broken,"
-    "shear_aggregate_mortar_length_m,shear_mortar_mortar_damaged,shear_mortar_mortar_broken,shear_mortar_mortar_length_m,mean_opening_m,energy_loading_J,"
+    "kinetic_over_strain,largest_jump,tension_aggregate_mortar_damaged,tension_aggregate_mortar_broken,tension_aggregate_mortar_length_m,tension_aggregate_mortar_broken_length_m,"
+    "tension_mortar_mortar_damaged,tension_mortar_mortar_broken,tension_mortar_mortar_length_m,"
+    "tension_mortar_mortar_broken_length_m,shear_aggregate_mortar_damaged,shear_aggregate_mortar_broken,"
+    "shear_aggregate_mortar_length_m,shear_aggregate_mortar_broken_length_m,shear_mortar_mortar_damaged,shear_mortar_mortar_broken,shear_mortar_mortar_length_m,"
+    "shear_mortar_mortar_broken_length_m,mean_opening_m,energy_loading_J,"
     "energy_gravity_J,energy_property_change_J,energy_zones_J,energy_contacts_J,energy_kinetic_J,dissipated_tension_J,"
     "dissipated_shear_J,dissipated_friction_J,dissipated_compression_J,energy_local_damping_J,"
     "energy_viscous_damping_J,energy_error_J"
@@ -269,6 +271,7 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
         row[f"{column}_damaged"] = int(most * damage)
         row[f"{column}_broken"] = int(0.6 * most * damage**2)
         row[f"{column}_length_m"] = 1e-3 * int(most * damage)
+        row[f"{column}_broken_length_m"] = 1e-3 * row[f"{column}_broken"]
     return row
 
 
@@ -288,7 +291,8 @@ def write_conduction(folder: Path) -> Section:
     section = hexagonal_section(4, 5)
     rows = [{"stage": 0, "heating_time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i,
              "temperature_min_degC": 20.0 + 1.0 * i,
-             "temperature_max_degC": 20.0 + 19.0 * i, "heat_stored_J": 1e4 * i, "probe_a_degC": 20.0 + 2.0 * i,
+             "temperature_max_degC": 20.0 + 19.0 * i, "heat_stored_J": 1e4 * i, "gas_max_degC": 20.0 + 30.0 * i,
+             "probe_a_degC": 20.0 + 2.0 * i,
              "probe_b_degC": 20.0 + 9.0 * i} for i in range(21)]
     _write_csv(folder / "history.csv", list(rows[0]), [list(row.values()) for row in rows])
     write_summary(folder, "Synthetic conduction", [("conduct", {"steady": False})])
@@ -323,6 +327,8 @@ def write_history(path: Path, strength_factor: float = 1.0) -> None:
         for column, most in (("tension_aggregate_mortar", 400), ("tension_mortar_mortar", 700), ("shear_aggregate_mortar", 300), ("shear_mortar_mortar", 500)):
             row[f"{column}_damaged"] = int(most * grown)
             row[f"{column}_broken"] = int(0.6 * most * grown**2)
+            for state, ending in (("damaged", "length_m"), ("broken", "broken_length_m")):
+                row[f"{column}_{ending}"] = 1e-3 * row[f"{column}_{state}"]
         rows.append(row)
     _write_csv(path, HISTORY_COLUMNS, [[row.get(name, 0.0) for name in HISTORY_COLUMNS] for row in rows])
 
@@ -370,6 +376,8 @@ def write_fields(folder: Path, number: int, strain: float, section: Section) -> 
         file["VTKHDF/PointData/displacement [m]"] = _with_z(np.repeat(between, 2, axis=0))
         file["VTKHDF/CellData/tension_damage [1]"] = tension.astype(np.float32)
         file["VTKHDF/CellData/shear_damage [1]"] = shear.astype(np.float32)
+        file["VTKHDF/CellData/opening [m]"] = (1e-4 * tension).astype(np.float32)
+        file["VTKHDF/CellData/tangential_jump [m]"] = (-2e-4 * shear).astype(np.float32)
 
 
 def write_specimen(folder: Path, section: Section) -> None:

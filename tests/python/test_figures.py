@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import io
 import json
 import shutil
@@ -20,6 +21,7 @@ import h5py
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
+from matplotlib.text import Text
 from PIL import Image
 
 HERE = Path(__file__).resolve().parent
@@ -30,9 +32,10 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
-from pyroclast.crack_styles import count_cracks  # noqa: E402
+from pyroclast.crack_styles import CRACKS, count_cracks, cracked  # noqa: E402
 from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
+from pyroclast.fractures import fracture, fracture_legend, fracture_panels, select_frames  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
 from pyroclast.mesh import specimen_box  # noqa: E402
@@ -41,7 +44,7 @@ from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
 from pyroclast.results import Frame, Results, SpecimenFolder, Table  # noqa: E402
-from pyroclast.sections import fracture, morphology, select_frames  # noqa: E402
+from pyroclast.sections import morphology  # noqa: E402
 
 
 # A fifth of what users get: what is drawn is the same, and half of the time goes into pictures' compression.
@@ -67,6 +70,30 @@ def writing_alone(*names: str):
         return style.save(figure, path) if path.stem in names else path
 
     return mock.patch.object(figures, "save", save)
+
+
+def assert_apart(test: unittest.TestCase, name: str, figure) -> None:
+    """Panels with their labels, captions and legends lie apart, and within the page."""
+    figure.set_dpi(100)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw(renderer)
+    boxes = []
+    for axes in figure.axes:
+        box = axes.get_tightbbox(renderer)
+        if box is None or box.width * box.height == 0.0:
+            continue
+        # A pixel: texts are placed at whole ones.
+        inside = (min(box.x0, box.y0) >= -1.0 and box.x1 <= figure.bbox.width + 1.0
+                  and box.y1 <= figure.bbox.height + 1.0)
+        test.assertTrue(inside, f"{name}: {box} reaches out of {figure.bbox}")
+        boxes.append((axes, box))
+    for i, (one, a) in enumerate(boxes):
+        for other, b in boxes[:i]:
+            width = min(a.x1, b.x1) - max(a.x0, b.x0)
+            height = min(a.y1, b.y1) - max(a.y0, b.y0)
+            twins = one in other.get_shared_x_axes().get_siblings(other) and one.bbox.bounds == other.bbox.bounds
+            # Tick labels may stand two pixels beyond the end of an axis.
+            test.assertFalse(not twins and width > 2.0 and height > 2.0, f"{name}: {a} covers {b}")
 
 
 class CommandTest(unittest.TestCase):
@@ -144,7 +171,7 @@ class OtherBodies(FolderTest):
         curve = records(run).axes[0].lines[0]
         np.testing.assert_allclose(curve.get_xdata(), 1e3 * run.history["stretch_m"])
         np.testing.assert_allclose(curve.get_ydata(), 1e-3 * run.history["grip_N"])
-        figure = record_fracture(run)
+        figure = fracture_panels(record_fracture(run))
         shown = {patch.get_label(): patch.get_facecolor() for patch in figure.axes[-1].get_legend().get_patches()}
         self.assertEqual(set(shown), {"aggregate", "mortar", "sand"})
         self.assertNotIn(to_rgba(style.PLATEN_COLOUR), shown.values())
@@ -163,7 +190,7 @@ class OtherBodies(FolderTest):
         np.testing.assert_allclose(drawn["beam 3"].get_ydata(), [0.0, 2.0])  # kN
         self.assertNotIn("beam 4", drawn)
         self.assertIn("beam 4", [line.get_label() for line in second.lines])
-        self.assertEqual([axes.get_xlabel() for axes in (first, second)], ["stretch: Opening [mm]", "Time [s]"])
+        self.assertEqual([axes.get_xlabel() for axes in (first, second)], ["stretch, opening [mm]", "Time [s]"])
 
     def test_records_are_drawn_without_fields(self):
         shutil.rmtree(self.run_folder / "fields")
@@ -201,7 +228,7 @@ class CommandsMakePictures(FolderTest):
             return max(np.ptp(np.r_[points[:, 0], places[:, 0]]) for places in moved) / np.ptp(points[:, 0]) - 1.0
 
         magnification = next(m for m in range(1, 10000) if reach(m) > 0.2)
-        drawn = fracture(run, marks, magnification)
+        drawn = fracture_panels(fracture(run, marks), magnification)
         for axes in drawn.axes[:len(marks)]:
             corners = np.concatenate([path.vertices for blocks in axes.collections for path in blocks.get_paths()])
             for limits, places in zip((axes.get_xlim(), axes.get_ylim()), corners.T):
@@ -293,6 +320,165 @@ class PicturesOfTheDocs(unittest.TestCase):
                 self.assertLess(np.abs(colours - wanted).sum(axis=1).min(), self.NEAR)
 
 
+class FracturePanels(HeatedTest):
+    """Cracks as wide as they are open, captions of three numbers, and the counts in a table."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_folder = self.root / "run"
+        synthetic_run.write_run(self.run_folder)
+
+    def rows(self):
+        run = Results(self.run_folder)
+        return fracture(run, select_frames(run.loaded_frames, *run.peak))
+
+    def test_broken_shear_is_as_wide_as_broken_tension(self):
+        widths = {(crack.mode, crack.broken): crack.width for crack in CRACKS}
+        self.assertEqual(widths["shear", True], widths["tension", True])
+        self.assertEqual(widths["shear", False], widths["tension", False])
+
+    def test_a_crack_is_the_wider_the_more_it_opened(self):
+        run = Results(self.run_folder)
+        file = self.run_folder / "fields" / f"contacts_{run.frames[-1].number:04d}.hdf"
+        with h5py.File(file, "r+") as fields:
+            tension, shear = fields["VTKHDF/CellData/tension_damage [1]"], fields["VTKHDF/CellData/shear_damage [1]"]
+            tension[...], shear[...] = 1.0, 0.0
+            opening = np.linspace(0.0, 1e-3, len(tension))
+            fields["VTKHDF/CellData/opening [m]"][...] = opening
+            fields["VTKHDF/CellData/tangential_jump [m]"][...] = 0.0
+        rows = self.rows()
+        last = rows.panels[-1]
+        lines = next(lines for lines in fracture_panels(rows).axes[len(rows.panels) - 1].collections
+                     if lines.get_linewidths() is not None and len(lines.get_linewidths()) > 10
+                     and np.allclose(lines.get_colors()[0], to_rgba(style.TENSION_COLOUR)))
+        widths = np.array(lines.get_linewidths())
+        drawn = opening[cracked(last.run, last.frame, CRACKS[-1])]
+        self.assertGreater(widths.max(), 2.0 * widths.min())
+        self.assertTrue((np.diff(widths[np.argsort(drawn)]) >= 0.0).all())
+
+    def test_captions_are_three_numbers_and_one_panel_is_the_peak(self):
+        panels = self.rows().panels
+        self.assertEqual([panel.title for panel in panels], ["A", "B, peak", "C", "D"])
+        for panel in panels:
+            self.assertEqual(panel.caption.count("\n"), 2, panel.caption)
+        self.assertIn("% of the peak", panels[0].caption)
+
+    def test_peak_is_the_frame_before_the_fall_and_not_the_nearest_by_strain(self):
+        frames = [Frame(k, 1, 100 * k, 0.0, strain, stress)
+                  for k, (strain, stress) in enumerate([(0.0025, 33.0), (0.0027, 33.9), (0.00282, 27.0), (0.003, 25.0)])]
+        self.assertEqual(select_frames(frames, 0.00277, 34.0)["B"], frames[1])
+
+    def test_counts_stand_in_a_table_beside_the_figure(self):
+        self.assertEqual(self.command("run", self.run_folder)[0], 0)
+        with open(self.run_folder / "figures" / "fracture.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([row["panel"] for row in table], ["A", "B, peak", "C", "D"])
+        run = Results(self.run_folder)
+        counts, last = count_cracks(run, run.frames[-1]), table[-1]
+        self.assertEqual(int(last["tension_broken"]), counts["tension", True])
+        self.assertEqual(int(last["shear_damaged_above_half"]), counts["shear", False])
+        which = cracked(run, run.frames[-1], CRACKS[-1])
+        self.assertAlmostEqual(float(last["tension_broken_length_m"]), run.mesh.contacts.extent[which].sum(), delta=1e-9)
+        self.assertEqual(self.command("levels", self.heated("hot"), "--out", self.root / "levels.png")[0], 0)
+        self.assertIn("broken_share", (self.root / "levels.csv").read_text())
+
+    def test_panels_of_a_beam_are_stacked_with_the_crack_enlarged(self):
+        folder = self.root / "beam"
+        section = synthetic_run.write_run(folder, columns=12, rows=3)
+        middles = section.line_points[1::2]
+        near = np.abs(middles[:, 0] / section.width - 0.5) < 0.06
+        for file in (folder / "fields").glob("contacts_*.hdf"):
+            with h5py.File(file, "r+") as fields:
+                fields["VTKHDF/CellData/tension_damage [1]"][...] = near
+        run = Results(folder)
+        rows = fracture(run, select_frames(run.loaded_frames, *run.peak))
+        figure = fracture_panels(rows)
+        figure.draw(FigureCanvasAgg(figure).get_renderer())
+        body, enlarged, below = figure.axes[:3]
+        self.assertLess(body.bbox.x1, enlarged.bbox.x0 + 1.0)
+        self.assertLess(below.bbox.y1, body.bbox.y0)
+        self.assertLess(np.ptp(enlarged.get_xlim()), 0.5 * np.ptp(body.get_xlim()))
+        self.assertIn("enlarged", enlarged.get_title())
+
+    def test_bearings_of_a_body_without_platens_are_not_called_so(self):
+        run = Results(self.run_folder)
+        shown = lambda: [handle.get_label() for handle in fracture_legend(run)]  # noqa: E731
+        self.assertIn("platen", shown())
+        with mock.patch.object(Results, "has_platens", False):
+            self.assertIn("bearing", shown())
+            self.assertNotIn("platen", shown())
+
+
+class WidthOfThePage(HeatedTest):
+    """--width: all text has 8 pt, legends stand in the axes and cover nothing."""
+
+    def test_files_have_the_width(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        self.assertEqual(self.command("run", folder, "--width", "90mm")[0], 0)
+        wanted = 90.0 / 25.4 * style.DPI
+        self.assertAlmostEqual(png_size(folder / "figures" / "energy.png")[0], wanted, delta=1.0)
+        self.assertAlmostEqual(png_size(folder / "figures" / "fracture.png")[0], 2.0 * wanted, delta=1.0)
+        out = self.root / "both.png"
+        self.assertEqual(self.command("compare", folder, folder, "--out", out, "--width", "8.4 cm")[0], 0)
+        self.assertAlmostEqual(png_size(out)[0], 84.0 / 25.4 * style.DPI, delta=1.0)
+
+    def test_a_length_needs_a_unit_and_a_range(self):
+        for text in ("90", "90px", "wide", "20mm", "3m", "1000mm", "-90mm"):
+            with self.subTest(text), self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as told:
+                figures.main(["run", "nowhere", f"--width={text}"])
+            for part in (text, "70mm to 400mm", "mm, cm, in", "such as 90mm"):
+                self.assertIn(part, told.getvalue())
+
+    def figures_of_runs(self):
+        cold, wall = self.root / "cold", self.root / "wall"
+        synthetic_run.write_run(cold)
+        (cold / "references.json").write_text('[{"builtin": "compression"}]')
+        synthetic_run.write_conduction(wall)
+        hot = self.heated("hot", Heating(critical=605.0, unconverged=(40,), spread=60.0))
+        (hot / "references.json").write_text('[{"builtin": "transient_strain"}]')
+        for folder in (cold, wall, hot):
+            for picture in figures.figures_of(Results(folder)):
+                yield f"{folder.name}/{picture.name}", picture.draw()
+        cold, hot = Results(cold), Results(hot)
+        yield "compare", compare([cold])
+        yield "compare total strain", compare_total_strain([hot])
+        yield "compare cracks", compare_cracks([hot])
+        yield "levels", fracture_panels(levels([hot]))
+
+    def test_text_has_eight_points_and_nothing_overlaps(self):
+        for width in (70.0, 90.0):
+            shutil.rmtree(self.root)
+            self.root.mkdir()
+            with style.page_of(width / 25.4):
+                for name, figure in self.figures_of_runs():
+                    with self.subTest(name, width=width):
+                        style.settle(figure)
+                        assert_apart(self, name, figure)
+                        sizes = {text.get_fontsize() for text in figure.findobj(Text) if text.get_text().strip()
+                                 and not isinstance(text.axes, type(None)) and text.get_visible()}
+                        self.assertLessEqual(sizes, {8.0, 6.0, 7.0}, name)  # marks in a picture may be smaller
+                        self.assert_legends_cover_nothing(figure)
+
+    def assert_legends_cover_nothing(self, figure) -> None:
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        for axes in figure.axes:
+            legend = axes.get_legend()
+            if legend is None or not getattr(legend, "stands_on_top", False):
+                continue
+            below = legend.get_window_extent(renderer).y0
+            for line in axes.lines:
+                if line.get_transform() == axes.transData:
+                    y = line.get_transform().transform(line.get_xydata())[:, 1]
+                    self.assertLess(np.nanmax(y), below + 1.0, axes.get_ylabel())
+
+    def test_without_it_figures_are_those_of_a_page(self):
+        self.assertEqual(style.page(), style.Page(style.WIDTH, False))
+        with style.page_of(None):
+            self.assertFalse(style.page().is_column)
+
+
 class PropertiesFigure(FolderTest):
     HEADER = "property,unit,temperature_degC,value,ratio_to_20_degC\n"
     ROWS = ("materials.mortar.E,Pa,20,3e10,1\nmaterials.mortar.E,Pa,800,3e9,0.1\n"
@@ -345,7 +531,7 @@ class ErrorsNameTheThing(FolderTest):
                 aside.rename(path)
 
     def test_missing_column(self):
-        for name in ("stress_MPa", "shear_mortar_mortar_damaged", "energy_error_J"):
+        for name in ("stress_MPa", "shear_mortar_mortar_broken_length_m", "energy_error_J"):
             with self.subTest(name):
                 path = self.run_folder / "history.csv"
                 before = path.read_text()
@@ -856,29 +1042,7 @@ class ManyRuns(HeatedTest):
 
 
 class NothingOverlapsOrIsCutOff(HeatedTest):
-    """Panels with their labels, captions and legends lie apart, and within the page."""
-
-    def assert_apart(self, name: str, figure) -> None:
-        figure.set_dpi(100)
-        renderer = FigureCanvasAgg(figure).get_renderer()
-        figure.draw(renderer)
-        boxes = []
-        for axes in figure.axes:
-            box = axes.get_tightbbox(renderer)
-            if box is None or box.width * box.height == 0.0:
-                continue
-            # A pixel: texts are placed at whole ones.
-            inside = (min(box.x0, box.y0) >= -1.0 and box.x1 <= figure.bbox.width + 1.0
-                      and box.y1 <= figure.bbox.height + 1.0)
-            self.assertTrue(inside, f"{name}: {box} reaches out of {figure.bbox}")
-            boxes.append((axes, box))
-        for i, (one, a) in enumerate(boxes):
-            for other, b in boxes[:i]:
-                width = min(a.x1, b.x1) - max(a.x0, b.x0)
-                height = min(a.y1, b.y1) - max(a.y0, b.y0)
-                twins = one in other.get_shared_x_axes().get_siblings(other) and one.bbox.bounds == other.bbox.bounds
-                # Tick labels may stand two pixels beyond the end of an axis.
-                self.assertFalse(not twins and width > 2.0 and height > 2.0, f"{name}: {a} covers {b}")
+    """See `assert_apart`."""
 
     def test_in_any_figure(self):
         cold = self.root / "cold"
@@ -891,14 +1055,14 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
         after = self.heated("after", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
         held = self.heated("held", Heating(restrained=True, spread=60.0))
         for folder in (cold, wall, hot, after, held):
-            for name, make in figures.figures_of(Results(folder)):
-                with self.subTest(folder=folder.name, figure=name):
-                    self.assert_apart(name, make())
+            for picture in figures.figures_of(Results(folder)):
+                with self.subTest(folder=folder.name, figure=picture.name):
+                    assert_apart(self, picture.name, picture.draw())
         cold, hot, held = map(Results, (cold, hot, held))
         for name, figure in (("compare", compare([cold])), ("total strain", compare_total_strain([hot])),
-                             ("cracks", compare_cracks([hot])), ("levels", levels([hot, held]))):
+                             ("cracks", compare_cracks([hot])), ("levels", fracture_panels(levels([hot, held])))):
             with self.subTest(figure=name):
-                self.assert_apart(name, figure)
+                assert_apart(self, name, figure)
 
 
 class DepthOfTheHeat(HeatedTest):

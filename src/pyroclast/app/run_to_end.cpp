@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
@@ -25,6 +26,20 @@ std::int64_t broken(const History& history) {
   return count;
 }
 
+/// Describes a value of a record, in the unit in which figures draw it.
+std::string describe_record(const Record& record, double value) {
+  const Column column = column_of(record.parameters());
+  struct Shown {
+    std::string_view unit, as;
+    double factor;
+  };
+  constexpr Shown kShown[] = {{"m", "mm", 1e3}, {"m2", "cm2", 1e4}, {"N", "kN", 1e-3}};
+  for (const auto& [unit, as, factor] : kShown)
+    if (column.unit == unit)
+      return fmt::format("  {} {:.4g} {}", record.parameters().name, factor * value, as);
+  return fmt::format("  {} {:.4g} {}", record.parameters().name, value, column.unit);
+}
+
 /// Describes the last row of the history, in short.
 std::string describe_row(const Run& run) {
   const History& history = run.history();
@@ -40,11 +55,8 @@ std::string describe_row(const Run& run) {
   if (last("strain"))
     text += fmt::format("  strain {:.5f}  stress {:6.2f} MPa", *last("strain"), *last("stress_MPa"));
   if (last("unbalanced_ratio")) {
-    for (const Record& record : run.simulation().records()) {
-      const Column column = column_of(record.parameters());
-      text +=
-          fmt::format("  {} {:.4g} {}", record.parameters().name, *last(column.name.c_str()), column.unit);
-    }
+    for (const Record& record : run.simulation().records())
+      text += describe_record(record, *last(column_of(record.parameters()).name.c_str()));
     text += fmt::format("  broken: {}", broken(history));
     text += fmt::format("  unbalanced {:.1e}", *last("unbalanced_ratio"));
   }

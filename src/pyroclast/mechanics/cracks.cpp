@@ -100,14 +100,17 @@ struct CrackSums {
 
 void CrackCount::add(bool is_broken, double extent_of_point) {
   ++damaged;
-  if (is_broken) ++broken;
   extent += extent_of_point;
+  if (!is_broken) return;
+  ++broken;
+  broken_extent += extent_of_point;
 }
 
 void CrackCount::operator+=(const CrackCount& other) {
   damaged += other.damaged;
   broken += other.broken;
   extent += other.extent;
+  broken_extent += other.broken_extent;
 }
 
 template <int Dim>

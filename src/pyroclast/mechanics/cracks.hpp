@@ -10,9 +10,10 @@ namespace pyroclast {
 
 /// Cracks of one interface by one mode, counted at contact points.
 struct CrackCount {
-  std::int64_t damaged = 0;  ///< points with D > 0, the broken ones included
-  std::int64_t broken = 0;   ///< points with D = 1: no bond is left
-  double extent = 0.0;       ///< extent of all damaged contact points, see Model::extent
+  std::int64_t damaged = 0;    ///< points with D > 0, the broken ones included
+  std::int64_t broken = 0;     ///< points with D = 1: no bond is left
+  double extent = 0.0;         ///< extent of all damaged contact points, see Model::extent
+  double broken_extent = 0.0;  ///< that of the broken ones
 
   /// Counts a contact point that has damage.
   void add(bool is_broken, double extent_of_point);

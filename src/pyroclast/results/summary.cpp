@@ -215,7 +215,8 @@ OrderedJson crack_json(const History& history, const std::string& crack, const s
   const auto last = [&](const char* what) { return last_of(history, (crack + what).c_str()); };
   return {{"damaged", whole(last("_damaged"))},
           {"broken", whole(last("_broken"))},
-          {extent, json_of(last(("_" + extent).c_str()))}};
+          {extent, json_of(last(("_" + extent).c_str()))},
+          {"broken_" + extent, json_of(last(("_broken_" + extent).c_str()))}};
 }
 
 void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {

@@ -79,6 +79,16 @@ constexpr auto kMotion = std::to_array<ColumnOf<MotionReading>>({
     {"largest_jump", "1", [](const MotionReading& m) { return m.largest_jump; }},
 });
 
+/// Makes a gauge of the hottest gas that heat flows from or to.
+Gauge gas_gauge() {
+  Gauge gauge;
+  gauge.columns.push_back({"gas_max_degC", "degC"});
+  gauge.read = [](const Simulation& s) {
+    return std::vector<double>{*s.field().conduction()->hottest_gas()};
+  };
+  return gauge;
+}
+
 /// Makes a gauge of contacts whose sides have temperatures of their own.
 Gauge gap_gauge(const Model& model) {
   Gauge gauge;
@@ -150,15 +160,16 @@ Gauge crack_gauge(const Motion& motion) {
   const auto kinds = motion.crack_kinds();
   const Column extent = extent_column(motion.model());
   for (const CrackKind& kind : kinds)
-    for (const Column& column : {Column{"damaged", "1"}, Column{"broken", "1"}, extent})
+    for (const Column& column : {Column{"damaged", "1"}, Column{"broken", "1"}, extent,
+                                 Column{"broken_" + extent.name, extent.unit}})
       gauge.columns.push_back({fmt::format("{}_{}", kind.name, column.name), column.unit});
   gauge.columns.push_back({"mean_opening_m", "m"});
   gauge.read = [kinds](const Simulation& simulation) {
     const Cracks cracks = simulation.motion().totals().count_cracks(kinds);
     std::vector<double> values;
     for (const CrackCount& count : cracks.of_kind)
-      values.insert(values.end(),
-                    {static_cast<double>(count.damaged), static_cast<double>(count.broken), count.extent});
+      values.insert(values.end(), {static_cast<double>(count.damaged), static_cast<double>(count.broken),
+                                   count.extent, count.broken_extent});
     values.push_back(cracks.mean_opening);
     return values;
   };
@@ -225,6 +236,7 @@ std::vector<Gauge> record_gauges(const Simulation& simulation) {
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
   std::vector<Gauge> gauges{transport_gauge()};
+  if (simulation.field().conduction()->hottest_gas()) gauges.push_back(gas_gauge());
   if (simulation.cracks_hinder_heat()) gauges.push_back(gap_gauge(simulation.model()));
   return gauges;
 }

@@ -212,6 +212,19 @@ std::vector<std::vector<NodeShare>> Conduction<Dim>::gridpoint_shares() const {
 }
 
 template <int Dim>
+std::optional<double> Conduction<Dim>::hottest_gas() const {
+  std::optional<double> hottest;
+  const auto take = [&](const auto& condition) {
+    if constexpr (requires { condition.gas_temperature; }) {
+      const double gas = condition.gas_temperature(time());
+      hottest = std::max(hottest.value_or(gas), gas);
+    }
+  };
+  for (const Applied& applied : applied_) std::visit(take, applied.condition);
+  return hottest;
+}
+
+template <int Dim>
 void Conduction<Dim>::add_to_boundary(const Applied& applied) {
   std::vector<double> area(volume_.size());
   for (int face : applied.faces)

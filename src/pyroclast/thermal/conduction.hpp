@@ -174,6 +174,7 @@ class Conduction final : public HeatSolver {
   /// Returns the L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of
   /// (dT/dt)²), K/s.
   double rate() const override { return state_.rate; }
+  std::optional<double> hottest_gas() const override;
   /// Returns the largest change of any temperature in the last step, with the jumps of prescribed ones at its
   /// beginning, K.
   double largest_change() const override { return state_.largest_change; }

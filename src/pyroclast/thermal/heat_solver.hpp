@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pyroclast/base/ledger.hpp"
@@ -86,6 +87,8 @@ class HeatSolver {
   virtual std::vector<double> gridpoint_temperatures(double elsewhere) const = 0;
   virtual HeatLedger ledger() const = 0;
   virtual double rate() const = 0;
+  /// Returns the temperature of the hottest gas that heat flows from or to now, °C; none without gases.
+  virtual std::optional<double> hottest_gas() const = 0;
   virtual double largest_change() const = 0;
   virtual HeatStepLimit step_limit() const = 0;
   virtual HeatWork work() const = 0;

@@ -1,0 +1,63 @@
+"""Names of runs by what their decks differ in."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import style
+
+if TYPE_CHECKING:
+    from .results import Results
+
+_MOST = 3  # differences that a name tells
+_TELL_NOTHING = ("title", "output")  # tables and keys that change no result
+_PLAIN = ("value", "builtin", "csv", "table")  # keys that say how a value is given, and not of what
+
+
+def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
+    """A name for each run: the values in which their decks differ, such as "E 50 GPa, seed 2".
+
+    None where decks are missing, do not differ, differ in more than three values, or do not tell all runs apart.
+    """
+    decks = [dict(_values(run.deck)) for run in runs]
+    if not all(decks):
+        return None
+    keys = list(dict.fromkeys(key for deck in decks for key in deck))
+    differing = [key for key in keys if len({deck.get(key) for deck in decks}) > 1]
+    if not 0 < len(differing) <= _MOST:
+        return None
+    words = _short(differing)
+    names = [", ".join(f"{word} {deck[key]}" if key in deck else f"no {word}" for key, word in zip(differing, words))
+             for deck in decks]
+    return [style.plain(name) for name in names] if len(set(names)) == len(names) else None
+
+
+def _values(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Path and text of each value of a deck."""
+    if path and path[0] in _TELL_NOTHING:
+        return
+    if isinstance(node, dict):
+        for key, value in node.items():
+            yield from _values(value, (*path, str(key)))
+    elif isinstance(node, list) and any(isinstance(value, dict) for value in node):
+        for number, value in enumerate(node):
+            yield from _values(value, (*path, str(number)))
+    else:
+        yield path, _text(node)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_text, value)) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _short(paths: Sequence[tuple[str, ...]]) -> list[str]:
+    """Of each path its last word, with that before it where two have the same."""
+    told = [path[:-1] if path[-1] in _PLAIN and len(path) > 1 else path for path in paths]
+    lasts = Counter(path[-1] for path in told)
+    return [path[-1] if lasts[path[-1]] == 1 else " ".join(path[-2:]) for path in told]
