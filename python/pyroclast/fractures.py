@@ -31,7 +31,9 @@ _AT_PEAK = 0.98  # of the largest stress, that a frame has to have to be called 
 _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
 _LARGEST_MARGIN = 0.3  # for blocks that have moved out
-_PANELS = 4
+_PANELS, _PANELS_OF_SQUARE = 4, 2
+"""Least number of panels for which a page has room side by side, and that of bodies hardly higher than wide."""
+_SQUARE = 1.45  # height over width, with platens and margins, up to which a body is one of these
 _TITLE_HEIGHT, _CAPTION_LINE, _HEADING_LINE, _LEGEND_LINE = 0.3, 0.125, 0.17, 0.16  # in print, inches
 _NOTE_LETTERS = 125  # of a line below a figure on a page of two columns
 _NARROWEST = 1.55  # inches, of a panel with its caption in a column
@@ -102,7 +104,7 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
     for letter, frame in marks.items():
         is_peak = letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
         caption = (f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
-                   f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n{100.0 * frame.stress_MPa / strength:.0f} % of the peak")
+                   f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n{100.0 * frame.stress_MPa / strength:.0f} % of " + ("$f_c$" if run.has_peak else "the largest"))
         panels.append(Panel(run, frame, f"{letter}, peak" if is_peak else letter, caption))
     return Rows([("", panels)], style.title_of(run))
 
@@ -177,8 +179,9 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
 
 def _draw_lines(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> Figure:
     page = style.page()
-    is_full = page.is_column or height_over_width(drawn.panels[0].run.mesh.blocks, look.margin) < _WIDE
-    width = page.width / (look.across if is_full else max(look.across, _PANELS)) - 0.12
+    ratio = height_over_width(drawn.panels[0].run.mesh.blocks, look.margin)
+    least = 1 if page.is_column or ratio < _WIDE else _PANELS_OF_SQUARE if ratio < _SQUARE else _PANELS
+    width = page.width / max(look.across, least) - 0.12
     heights = [width * height_over_width(panels[0].run.mesh.blocks, look.margin) for _, panels in lines]
     figure, grid = _figure(drawn, lines, look, heights, [1.0] * look.across)
     for row, (label, panels) in enumerate(lines):

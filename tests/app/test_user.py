@@ -573,7 +573,7 @@ class ReferencesOfTheDeck(UserTest):
         self.assertLess(beam["area_between_N_m"], 12.6e3 * 0.35e-3)
         self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
         picture = (self.folder / "run" / "figures" / "records.svg").read_text()
-        for text in ("beam", "elsewhere", "cmod: Opening [mm]", "deflection: Displacement [mm]"):
+        for text in ("beam", "elsewhere", "cmod, opening [mm]", "deflection, displacement [mm]"):
             self.assertIn(text, picture)
 
     def test_a_reference_of_stress_in_heat_alone_is_refused(self):

@@ -29,6 +29,7 @@ from pyroclast import figures, style  # noqa: E402
 from pyroclast.comparisons import compare_runs  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.files import GapWarning  # noqa: E402
+from pyroclast.fractures import fracture_panels  # noqa: E402
 from pyroclast.heated_sections import levels  # noqa: E402
 from pyroclast.results import Results  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
@@ -179,12 +180,12 @@ class Damaged(unittest.TestCase):
 
     def draw(self, run: Results, whole: Path, of_fields: bool, rendered: bool, random) -> None:
         """Makes some of the figures that the damage can spoil."""
-        choice = [make for name, make in figures.figures_of(run)
-                  if not of_fields or name.endswith("fracture") or name == "temperature"]
+        choice = [picture.draw for picture in figures.figures_of(run)
+                  if not of_fields or picture.name.endswith("fracture") or picture.name == "temperature"]
         if not of_fields and run.moves:
             choice.append(lambda: compare_runs([run, Results(whole)]))
         if run.ends_heated:
-            choice.append(lambda: levels([run, Results(whole)]))
+            choice.append(lambda: fracture_panels(levels([run, Results(whole)])))
         for make in random.permutation(np.array(choice, dtype=object))[:FIGURES]:
             figure = make()
             if rendered:
