@@ -154,12 +154,14 @@ def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results],
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
         largest = run.history.known("stress_MPa", run.heated).max()
         axes.plot(over(run), run.heated_history("stress_MPa"), color=colour,
-                  linestyle=dashes, label=f"{textwrap.fill(name, 34)}\nlargest {largest:.2f} MPa")
+                  linestyle=dashes, label=f"{textwrap.fill(name, 34)},\nlargest {largest:.2f} MPa")
 
 
 @style.in_style
 def compare_cracks(runs: Sequence[Results]) -> Figure:
-    """Length of broken contacts, of solids their area, by mode and the mean opening while heated, or over strain if none ends heated."""
+    """Length of broken contacts by mode, of solids their area, and the mean opening: while heated, or over strain if
+    none ends heated.
+    """
     if len({run.ends_heated for run in runs}) > 1:
         raise Error("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]

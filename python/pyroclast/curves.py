@@ -181,7 +181,7 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
         for run, curve, name, (colour, dashes) in zip(runs, curves, names_apart(runs), cycle(style.LOOKS)):
             strength = f"{run.peak[1]:.2f} MPa" + ("" if run.has_peak else ", no peak reached")
             axes.plot(*curve, color=colour, linestyle=dashes, linewidth=1.0,
-                      label=f"{textwrap.fill(name, 34)}\n{strength}")
+                      label=f"{textwrap.fill(name, 34)},\n{strength}")
         if len(runs) > 1:
             axes.plot(*mean_of(curves), color=style.BLACK, linewidth=2.0,
                       label=f"mean of {len(runs)}, as far as all go")
@@ -271,7 +271,7 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
     spread = [None, None]
     if len(peaks) > 1:
         spread = peaks.std(axis=0, ddof=1)
-        label += "\nbars: standard deviation"
+        label += ";\nbars: standard deviation"
     axes.errorbar(strain, stress, xerr=spread[0], yerr=spread[1], fmt="o", color=style.BLACK,
                   markerfacecolor="white", capsize=2.5, elinewidth=1.0, linewidth=1.0,
                   zorder=5, label=label)
@@ -283,7 +283,8 @@ def names_apart(runs: Sequence[Results]) -> list[str]:
     """
     names = [style.plain(run.title) for run in runs]
     if len(set(names)) < len(names):
-        names = names_by_decks(runs) or [style.plain(end) for end in _ends_apart([run.folder.resolve() for run in runs])]
+        ends = _ends_apart([run.folder.resolve() for run in runs])
+        names = names_by_decks(runs) or [style.plain(end) for end in ends]
     return [" – ".join([name, *style.warnings_of(run)]) for name, run in zip(names, runs)]
 
 

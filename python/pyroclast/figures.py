@@ -238,8 +238,8 @@ def _width(text: str) -> float:
     inches = float(match[1]) / _PER_INCH[match[2]] if match else 0.0
     if not NARROWEST <= inches <= WIDEST:
         raise argparse.ArgumentTypeError(
-            f"{text} is not a length from {_PER_INCH['mm'] * NARROWEST:.0f}mm to {_PER_INCH['mm'] * WIDEST:.0f}mm with its "
-            f"unit, {', '.join(_PER_INCH)}, such as 90mm")
+            f"{text} is not a length from {_PER_INCH['mm'] * NARROWEST:.0f}mm to {_PER_INCH['mm'] * WIDEST:.0f}mm "
+            f"with its unit, {', '.join(_PER_INCH)}, such as 90mm")
     return inches
 
 

@@ -18,7 +18,8 @@ from matplotlib.patches import Rectangle
 from . import style
 from .crack_styles import can_crack, count_cracks, crack_legend, cracked, cracks_of, material_legend, size_of_cracks
 from .mesh import BlockMesh, ContactMesh, specimen_box
-from .sections import MARGIN, block_box, draw_blocks, draw_scale_bar, frame_box, frame_section, height_over_width, panel_box
+from .sections import (MARGIN, block_box, draw_blocks, draw_scale_bar, frame_box, frame_section,
+                       height_over_width, panel_box)
 from .solid_sections import crack_lines, flat
 from .writing import whole
 
@@ -49,9 +50,9 @@ _BOTH = 0.45  # width of tension on a contact that broke in shear too
 def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: float) -> dict[str, Frame]:
     """Frames A to D, by letter: before the peak, at it, after it, and the end.
 
-    B is the frame nearest to the peak, by strain and stress, each over that of the peak; A, among those before, the one
-    nearest to 85 % of its strain; D the last; C, between B and D, the one whose stress is nearest to 80 % of the peak, or
-    halfway down to D when D is above 60 %. A letter is left out when no frame is there for it.
+    B is the frame nearest to the peak, by strain and stress, each over that of the peak; A, among those before, the
+    one nearest to 85 % of its strain; D the last; C, between B and D, the one whose stress is nearest to 80 % of the
+    peak, or halfway down to D when D is above 60 %. A letter is left out when no frame is there for it.
     frames: those of the loading stage, in order, at least one. peak_stress: MPa.
     """
     peak = min(range(len(frames)), key=lambda i: abs(frames[i].strain / peak_strain - 1.0)
@@ -104,7 +105,8 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
     for letter, frame in marks.items():
         is_peak = letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
         caption = (f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
-                   f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n{100.0 * frame.stress_MPa / strength:.0f} % of " + ("$f_c$" if run.has_peak else "the largest"))
+                   f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n"
+                   f"{100.0 * frame.stress_MPa / strength:.0f} % of {'$f_c$' if run.has_peak else 'the largest'}")
         panels.append(Panel(run, frame, f"{letter}, peak" if is_peak else letter, caption))
     return Rows([("", panels)], style.title_of(run))
 
@@ -165,7 +167,8 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
     lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in drawn.rows]
     if magnification is None:
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
-    margin = _margin((panel.run.mesh.blocks, _moved(panel, magnification)) for _, panels in drawn.rows for panel in panels)
+    margin = _margin((panel.run.mesh.blocks, _moved(panel, magnification))
+                     for _, panels in drawn.rows for panel in panels)
     is_wide = all(height_over_width(last.run.mesh.blocks, margin) < _WIDE for last in lasts)
     page, most = style.page(), max(len(panels) for _, panels in drawn.rows)
     across = 1 if is_wide else min(most, page.fitting(_NARROWEST)) if page.is_column else most
@@ -264,10 +267,10 @@ def _draw_legend(figure: Figure, grid: GridSpec, drawn: Rows, look: _Look) -> No
 def _note(drawn: Rows, look: _Look) -> str:
     widths = ""
     if all(panel.run.mesh.blocks.dimension == 2 for panel in drawn.panels) and look.full > 0.0:
-        widths = (f"A broken crack is the wider the more it has opened or slipped, up to {1e6 * look.full:.0f} µm. "
-                  "Broken in both modes: tension on shear.")
-    return "\n".join(line for text in (drawn.note, widths) if text
-                     for line in style.lines_of(text, style.page().letters if style.page().is_column else _NOTE_LETTERS))
+        widths = ("A broken crack is the wider the more it has opened or slipped, up to "
+                  f"{1e6 * look.full:.0f} µm. Broken in both modes: tension on shear.")
+    letters = style.page().letters if style.page().is_column else _NOTE_LETTERS
+    return "\n".join(line for text in (drawn.note, widths) if text for line in style.lines_of(text, letters))
 
 
 def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
@@ -331,7 +334,9 @@ def _jumps(run: Results, frame: Frame) -> np.ndarray:
 
 
 def _full_width(panels: Sequence[Panel]) -> float:
-    """Size [m] of the jump from which on a broken crack is drawn in full width: the median of the broken, in two digits."""
+    """Size [m] of the jump from which on a broken crack is drawn in full width: the median of the broken, to two
+    digits.
+    """
     sizes = [_jumps(panel.run, panel.frame)[cracked(panel.run, panel.frame, crack)] for panel in panels
              for crack in cracks_of(panel.run) if crack.broken]
     sizes = np.concatenate([np.zeros(0), *sizes])
@@ -355,7 +360,8 @@ def _crack_box(lasts: Sequence[Panel], magnification: float) -> tuple[np.ndarray
         box = specimen_box(blocks)
         if np.ptp(np.percentile(before[:, 0], (1, 99))) > _LOCAL * (box[1] - box[0])[0]:
             return None
-        low, high = np.minimum(low, np.percentile(places, 1, axis=0)), np.maximum(high, np.percentile(places, 99, axis=0))
+        low = np.minimum(low, np.percentile(places, 1, axis=0))
+        high = np.maximum(high, np.percentile(places, 99, axis=0))
     return low, high
 
 

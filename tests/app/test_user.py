@@ -563,6 +563,8 @@ class ReferencesOfTheDeck(UserTest):
         done = self.pyroclast("run", deck, *(word for change in small for word in ("--set", change)), "--out", "run",
                               "--no-figures")
         self.assertEqual(done.returncode, 0, done.stderr)
+        log = (self.folder / "run" / "run.log").read_text()
+        self.assertRegex(log, r"  cmod [0-9.e-]+ mm  load [0-9.e-]+ kN  ")
         summary = json.loads((self.folder / "run" / "summary.json").read_text())
         beam, elsewhere = summary["references"]["beam"], summary["references"]["elsewhere"]
         peak = summary["stages"][2]["results"]["P_N"]
