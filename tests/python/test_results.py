@@ -126,10 +126,11 @@ class FieldsOfFrames(Case):
         self.assertEqual({name: found[name].dims for name in found}, {
             "displacement": ("frame", "gridpoint", "component"), "stress": ("frame", "zone", "tensor"),
             "contact_displacement": ("frame", "contact", "end", "component"),
-            "tension_damage": ("frame", "contact"), "shear_damage": ("frame", "contact")})
+            "tension_damage": ("frame", "contact"), "shear_damage": ("frame", "contact"),
+            "opening": ("frame", "contact"), "tangential_jump": ("frame", "contact")})
         self.assertEqual({name: found[name].attrs["units"] for name in found}, {
             "displacement": "m", "stress": "Pa", "contact_displacement": "m", "tension_damage": "1",
-            "shear_damage": "1"})
+            "shear_damage": "1", "opening": "m", "tangential_jump": "m"})
         self.assertEqual(found["component"].values.tolist(), ["x", "y"])
         self.assertEqual(found["tensor"].values.tolist(), ["xx", "yy", "zz", "xy", "yz", "xz"])
 
