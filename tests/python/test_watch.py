@@ -250,8 +250,8 @@ class Drawn(WatchTest):
             (lambda to: synthetic_run.write_heated_run(to, Heating(hottest=300.0, cooled=True, compressed=True)),
              "Axial strain", "Axial stress"),
             (synthetic_run.write_conduction, "Time of heating", "Mean temperature"),
-            (bent, "cmod: Opening [mm]", "load: Force [kN]"),
-            (lambda to: bent(to, "cmod"), "cmod: Opening [mm]", "cmod: Opening [mm]"),
+            (bent, "cmod, opening [mm]", "load, force [kN]"),
+            (lambda to: bent(to, "cmod"), "cmod, opening [mm]", "cmod, opening [mm]"),
             (lambda to: bent(to, "none"), "Time [s]", "Unbalanced ratio"),
         ):
             with self.subTest(over + values):
