@@ -73,7 +73,7 @@ class Specimen:
         and quads of a higher order the corners count, so that their sides are straight.
 
         data: name of the cell data that label the cells, such as "gmsh:physical"; None: the cell sets say what they
-            are of (Abaqus *ELSET), or where there are none the physical groups of gmsh.
+            are of (`*ELSET` of Abaqus), or where there are none the physical groups of gmsh.
         phases: the name of each label's phase; a label is a value of the cell data, the name of a cell set or that of
             a physical group. None: cell sets and physical groups are called as their phases are. Of cell sets those
             count that are named here.

@@ -1,10 +1,13 @@
 """Words of the command line: what is unknown is named, and what each command ends with. PYROCLAST names the program."""
 
+import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
+import tomllib
 import unittest
 
 PROGRAM = os.environ["PYROCLAST"]
@@ -27,6 +30,18 @@ class CommandLine(unittest.TestCase):
         done = self.pyroclast(*words, code=1)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         return done.stderr
+
+    def test_every_column_of_every_case_is_listed(self):
+        listed = [line.split()[0] for line in self.pyroclast("list", "columns").stdout.splitlines()]
+        names = "|".join(re.sub("NAME|MODE|INTERFACE|UNIT", r"\\w+", name) for name in listed if name != "NAME_UNIT")
+        cases = json.loads((CASES.parent / "validation" / "reference_small.json").read_text())["cases"]
+        self.assertGreater(len(cases), 15)
+        for case, kept in cases.items():
+            deck = tomllib.loads((CASES / f"{case}.toml").read_text())
+            records = [record["name"] for record in deck.get("record", [])]
+            for column in kept["columns"]:
+                is_record = any(re.fullmatch(rf"{record}_\w+", column) for record in records)
+                self.assertTrue(is_record or re.fullmatch(names, column), f"{case}: {column}")
 
     def test_an_unknown_word_is_named_with_the_nearest(self):
         self.assertIn('"rnu" is no command; did you mean "run"?', self.error("rnu", "x.toml"))

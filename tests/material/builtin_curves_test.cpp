@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "known.hpp"
@@ -266,20 +263,6 @@ TEST(BuiltinCurves, AnUnknownNameIsAnsweredWithTheNearestAndAll) {
     const std::string message = error.what();
     EXPECT_NE(message.find("nearest is \"en1992_siliceous_strength\""), std::string::npos) << message;
     EXPECT_NE(message.find("paper_mortar_expansion"), std::string::npos) << message;
-  }
-}
-
-// The table of docs/understand/deck.md, with unit and range.
-TEST(BuiltinCurves, AreAllInTheManual) {
-  std::ifstream file(PYROCLAST_DOCS "/understand/deck.md");
-  std::stringstream manual;
-  manual << file.rdbuf();
-  for (const NamedCurve& entry : builtin_curves().entries()) {
-    const Interval range = entry.curve.range();
-    const std::string row =
-        fmt::format("| `{}` | {} | {} | {:g} to {:g} | {} |\n", entry.name, entry.description,
-                    entry.unit == "1" ? "–" : entry.unit, range.lower, range.upper, entry.source);
-    EXPECT_NE(manual.str().find(row), std::string::npos) << row;
   }
 }
 

@@ -1,4 +1,4 @@
-// Promise: how far a curve is from a reference is what docs/understand/method.md says, exactly for lines.
+// Promise: how far a curve is from a reference is what docs/understand/theory.md says, exactly for lines.
 #include "pyroclast/results/reference_distances.hpp"
 
 #include <algorithm>

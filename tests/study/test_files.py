@@ -221,9 +221,8 @@ class Identity(StudyTest):
 
 
 class Reference(unittest.TestCase):
-    def test_the_page_is_what_the_code_says(self) -> None:
+    def test_the_reference_has_tables_methods_and_distributions(self) -> None:
         printed = subprocess.run([PROGRAM, "study", "keys"], capture_output=True, text=True, check=True).stdout
-        self.assertEqual((CASES.parent / "docs" / "lookup" / "study-reference.md").read_text(), printed)
         for word in ("`[study]`", "`seeds`", "`trajectories`", "`uniform`", "[parameters.", "[targets."):
             self.assertIn(word, printed)
 

@@ -23,9 +23,9 @@ from .study import Study
 
 _INTRODUCTION = """# Study reference
 
-Every table and key that a study file may hold. `pyroclast study keys` prints this page from the code that reads study
-files. [Studies](../do/studies.md) tells what they are for. A value with a dimension is written with its unit; a default
-of "–" means: the key may be left out, and nothing takes its place.
+Every table and key that a study file may hold, printed by the code that reads study files (`pyroclast study keys`).
+[Studies](../do/studies.md) tells what they are for. A value with a dimension is written with its unit; a default of "–"
+means: the key may be left out, and nothing takes its place.
 
 """
 _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave

@@ -17,7 +17,7 @@ namespace {
 
 constexpr auto kKeysIntroduction = R"(# Deck reference
 
-Every table and key that a deck may hold. `pyroclast keys` prints this page from the code that reads decks.
+Every table and key that a deck may hold, printed by the code that reads decks (`pyroclast keys`).
 [The deck](../understand/deck.md) and [Heat](../understand/heat.md) explain what needs more than a line.
 
 A value with a dimension is written with its unit, such as `"150 mm"`. Any unit of that dimension will do. The columns

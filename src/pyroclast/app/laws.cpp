@@ -11,9 +11,9 @@ namespace {
 
 constexpr auto kLawsIntroduction = R"(# Contact laws
 
-The laws that are part of the program. `pyroclast laws` prints this page from the laws themselves. A deck chooses one
+The laws that are part of the program, as they tell of themselves (`pyroclast laws`). A deck chooses one
 with `law = "name"` in a table of `[contacts]` ([Phases and interfaces](../understand/deck.md#phases-and-interfaces)).
-The [method](../understand/method.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
+The [method](../understand/theory.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
 one, and [What every contact law must hold](../develop/laws-verified.md) what each is tried for.
 
 - **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses.

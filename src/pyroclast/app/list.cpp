@@ -12,7 +12,10 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/exchange.hpp"
 #include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/gauges.hpp"
+#include "pyroclast/stages/drive.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast::app {
@@ -52,6 +55,13 @@ void print_fields() {
     fmt::print("{:<24} {:<8} {:<12} {}\n", field.name, field.unit.si, name_of(field.item), field.meaning);
 }
 
+void print_columns() {
+  std::vector<ColumnInfo> infos{{"stage", "1", "number of the stage, from 1; 0 is the body before its first stage"}};
+  for (const auto& more : {possible_gauge_columns(), Exchange::column_infos(), Drive::control_columns()})
+    infos.insert(infos.end(), more.begin(), more.end());
+  for (const ColumnInfo& info : infos) fmt::print("{:<26} {:<8} {}\n", info.name, info.unit, info.meaning);
+}
+
 void print_rocks() {
   for (const Rock& each : rocks()) {
     fmt::print("{}\n", each.name);
@@ -73,10 +83,15 @@ struct List {
 };
 
 constexpr List kLists[] = {
-    {"cases", print_cases},    {"curves", [] { print_curves(builtin_curves()); }},
-    {"fields", print_fields},  {"fires", [] { print_curves(fire_curves()); }},
-    {"keys", print_key_paths}, {"laws", print_law_names},
-    {"rocks", print_rocks},    {"units", print_units},
+    {"cases", print_cases},
+    {"columns", print_columns},
+    {"curves", [] { print_curves(builtin_curves()); }},
+    {"fields", print_fields},
+    {"fires", [] { print_curves(fire_curves()); }},
+    {"keys", print_key_paths},
+    {"laws", print_law_names},
+    {"rocks", print_rocks},
+    {"units", print_units},
 };
 
 }  // namespace

@@ -299,7 +299,7 @@ int command_line(int argc, char** argv) {
 
   std::string list_of;
   auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
-  list->add_option("WHAT", list_of, "cases, curves, fields, fires, keys, laws, rocks or units");
+  list->add_option("WHAT", list_of, "cases, columns, curves, fields, fires, keys, laws, rocks or units");
 
   auto* doctor =
       cli.add_subcommand("doctor", "Say what is there and what is missing; a report of a bug needs it");

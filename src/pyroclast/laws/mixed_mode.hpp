@@ -6,7 +6,7 @@
 namespace pyroclast {
 
 /// Contact law with one damage for tension and shear, friction that stays and dilatancy
-/// (docs/understand/method.md, "Mixed mode").
+/// (docs/understand/theory.md, "Mixed mode").
 ///
 /// A share of the contact is broken. The rest holds along secants to the origin, K_n S / (1 + q_n D) for
 /// tension and K_s S / (1 + q_s D) for shear. S(D) is the strength left, D the damage and q = u_f / u_0 - 1,
@@ -205,7 +205,7 @@ struct MixedMode {
   }
 
   /// Returns the bounds K_n and K_s. Slip that dilates lets pressure and shear raise each other, but makes no
-  /// mode of both stiffer (docs/understand/method.md, "Mixed mode").
+  /// mode of both stiffer (docs/understand/theory.md, "Mixed mode").
   template <class Real>
   static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
     return {c.normal_stiffness, c.shear_stiffness};

@@ -181,8 +181,8 @@ std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& u
 }
 
 std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& unit) const {
-  const std::string file = forms.text(
-      "csv", "file beside the deck with a [measured table](../understand/deck.md#measured-tables)");
+  const std::string file =
+      forms.text("csv", "file beside the deck with a [measured table](measured-tables.md)");
   const ColumnChoice choice = read_column_choice(forms, file, kCurveColumns, kCurveColumns);
   if (file.empty() || !forms.ok()) return std::nullopt;
   forms.names_file("csv", folder_ / file);

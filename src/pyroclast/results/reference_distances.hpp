@@ -15,7 +15,7 @@ struct PlainCurve {
   std::vector<double> x, y;
 };
 
-/// Distances of a curve from a reference; docs/understand/method.md has the formulas. Each is empty where it
+/// Distances of a curve from a reference; docs/understand/theory.md has the formulas. Each is empty where it
 /// cannot be computed.
 struct CurveDistances {
   std::optional<double> rms;  ///< root mean square over the common range, over the reference's greatest size

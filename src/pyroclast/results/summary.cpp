@@ -24,13 +24,13 @@ constexpr double kLargeJump = 1.0;
 /// Largest error of the energy ledger in a sound run, over the energy turned over.
 constexpr double kEnergyTolerance = 0.005;
 /// Largest error of the energy ledger in a sound run, over the energy that contacts dissipated, which may be
-/// little of the energy turned over: measured in docs/understand/method.md.
+/// little of the energy turned over: measured in docs/understand/theory.md.
 constexpr double kDissipationTolerance = 0.01;
 /// Share of the energy turned over below which an error is no more than rounding, whatever it is compared
 /// with.
 constexpr double kRounding = 1e-6;
 /// Largest stress that an exchange of temperatures may bring at once, over the tensile strength: measured in
-/// docs/understand/method.md.
+/// docs/understand/theory.md.
 constexpr double kExchangeStress = 1.0;
 /// Error of the energy ledger, over the energy turned over, above which a run has no results: energy came
 /// from nowhere, or a body flew off.

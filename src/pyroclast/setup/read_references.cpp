@@ -275,10 +275,10 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
         s.choice<Builtin>("builtin", builtins(), "a reference that the program has, in the place of a file"),
         drawn);
   Reference reference;
-  const std::string file = s.text(
-      "file",
-      "a [measured table](../understand/deck.md#measured-tables) beside the deck, in any units: the columns "
-      "of `over` and `of`, or of `over` and the least and greatest of `of`");
+  const std::string file =
+      s.text("file",
+             "a [measured table](measured-tables.md) beside the deck, in any units: the columns "
+             "of `over` and `of`, or of `over` and the least and greatest of `of`");
   const std::string of = s.text(
       "of", "what it is of: `stress`, `total_strain`, `temperature`, or the name of a [[record]] or a probe");
   const std::string over =
@@ -364,7 +364,7 @@ std::vector<Reference> read_references(const Section& output, const std::filesys
   const auto sections = output.optional_sections("references",
                                                  "curves that figures draw beside the results, any number; "
                                                  "see [References in figures]"
-                                                 "(../understand/deck.md#references-in-figures)");
+                                                 "(../do/references.md)");
   output.know({"reference"});
   if (sections.empty() && !output.has("reference")) return {};
   const std::vector<Drawn> drawn = with_abscissa(drawn_by_figures(setup));

@@ -59,8 +59,7 @@ struct NamedTable {
 /// \param asked  columns asked for; the last of them may be missing in the file, down to `least`
 std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
                                            std::span<const AskedColumn> asked, std::size_t least) {
-  const std::string file =
-      s.text("csv", "[measured table](../understand/deck.md#measured-tables) beside the deck");
+  const std::string file = s.text("csv", "[measured table](measured-tables.md) beside the deck");
   const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
   if (!s.ok() || !s.has("csv")) return std::nullopt;
   try {
@@ -133,7 +132,7 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
       {{"area", By::area, "shares are of the area of the circles"},
        {"volume", By::volume,
         "shares are of the volume of the stones, or their mass: circles are what a plane cuts from spheres, "
-        "see [Specimen](../understand/method.md#specimen); in a solid they are those of the balls"}},
+        "see [Specimen](../understand/theory.md#specimen); in a solid they are those of the balls"}},
       "what the shares of `passing` are of");
   if (space.is_solid() && s.ok() && by == By::area)
     s.error("passing_by", "shares of areas are those of a section; a solid takes passing_by = \"volume\"");

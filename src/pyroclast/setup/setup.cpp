@@ -317,7 +317,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
       read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
   setup.moving->mechanics = read_mechanics(
-      root.section("mechanics", "how the body moves; see [Motion](../understand/method.md#motion)"), space);
+      root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 

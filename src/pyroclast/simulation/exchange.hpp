@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pyroclast/simulation/column_info.hpp"
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/stage.hpp"
 
@@ -65,8 +66,7 @@ class Exchange {
 
   bool ran_away() const { return kept_.ran_away; }
 
-  /// Returns the columns `exchange`, counted over the run from 1; `cycles` in steps; `converged`, 1 where the
-  /// body came to rest.
+  static std::vector<ColumnInfo> column_infos();
   static std::vector<Column> columns();
   std::vector<double> values() const;
   /// Returns the steps that one exchange will probably take.

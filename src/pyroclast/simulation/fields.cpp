@@ -142,7 +142,7 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      "of a zone, with the thermal strain and what it has crept"},
     {"creep_strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, creeps,
      [](R& r, int i, double* to) { put(to, creep_of(r, i)); },
-     "what a zone has crept under load, see [Creep under load](../understand/method.md#creep-under-load); "
+     "what a zone has crept under load, see [Creep under load](../understand/theory.md#creep-under-load); "
      "only where "
      "a phase creeps. ZZ acts on nothing"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,

@@ -17,6 +17,7 @@ template <class Measured>
 struct ColumnOf {
   const char* name;
   const char* unit;
+  const char* meaning;
   double (*value)(const Measured&);
 };
 
@@ -39,27 +40,36 @@ constexpr double kMega = 1e-6;
 
 using M = Motion;
 constexpr auto kClock = std::to_array<ColumnOf<M>>({
-    {"step", "1", [](const M& m) { return static_cast<double>(m.steps()); }},
-    {"time_s", "s", [](const M& m) { return m.time(); }},
+    {"step", "1", "steps of the mechanics since the start",
+     [](const M& m) { return static_cast<double>(m.steps()); }},
+    {"time_s", "s", "time of the mechanics since the start", [](const M& m) { return m.time(); }},
 });
 
 using S = Simulation;
 constexpr auto kTemperature = std::to_array<ColumnOf<S>>({
-    {"heating_time_s", "s", [](const S& s) { return s.heating_time(); }},
-    {"temperature_degC", "degC", [](const S& s) { return s.field().mean(); }},
-    {"temperature_min_degC", "degC", [](const S& s) { return s.field().minimum(); }},
-    {"temperature_max_degC", "degC", [](const S& s) { return s.field().maximum(); }},
+    {"heating_time_s", "s", "time since heating began", [](const S& s) { return s.heating_time(); }},
+    {"temperature_degC", "degC", "mean temperature over the volume",
+     [](const S& s) { return s.field().mean(); }},
+    {"temperature_min_degC", "degC", "lowest temperature", [](const S& s) { return s.field().minimum(); }},
+    {"temperature_max_degC", "degC", "highest temperature", [](const S& s) { return s.field().maximum(); }},
 });
 
 using P = Press;
 constexpr auto kPress = std::to_array<ColumnOf<P>>({
-    {"strain", "1", [](const P& p) { return p.strain(); }},
-    {"stage_strain", "1", [](const P& p) { return p.stage_strain(); }},
-    {"specimen_strain", "1", [](const P& p) { return p.specimen_strain(); }},
-    {"stress_MPa", "MPa", [](const P& p) { return p.stress() * kMega; }},
-    {"stress_top_MPa", "MPa", [](const P& p) { return p.stress_top() * kMega; }},
-    {"stress_bottom_MPa", "MPa", [](const P& p) { return p.stress_bottom() * kMega; }},
-    {"lateral_strain", "1", [](const P& p) { return p.lateral_strain(); }},
+    {"strain", "1",
+     "approach of the platens' inner faces over the height, since the body came to rest; shortening counts "
+     "as positive",
+     [](const P& p) { return p.strain(); }},
+    {"stage_strain", "1", "the same since the stage began", [](const P& p) { return p.stage_strain(); }},
+    {"specimen_strain", "1", "approach of the specimen's own ends over its height",
+     [](const P& p) { return p.specimen_strain(); }},
+    {"stress_MPa", "MPa", "mean reaction of both platens over the area; compression counts as positive",
+     [](const P& p) { return p.stress() * kMega; }},
+    {"stress_top_MPa", "MPa", "reaction of the upper platen over the area",
+     [](const P& p) { return p.stress_top() * kMega; }},
+    {"stress_bottom_MPa", "MPa", "reaction of the lower platen over the area",
+     [](const P& p) { return p.stress_bottom() * kMega; }},
+    {"lateral_strain", "1", "mean widening over the width", [](const P& p) { return p.lateral_strain(); }},
 });
 
 /// Measurements of the whole body's motion.
@@ -74,9 +84,13 @@ MotionReading measure_motion(const Motion& motion) {
 }
 
 constexpr auto kMotion = std::to_array<ColumnOf<MotionReading>>({
-    {"unbalanced_ratio", "1", [](const MotionReading& m) { return m.unbalanced_ratio; }},
-    {"kinetic_over_strain", "1", [](const MotionReading& m) { return m.energy.kinetic_over_elastic(); }},
-    {"largest_jump", "1", [](const MotionReading& m) { return m.largest_jump; }},
+    {"unbalanced_ratio", "1",
+     "unbalanced forces over all forces on gridpoints; small where the body is at rest",
+     [](const MotionReading& m) { return m.unbalanced_ratio; }},
+    {"kinetic_over_strain", "1", "kinetic over elastic energy",
+     [](const MotionReading& m) { return m.energy.kinetic_over_elastic(); }},
+    {"largest_jump", "1", "largest jump over the length of its edge; in space over the mean block size",
+     [](const MotionReading& m) { return m.largest_jump; }},
 });
 
 /// Makes a gauge of the hottest gas that heat flows from or to.
@@ -199,6 +213,32 @@ const Motion& motion_of(const Simulation& simulation) {
   return simulation.motion();
 }
 
+template <class Measured, std::size_t N>
+void add_infos(std::vector<ColumnInfo>& to, const std::array<ColumnOf<Measured>, N>& table) {
+  for (const auto& column : table) to.push_back({column.name, column.unit, column.meaning});
+}
+
+/// Adds the columns of a ledger, with the side on which each entry stands.
+template <class Ledger, std::size_t N>
+void add_infos(std::vector<ColumnInfo>& to, const std::array<LedgerEntry<Ledger>, N>& ledger,
+               const char* what) {
+  const auto side = [](LedgerSide of) {
+    switch (of) {
+      case LedgerSide::put_in:
+        return "put in, ";
+      case LedgerSide::held:
+        return "held, ";
+      case LedgerSide::lost:
+        return "lost, ";
+      case LedgerSide::error:
+        return "error, ";
+    }
+    return "";
+  };
+  for (const auto& entry : ledger)
+    to.push_back({entry.column, "J", fmt::format("{} {}{}", what, side(entry.side), entry.meaning)});
+}
+
 }  // namespace
 
 Column extent_column(const Model& model) {
@@ -251,6 +291,31 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
     return values;
   };
   return {std::move(gauge)};
+}
+
+std::vector<ColumnInfo> possible_gauge_columns() {
+  std::vector<ColumnInfo> infos;
+  add_infos(infos, kClock);
+  add_infos(infos, kTemperature);
+  add_infos(infos, kPress);
+  add_infos(infos, kMotion);
+  add_infos(infos, kEnergies, "energy");
+  infos.push_back({"dissipated_NAME_J", "J", "energy lost by one part of a contact law, or by creep"});
+  const std::string crack = "MODE_INTERFACE_";
+  infos.push_back(
+      {crack + "damaged", "1", "contact points of the interface whose damage by the mode is above 0"});
+  infos.push_back({crack + "broken", "1", "contact points of the interface whose damage by the mode is 1"});
+  infos.push_back({crack + "length_m", "m", "length of the broken contacts, in the plane"});
+  infos.push_back({crack + "area_m2", "m2", "area of the broken contacts, of a solid"});
+  infos.push_back({"mean_opening_m", "m", "mean opening of the broken contacts"});
+  infos.push_back({"NAME_UNIT", "its own", "a [[record]] of the deck"});
+  infos.push_back({"rate_K_s", "K/s", "root of the mean square of the temperature's rate over the volume"});
+  add_infos(infos, kHeats, "heat");
+  infos.push_back(
+      {"heat_gap_length_m", "m", "length of the contacts whose sides have temperatures of their own"});
+  infos.push_back({"heat_gap_area_m2", "m2", "the same of a solid: their area"});
+  infos.push_back({"probe_NAME_degC", "degC", "temperature at a [[probes]] of the deck"});
+  return infos;
 }
 
 }  // namespace pyroclast

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "pyroclast/simulation/column_info.hpp"
 #include "pyroclast/simulation/history.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
@@ -31,5 +32,7 @@ std::vector<Gauge> record_gauges(const Simulation& simulation);
 std::vector<Gauge> transport_gauges(const Simulation& simulation);
 /// Returns gauges of the temperatures at the probes.
 std::vector<Gauge> probe_gauges(const Simulation& simulation);
+/// Returns all columns that these gauges may have.
+std::vector<ColumnInfo> possible_gauge_columns();
 
 }  // namespace pyroclast

@@ -41,7 +41,7 @@ VelocityControl read_velocity_control(const Section& s, const Compress::Keys& ke
   VelocityControl c;
   c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive(),
                          "highest velocity; with it the stage [chooses the velocity "
-                         "itself](../understand/deck.md#a-controlled-velocity)");
+                         "itself](../do/speed.md)");
   if (s.ok() && c.fastest < keys.velocity) s.error("fastest_velocity", "must not be less than velocity");
   if (s.ok() && keys.ramp_time == 0.0)
     s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");

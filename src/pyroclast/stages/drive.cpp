@@ -202,7 +202,7 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
     case Drive::Until::Kind::share_of_peak:
       u.value = s.number(
           "share_of_peak", Range::inside(0.0, 1.0),
-          "the stage ends when the record's size has passed its [peak](../understand/method.md#peaks), and "
+          "the stage ends when the record's size has passed its [peak](../understand/theory.md#peaks), and "
           "fallen below this share of it");
       if (s.has("least_peak"))
         u.least_peak = s.quantity(
@@ -945,7 +945,14 @@ Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
 
 std::vector<Column> Drive::columns() const {
   if (!keys_.control) return {};
-  return {{"load_factor", "1"}, {"control_force_N", "N"}};
+  std::vector<Column> columns;
+  for (const ColumnInfo& info : control_columns()) columns.push_back({info.name, info.unit});
+  return columns;
+}
+
+std::vector<ColumnInfo> Drive::control_columns() {
+  return {{"load_factor", "1", "share of the drives' loads that a [stages.control] lets act"},
+          {"control_force_N", "N", "force of the pair that makes the controlled opening grow"}};
 }
 
 std::vector<double> Drive::values() const {

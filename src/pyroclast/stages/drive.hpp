@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pyroclast/material/curve.hpp"
+#include "pyroclast/simulation/column_info.hpp"
 #include "pyroclast/simulation/loads.hpp"
 #include "pyroclast/stages/record_results.hpp"
 #include "pyroclast/stages/registry.hpp"
@@ -82,6 +83,8 @@ class Drive : public Stage {
   StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
   Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const override;
   std::vector<Column> columns() const override;
+  /// Returns the columns of a drive with a control.
+  static std::vector<ColumnInfo> control_columns();
   std::vector<double> values() const override;
   void visit_state(StateVisitor& visitor) override;
 

@@ -7,7 +7,7 @@
 
 namespace pyroclast {
 
-/// Rule that tells a peak, see docs/understand/method.md "Peaks" and docs/validation/peaks.md.
+/// Rule that tells a peak, see docs/understand/theory.md "Peaks" and docs/validation/peaks.md.
 struct PeakRule {
   double fall = 0.02;  ///< share of the peak by which the size must fall below it
   /// Distance by which the body must be driven farther before the size comes back to the peak.

@@ -53,7 +53,7 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
   r.kind = s.choice<Kind>(
       "kind",
       {{"given", Kind::given, "a quantity that is stated, for formulas"},
-       {"peak", Kind::peak, "value of a record at the [peak](../understand/method.md#peaks) of its size"},
+       {"peak", Kind::peak, "value of a record at the [peak](../understand/theory.md#peaks) of its size"},
        {"largest", Kind::largest, "value of a record where its size is largest, peak or not"},
        {"last", Kind::last, "value of a record at the end of the stage"},
        {"at_peak", Kind::at_peak, "value of a record at the peak of another"},

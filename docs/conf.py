@@ -1,0 +1,91 @@
+"""Sphinx's settings; scripts/docs calls it. No page makes a request to another host."""
+
+import re
+
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.application import Sphinx
+from sphinx.writers.html import HTMLTranslator
+
+project = "Pyroclast"
+author = "the Pyroclast authors"
+copyright = author  # pylint: disable=redefined-builtin
+extensions = ["myst_parser", "sphinx_copybutton", "sphinxcontrib.bibtex", "sphinx.ext.autodoc"]
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+myst_dmath_allow_digits = False
+bibtex_bibfiles = ["references.bib"]
+bibtex_reference_style = "author_year"
+bibtex_default_style = "unsrt"
+exclude_patterns = ["lookup/printed"]
+html_theme = "furo"
+html_title = "Pyroclast"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False
+html_math_renderer = "mathml"
+copybutton_exclude = ".linenos, .gp, .go"
+suppress_warnings = ["myst.header"]  # a table's page begins with the table
+default_role = "code"
+nitpick_ignore_regex = [(r"py:.*", r".*")]  # types of signatures, such as np.ndarray: no inventory is fetched
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_default_options = {"members": True, "special-members": "__getitem__, __setitem__, __delitem__, __contains__"}
+latex_documents = [("understand/theory", "theory.tex", "Pyroclast: theory manual", author, "howto")]
+latex_elements = {"papersize": "a4paper", "pointsize": "10pt", "figure_align": "H"}
+latex_show_urls = "no"
+
+_TAG = re.compile(r"\s*\\tag\{([^}]*)\}")
+_PARAMETER = re.compile(r"^((?:\w+, )*\w+): ")
+
+
+def _mathml(self: HTMLTranslator, node: nodes.Element) -> None:
+    self.body.append(tex2mathml(node.astext(), inline=True))
+    raise nodes.SkipNode
+
+
+def _mathml_block(self: HTMLTranslator, node: nodes.Element) -> None:
+    """An equation with its number, the paper's or its source, at the right."""
+    text = node.astext()
+    number = _TAG.search(text)
+    self.body.append(self.starttag(node, "div", CLASS="equation"))
+    self.body.append(tex2mathml(_TAG.sub("", text).strip(), inline=False))
+    if number:
+        self.body.append(f'<span class="number">({number[1]})</span>')
+    self.body.append("</div>\n")
+    raise nodes.SkipNode
+
+
+def _keep_number(app: Sphinx, tree: nodes.document) -> None:
+    """LaTeX takes a stated number only in an environment of its own."""
+    if app.builder.format == "latex":
+        for node in tree.findall(nodes.math_block):
+            if _TAG.search(node.astext()):
+                node["nowrap"] = True
+                node[:] = [nodes.Text(f"\\begin{{equation*}}{node.astext().strip()}\\end{{equation*}}")]
+
+
+def _list_parameters(app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]) -> None:
+    """Lines of a docstring that begin with "width: " tell what a parameter means; they become a list."""
+    told, in_list = [], False
+    for i, line in enumerate(lines):
+        if line.endswith(":") and "".join(lines[i + 1 : i + 2]) == "" and "".join(lines[i + 2 : i + 3]).startswith("    "):
+            line += ":"  # code follows
+        if found := _PARAMETER.match(line):
+            names = ", ".join(f"``{each}``" for each in found[1].split(", "))
+            told += ([] if in_list or not told or not told[-1] else [""]) + [f"- {names}: {line[found.end():]}"]
+            in_list = True
+        elif in_list and line.strip() and not line.startswith("    "):
+            told.append(f"  {line}")
+        else:
+            told.append(line)
+            in_list = in_list and bool(line.strip())
+    lines[:] = told
+
+
+def setup(app: Sphinx) -> None:
+    app.add_html_math_renderer("mathml", (_mathml, None), (_mathml_block, None))
+    app.connect("doctree-read", _keep_number)
+    app.connect("autodoc-process-docstring", _list_parameters)
