@@ -1,5 +1,8 @@
 """Sphinx's settings; scripts/docs calls it. No page makes a request to another host."""
 
+from __future__ import annotations
+
+import pathlib
 import re
 
 from docutils import nodes
@@ -33,10 +36,14 @@ nitpick_ignore_regex = [(r"py:.*", r".*")]  # types of signatures, such as np.nd
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_default_options = {"members": True, "special-members": "__getitem__, __setitem__, __delitem__, __contains__"}
+latex_engine = "xelatex"  # letters such as λ stand in the text
 latex_documents = [("understand/theory", "theory.tex", "Pyroclast: theory manual", author, "howto")]
 latex_elements = {"papersize": "a4paper", "pointsize": "10pt", "figure_align": "H"}
 latex_show_urls = "no"
 
+_IMPORT = "@import url(/javascript/normalize.css/normalize.css);"
+_NORMALIZE = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css")
+_DARK = re.compile(r'body\[data-theme="dark"\] (\{[^{}]*--color[^{}]*\})')
 _TAG = re.compile(r"\s*\\tag\{([^}]*)\}")
 _PARAMETER = re.compile(r"^((?:\w+, )*\w+): ")
 
@@ -58,7 +65,7 @@ def _mathml_block(self: HTMLTranslator, node: nodes.Element) -> None:
     raise nodes.SkipNode
 
 
-def _keep_number(app: Sphinx, tree: nodes.document) -> None:
+def _keep_number(app: Sphinx, tree: nodes.document, name: str) -> None:
     """LaTeX takes a stated number only in an environment of its own."""
     if app.builder.format == "latex":
         for node in tree.findall(nodes.math_block):
@@ -71,7 +78,7 @@ def _list_parameters(app: Sphinx, what: str, name: str, of: object, options: obj
     """Lines of a docstring that begin with "width: " tell what a parameter means; they become a list."""
     told, in_list = [], False
     for i, line in enumerate(lines):
-        if line.endswith(":") and "".join(lines[i + 1 : i + 2]) == "" and "".join(lines[i + 2 : i + 3]).startswith("    "):
+        if line.endswith(":") and "\n".join(lines[i + 1 : i + 3]).startswith("\n    "):
             line += ":"  # code follows
         if found := _PARAMETER.match(line):
             names = ", ".join(f"``{each}``" for each in found[1].split(", "))
@@ -85,7 +92,21 @@ def _list_parameters(app: Sphinx, what: str, name: str, of: object, options: obj
     lines[:] = told
 
 
+def _complete_theme(app: Sphinx, error: Exception | None) -> None:
+    """Debian 12's furo fetches one style from the root of the host, and does not follow the dark mode of the system."""
+    style = pathlib.Path(app.outdir) / "_static" / "styles" / "furo.css"
+    if error or app.builder.format != "html":
+        return
+    text = style.read_text("utf-8")
+    if _IMPORT in text:
+        text = text.replace(_IMPORT, _NORMALIZE.read_text("utf-8"))
+    if "prefers-color-scheme" not in text and (dark := _DARK.search(text)):
+        text += f'\n@media (prefers-color-scheme: dark) {{ body:not([data-theme="light"]) {dark[1]} }}\n'
+    style.write_text(text, "utf-8")
+
+
 def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml_block, None))
-    app.connect("doctree-read", _keep_number)
+    app.connect("doctree-resolved", _keep_number)
+    app.connect("build-finished", _complete_theme)
     app.connect("autodoc-process-docstring", _list_parameters)

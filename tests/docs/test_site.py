@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlsplit
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEEDED = ("sphinx", "myst_parser", "furo", "sphinx_copybutton", "sphinxcontrib.bibtex")
 MISSING = [name for name in NEEDED if importlib.util.find_spec(name.split(".")[0]) is None]
-_FETCHED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src", "embed": "src",
+_FETCHED = {**dict.fromkeys(("script", "img", "iframe", "source", "video", "audio", "embed"), "src"),
             "object": "data", "link": "href"}
 _LINKED = {"canonical", "index", "search", "next", "prev", "license", "author", "help", "up"}  # of <link>: not fetched
 _CSS = re.compile(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)")
@@ -51,7 +51,8 @@ class Site(unittest.TestCase):
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
         cls.addClassCleanup(folder.cleanup)
-        cls.done = subprocess.run([ROOT / "scripts" / "docs", "--out", folder.name], capture_output=True, text=True, check=False)
+        cls.done = subprocess.run([ROOT / "scripts" / "docs", "--out", folder.name], capture_output=True, text=True,
+                                  check=False)
         cls.html = pathlib.Path(folder.name) / "html"
         cls.pages = {path.resolve(): Page(path.read_text("utf-8")) for path in cls.html.rglob("*.html")}
 
@@ -66,6 +67,8 @@ class Site(unittest.TestCase):
         for path in self.html.rglob("*.css"):
             targets = [a or b for a, b in _CSS.findall(path.read_text("utf-8"))]
             self.assertEqual([target for target in targets if is_elsewhere(target)], [], path.name)
+            for target in targets:
+                self.assertTrue(target.startswith("data:") or (path.parent / urlsplit(target).path).exists(), target)
 
     def test_no_link_within_the_site_is_dead(self):
         for path, page in self.pages.items():
@@ -86,9 +89,10 @@ class Site(unittest.TestCase):
         self.assertGreater(text.count("<math"), 60)
 
     def test_what_another_host_has_is_found(self):
-        page = Page('<link rel="stylesheet" href="https://a.b/c.css"><script src="//a.b/c.js"></script><img src="d.png">'
-                    '<a href="https://a.b">a</a>')
-        self.assertEqual([target for target in page.fetched if is_elsewhere(target)], ["https://a.b/c.css", "//a.b/c.js"])
+        page = Page('<link rel="stylesheet" href="https://a.b/c.css"><script src="//a.b/c.js"></script>'
+                    '<img src="d.png"><a href="https://a.b">a</a>')
+        elsewhere = [target for target in page.fetched if is_elsewhere(target)]
+        self.assertEqual(elsewhere, ["https://a.b/c.css", "//a.b/c.js"])
 
 
 if __name__ == "__main__":

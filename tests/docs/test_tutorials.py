@@ -20,7 +20,8 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 def pages() -> list[pathlib.Path]:
     """The tutorials, in the order of their list."""
-    return [LEARN / name for name in re.findall(r"^\| \d\. \[[^\]]*\]\(([\w-]+\.md)\)", (LEARN / "index.md").read_text(), re.MULTILINE)]
+    names = re.findall(r"^\| \d\. \[[^\]]*\]\(([\w-]+\.md)\)", (LEARN / "index.md").read_text(), re.MULTILINE)
+    return [LEARN / name for name in names]
 
 
 def has(printed: str, shown: str) -> bool:
