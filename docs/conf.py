@@ -49,7 +49,7 @@ _PARAMETER = re.compile(r"^((?:\w+, )*\w+): ")
 
 
 def _mathml(self: HTMLTranslator, node: nodes.Element) -> None:
-    self.body.append(tex2mathml(node.astext(), inline=True))
+    self.body.append(tex2mathml(node.astext()))
     raise nodes.SkipNode
 
 
@@ -58,7 +58,8 @@ def _mathml_block(self: HTMLTranslator, node: nodes.Element) -> None:
     text = node.astext()
     number = _TAG.search(text)
     self.body.append(self.starttag(node, "div", CLASS="equation"))
-    self.body.append(tex2mathml(_TAG.sub("", text).strip(), inline=False))
+    equation = tex2mathml(_TAG.sub("", text).strip())
+    self.body.append(equation.replace("<math", '<math display="block"', 1))
     if number:
         self.body.append(f'<span class="number">({number[1]})</span>')
     self.body.append("</div>\n")
