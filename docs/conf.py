@@ -31,6 +31,7 @@ html_show_sphinx = False
 html_math_renderer = "mathml"
 copybutton_exclude = ".linenos, .gp, .go"
 suppress_warnings = ["myst.header"]  # a table's page begins with the table
+smartquotes = False  # --set is no dash
 default_role = "code"
 nitpick_ignore_regex = [(r"py:.*", r".*")]  # types of signatures, such as np.ndarray: no inventory is fetched
 autodoc_member_order = "bysource"

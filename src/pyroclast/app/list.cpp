@@ -56,7 +56,8 @@ void print_fields() {
 }
 
 void print_columns() {
-  std::vector<ColumnInfo> infos{{"stage", "1", "number of the stage, from 1; 0 is the body before its first stage"}};
+  std::vector<ColumnInfo> infos{
+      {"stage", "1", "number of the stage, from 1; 0 is the body before its first stage"}};
   for (const auto& more : {possible_gauge_columns(), Exchange::column_infos(), Drive::control_columns()})
     infos.insert(infos.end(), more.begin(), more.end());
   for (const ColumnInfo& info : infos) fmt::print("{:<26} {:<8} {}\n", info.name, info.unit, info.meaning);
