@@ -10,7 +10,7 @@
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/model/solid_model.hpp"
-#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 
 namespace pyroclast::solid {
 namespace {

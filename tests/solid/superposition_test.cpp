@@ -7,7 +7,7 @@
 
 #include "bodies.hpp"
 #include "pyroclast/solid/laguerre.hpp"
-#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 
 namespace pyroclast::solid {
 namespace {

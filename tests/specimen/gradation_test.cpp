@@ -7,24 +7,15 @@
 
 #include "examples.hpp"
 #include "known.hpp"
+#include "pyroclast/specimen/grain.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-double circle_area(double d) {
-  return 0.25 * std::numbers::pi * d * d;
-}
-
-double total_area(const std::vector<double>& diameters) {
+double total_area(const std::vector<Aggregate>& grains) {
   double sum = 0;
-  for (const double d : diameters) sum += circle_area(d);
+  for (const Aggregate& grain : grains) sum += extent(grain);
   return sum;
-}
-
-std::vector<Aggregate> anywhere(const std::vector<double>& diameters) {
-  std::vector<Aggregate> result;
-  for (const double d : diameters) result.push_back({{}, d});
-  return result;
 }
 
 TEST(GradationVerification, FullerRunsFromNothingAtTheSmallestToAllAtTheLargest) {
@@ -43,7 +34,7 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
   for (int seed = 0; seed < 50; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const double specimen_area = 0.15 * 0.3;
-    EXPECT_NEAR(total_area(draw_diameters<2>(p, specimen_area, random)), p.fraction * specimen_area,
+    EXPECT_NEAR(total_area(draw_grains<2>(p, specimen_area, random)), p.fraction * specimen_area,
                 0.5 * circle_area(p.d_min) * (1 + 1e-9));
   }
 }
@@ -51,17 +42,17 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
 TEST(Gradation, DiametersDescendWithinTheRange) {
   const AggregateParameters p = paper_aggregates();
   Random random(1);
-  const std::vector<double> d = draw_diameters<2>(p, 1.0, random);
-  EXPECT_TRUE(std::is_sorted(d.begin(), d.end(), std::greater<>()));
-  EXPECT_LE(d.front(), p.d_max);
-  EXPECT_GE(d.back(), p.d_min);
+  const std::vector<Aggregate> grains = draw_grains<2>(p, 1.0, random);
+  EXPECT_TRUE(std::ranges::is_sorted(grains, std::greater<>(), &Aggregate::diameter));
+  EXPECT_LE(grains.front().diameter, p.d_max);
+  EXPECT_GE(grains.back().diameter, p.d_min);
 }
 
 TEST(Gradation, AtEverySieveTheCurveIsMetToOneAggregate) {
   const AggregateParameters p = paper_aggregates();
   Random random(3);
   const double specimen_area = 0.15 * 0.3;
-  const std::vector<Aggregate> aggregates = anywhere(draw_diameters<2>(p, specimen_area, random));
+  const std::vector<Aggregate> aggregates = (draw_grains<2>(p, specimen_area, random));
   for (const GradationPoint& point : gradation(p, aggregates, p.sieves)) {
     // An interval hands on less than its smallest aggregate; the total is off by half the smallest of all.
     const double slack = (circle_area(point.size) + circle_area(p.d_min)) / (p.fraction * specimen_area);
@@ -73,7 +64,7 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
   AggregateParameters p = paper_aggregates();
   p.sieves = {p.d_min, p.d_max};
   Random random(4);
-  const std::vector<Aggregate> aggregates = anywhere(draw_diameters<2>(p, 100.0, random));
+  const std::vector<Aggregate> aggregates = (draw_grains<2>(p, 100.0, random));
   std::vector<double> sizes;
   for (double d = p.d_min; d <= p.d_max; d += 1e-3) sizes.push_back(d);
   for (const GradationPoint& point : gradation(p, aggregates, sizes)) {

@@ -10,6 +10,8 @@
 
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/grain_fit.hpp"
 
 namespace pyroclast {
 
@@ -21,7 +23,7 @@ constexpr int kGradationPoints = 60;
 /// \param kind    number of the kind, from 0
 /// \param placed  stones of the kind, at least one
 template <int Dim>
-std::string gradation_rows(int kind, const std::vector<specimen::RoundStone<Dim>>& placed,
+std::string gradation_rows(int kind, const std::vector<specimen::Grain<Dim>>& placed,
                            const specimen::AggregateParameters& asked) {
   std::vector<double> sizes;
   for (int i = 0; i <= kGradationPoints; ++i)
@@ -44,12 +46,12 @@ std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::Speci
 }
 
 template <int Dim>
-std::string gradation_csv(const std::vector<specimen::RoundStone<Dim>>& stones,
+std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
                           const specimen::SpecimenParameters& asked) {
   std::string csv = "kind,d_m,asked_percent,placed_percent\n";
   const auto kinds = kinds_of(asked);
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
-    std::vector<specimen::RoundStone<Dim>> placed;
+    std::vector<specimen::Grain<Dim>> placed;
     std::ranges::copy_if(stones, std::back_inserter(placed),
                          [&](const auto& stone) { return stone.kind == kind; });
     if (!placed.empty()) csv += gradation_rows(kind, placed, *kinds[kind]);
@@ -57,9 +59,28 @@ std::string gradation_csv(const std::vector<specimen::RoundStone<Dim>>& stones,
   return csv;
 }
 
+std::string outlines_csv(const std::vector<specimen::Aggregate>& grains) {
+  std::string csv = "grain,x_m,y_m,phase\n";
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    for (const Vec<2>& corner : specimen::corners_of(grains[i]))
+      csv += fmt::format("{},{:.9g},{:.9g},{}\n", i, corner[0], corner[1], grains[i].phase);
+  return csv;
+}
+
+/// Returns the fit of each grain: how well its blocks have its shape.
+std::string grain_fit_csv(const specimen::Specimen& s) {
+  std::string csv = "diameter_m,area_m2,perimeter_m,blocks,area_of_blocks_m2,interface_m,deviation_m\n";
+  const auto fits = specimen::fits_of(s);
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    csv += fmt::format("{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g}\n", s.aggregates[i].diameter,
+                       fits[i].area, fits[i].perimeter, fits[i].blocks, fits[i].area_of_blocks,
+                       fits[i].interface, fits[i].deviation);
+  return csv;
+}
+
 /// Writes the stones as they were placed, and their gradation.
 template <int Dim>
-void write_stones(const std::filesystem::path& folder, const std::vector<specimen::RoundStone<Dim>>& stones,
+void write_stones(const std::filesystem::path& folder, const std::vector<specimen::Grain<Dim>>& stones,
                   const specimen::SpecimenParameters& asked) {
   std::string csv = Dim == 2 ? "x_m,y_m,diameter_m,phase\n" : "x_m,y_m,z_m,diameter_m,phase\n";
   for (const auto& stone : stones) {
@@ -67,6 +88,9 @@ void write_stones(const std::filesystem::path& folder, const std::vector<specime
     csv += fmt::format("{:.9g},{}\n", stone.diameter, stone.phase);
   }
   write_text_file(folder / "aggregates.csv", csv);
+  if constexpr (Dim == 2)
+    if (std::ranges::any_of(stones, [](const auto& stone) { return stone.shape != nullptr; }))
+      write_text_file(folder / "outlines.csv", outlines_csv(stones));
   if (!stones.empty()) write_text_file(folder / "gradation.csv", gradation_csv(stones, asked));
 }
 
@@ -97,6 +121,7 @@ void write_made(const std::filesystem::path& folder, const specimen::Specimen& s
   json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
   write_text_file(folder / "specimen.json", json.dump(2) + "\n");
   write_stones(folder, s.aggregates, asked);
+  if (!s.grain.empty() && !s.aggregates.empty()) write_text_file(folder / "grain_fit.csv", grain_fit_csv(s));
 }
 
 void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen& s,

@@ -17,7 +17,9 @@
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grading_curve.hpp"
+#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
+#include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/tables/measured_table.hpp"
 #include "pyroclast/tables/read_choice.hpp"
@@ -179,14 +181,18 @@ void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.sieves.push_back(a.d_max);
 }
 
+double area_of(const specimen::Stone& stone) {
+  return stone.shape ? stone.shape->extent() : specimen::circle_area(stone.diameter);
+}
+
 /// Sets the gradation to that of the stones, which are known.
 void set_gradation_of_stones(specimen::AggregateParameters& a) {
-  std::vector<double> sizes;
-  for (const specimen::Stone& stone : a.stones) sizes.push_back(stone.diameter);
-  std::ranges::sort(sizes);
+  std::vector<std::pair<double, double>> sizes;  // diameter and area
+  for (const specimen::Stone& stone : a.stones) sizes.emplace_back(stone.diameter, area_of(stone));
+  std::ranges::stable_sort(sizes, {}, &std::pair<double, double>::first);
   double passed = 0.0;
-  for (const double size : sizes) {
-    passed += specimen::circle_area(size);
+  for (const auto& [size, area] : sizes) {
+    passed += area;
     if (!a.sieves.empty() && a.sieves.back() == size) {
       a.passing.back() = passed;
       continue;
@@ -195,8 +201,35 @@ void set_gradation_of_stones(specimen::AggregateParameters& a) {
     a.passing.push_back(passed);
   }
   for (double& share : a.passing) share /= passed;
-  a.d_min = sizes.front();
-  a.d_max = sizes.back();
+  a.d_min = sizes.front().first;
+  a.d_max = sizes.back().first;
+}
+
+std::vector<std::string> read_phases(const Section& s, const specimen::AggregateParameters& a) {
+  auto phases = s.optional_texts("phases",
+                                 "names of the phases, by their numbers from 0; without them all stones "
+                                 "are of number 0, and of `phase`");
+  if (phases.empty()) phases = {a.phase};
+  return phases;
+}
+
+/// Returns the values of the columns, in SI units.
+std::vector<std::vector<double>> values_of(const NamedTable& read, std::span<const AskedColumn> asked) {
+  std::vector<std::vector<double>> values;
+  for (std::size_t i = 0; i < read.columns.size(); ++i)
+    values.push_back(read.table.values(read.columns[i], asked[i].unit));
+  return values;
+}
+
+/// Returns the name of the phase of a row; the column may be missing. Throws Error where its number has no
+/// name.
+std::string phase_in(const std::vector<std::string>& phases, const std::vector<std::vector<double>>& values,
+                     std::size_t column, std::size_t row, const std::string& place) {
+  const double phase = values.size() > column ? values[column][row] : 0.0;
+  if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
+    throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place, phase,
+                            phases.size() - 1));
+  return phases[static_cast<std::size_t>(phase)];
 }
 
 /// Reads stones that are known, from a table as a run writes it.
@@ -209,26 +242,17 @@ void read_stones(const Section& s, const std::filesystem::path& folder, specimen
   const std::array<AskedColumn, 4> asked{
       {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
   const auto read = read_named_table(own, folder, asked, kWithoutPhase);
-  auto phases = own.optional_texts("phases",
-                                   "names of the phases, by their numbers from 0; without them all stones "
-                                   "are of number 0, and of `phase`");
-  if (phases.empty()) phases = {a.phase};
+  const auto phases = read_phases(own, a);
   if (!read || !own.ok()) return;
   a.place = fmt::format("{}: {}", own.where("csv"), own.path());
   try {
-    std::vector<std::vector<double>> values;
-    for (std::size_t i = 0; i < read->columns.size(); ++i)
-      values.push_back(read->table.values(read->columns[i], asked[i].unit));
+    const std::vector<std::vector<double>> values = values_of(*read, asked);
     for (std::size_t row = 0; row < read->table.rows(); ++row) {
       const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
-      const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
       if (!(values[2][row] > 0.0)) throw Error(fmt::format("{}: the diameter must be greater than 0", place));
-      if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
-        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place,
-                                phase, phases.size() - 1));
       a.stones.push_back({{{values[0][row], values[1][row]}},
                           values[2][row],
-                          phases[static_cast<std::size_t>(phase)],
+                          phase_in(phases, values, kWithoutPhase, row, place),
                           place});
     }
   } catch (const Error& error) {
@@ -238,16 +262,107 @@ void read_stones(const Section& s, const std::filesystem::path& folder, specimen
   set_gradation_of_stones(a);
 }
 
+/// Reads outlines that are known: points of the outline of each grain, in turn.
+void read_outlines(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  constexpr std::size_t kWithoutPhase = 3;
+  const Section own =
+      s.section("outlines",
+                "outlines of all grains, in the place of a grading: `specimen/outlines.csv` of a "
+                "run, or a table of the number of the grain, x, y of a point of its outline, and "
+                "the number of a phase or none; points of a grain follow each other");
+  const std::array<AskedColumn, 4> asked{{{"grain", unit::dimensionless},
+                                          {"x", unit::length},
+                                          {"y", unit::length},
+                                          {"phase", unit::dimensionless}}};
+  const auto read = read_named_table(own, folder, asked, kWithoutPhase);
+  const auto phases = read_phases(own, a);
+  if (!read || !own.ok()) return;
+  a.place = fmt::format("{}: {}", own.where("csv"), own.path());
+  try {
+    const std::vector<std::vector<double>> values = values_of(*read, asked);
+    for (std::size_t row = 0, end = 0; row < read->table.rows(); row = end) {
+      const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
+      std::vector<Vec<2>> points;
+      for (end = row; end < read->table.rows() && values[0][end] == values[0][row]; ++end)
+        points.push_back({{values[1][end], values[2][end]}});
+      const std::string phase = phase_in(phases, values, kWithoutPhase, row, place);
+      try {
+        const auto [outline, centre] = specimen::outline_around(points);
+        a.stones.push_back({centre, outline->width(), phase, place, outline});
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", place, error.what()));
+      }
+    }
+  } catch (const Error& error) {
+    own.error("csv", error.what());
+    return;
+  }
+  set_gradation_of_stones(a);
+}
+
+/// Reads the least and the largest of numbers that are drawn.
+specimen::Spread spread_of(const Section& s, std::string_view key, const std::vector<double>& bounds) {
+  if (bounds.empty()) return {1.0, 1.0};
+  if (bounds.size() == 2 && bounds[0] <= bounds[1]) return {bounds[0], bounds[1]};
+  s.error(key, "must be two numbers, the least and the largest");
+  return {1.0, 1.0};
+}
+
+specimen::ShapeParameters read_shape(const Section& s, const DeckSpace& space) {
+  using specimen::GrainShape;
+  specimen::ShapeParameters p;
+  p.kind = s.choice<GrainShape>(
+      "kind",
+      {{"ellipse", GrainShape::ellipse, "an ellipse"},
+       {"polygon", GrainShape::polygon, "a convex polygon with corners at random on an ellipse"},
+       {"harmonics", GrainShape::harmonics,
+        "r = 1 + sum D_n cos(n angle + phase_n) with n from 3 to 12, drawn out to its elongation"}},
+      "shape of the grains; without this table they are circles, in a solid balls");
+  if (space.is_solid())
+    s.error("kind", "grains of a solid are balls: other shapes are for bodies of the plane");
+  p.elongation = spread_of(s, "elongation",
+                           s.numbers("elongation", Range::between(1.0, 5.0).usually(1.0, 2.5),
+                                     "least and largest length over width of the ellipse"));
+  const double turn = 2.0 * std::numbers::pi;
+  const auto angles =
+      s.optional_quantities("orientation", unit::angle, Range::between(-turn, turn),
+                            "least and largest angle of the length from the x axis; without it, "
+                            "all angles are as likely");
+  if (!angles.empty()) p.orientation = spread_of(s, "orientation", angles);
+  if (p.kind == GrainShape::polygon)
+    p.corners = spread_of(
+        s, "corners", s.numbers("corners", Range::between(3.0, 24.0), "least and largest number of corners"));
+  else
+    s.know({"corners"});
+  if (p.kind == GrainShape::harmonics) {
+    p.roughness = spread_of(
+        s, "roughness",
+        s.numbers("roughness", Range::between(0.0, 0.2).usually(0.0, 0.1), "least and largest D_3"));
+    p.decay =
+        s.number("decay", Range::between(1.0, 4.0), p.decay,
+                 "exponent by which D_n = D_3 (n / 3)^-decay falls; 5/3 was measured on sands (Barclay and "
+                 "Buckingham 2009)");
+  } else {
+    s.know({"roughness", "decay"});
+  }
+  return p;
+}
+
 specimen::AggregateParameters read_aggregates(const Section& s, const std::filesystem::path& folder,
                                               const DeckSpace& space) {
   specimen::AggregateParameters a;
   a.phase = s.text("phase", "aggregate", kPhase);
-  s.know({"stones", "fraction", "minimum_gap", "attempts", "passing", "passing_by", "d_min", "d_max",
-          "fuller_exponent", "sieves"});
+  s.know({"stones", "outlines", "shape", "fraction", "minimum_gap", "attempts", "passing", "passing_by",
+          "d_min", "d_max", "fuller_exponent", "sieves"});
   if (s.has("stones")) {
     if (space.is_solid())
       s.error("stones", "are circles of a plane; a solid cannot take stones from a list yet");
     read_stones(s, folder, a);
+    return a;
+  }
+  if (s.has("outlines")) {
+    if (space.is_solid()) s.error("outlines", "are lines in a plane; a solid cannot take them");
+    read_outlines(s, folder, a);
     return a;
   }
   a.fraction =
@@ -258,6 +373,9 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
     read_measured_grading(s, folder, space, a);
   else
     read_fuller_grading(s, a);
+  if (const auto shape = s.optional_section(
+          "shape", "shapes of the grains; their size is the sieve that they pass, their width"))
+    a.shape = read_shape(*shape, space);
   a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
                              "between two aggregates, and between an aggregate and the outline");
   a.attempts = read_attempts(s);
@@ -268,7 +386,7 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
 void set_fraction(double area_of_specimen, specimen::AggregateParameters& a) {
   if (a.stones.empty()) return;
   double area = 0.0;
-  for (const specimen::Stone& stone : a.stones) area += specimen::circle_area(stone.diameter);
+  for (const specimen::Stone& stone : a.stones) area += area_of(stone);
   a.fraction = area / area_of_specimen;
 }
 
@@ -1004,8 +1122,18 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
        {"fit", specimen::Superposition::fit,
         "the same with the fraction by which the blocks take the area of the circles; in a solid each ball "
         "has a block first"},
-       {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"}},
+       {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
+       {"follow", specimen::Superposition::follow,
+        "nothing is superposed: edges of blocks follow the surfaces of the grains, "
+        "see [bodies.md](bodies.md#grains)"}},
       "when a block is aggregate");
+  if (p.superposition == specimen::Superposition::follow) {
+    if (space.is_solid())
+      superposition.error(
+          "rule", "\"follow\" is for bodies of the plane: blocks of a solid cannot follow grains yet");
+    if (p.blocks.tessellation)
+      superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");
+  }
   if (p.superposition == specimen::Superposition::area)
     p.covered_fraction =
         superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "pyroclast/specimen/stone_grid.hpp"
+#include "pyroclast/specimen/grain_grid.hpp"
 
 namespace pyroclast::solid {
 
@@ -28,7 +28,7 @@ class SeedGrid {
 
  private:
   double distance_;
-  specimen::StoneGrid<3> grid_;
+  specimen::GrainGrid<3> grid_;
 };
 
 /// Returns the place of a point along Morton's curve (G. M. Morton, IBM, 1966): the bits of its coordinates,

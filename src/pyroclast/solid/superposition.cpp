@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/stone_grid.hpp"
+#include "pyroclast/specimen/grain_grid.hpp"
 
 namespace pyroclast::solid {
 
@@ -76,7 +76,7 @@ struct Cover {
 
 /// Returns the covers of all cells, cell by cell.
 std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const std::vector<Ball>& balls) {
-  const specimen::StoneGrid<3> grid(body.low(), body.high(), balls);
+  const specimen::GrainGrid<3> grid(body.low(), body.high(), balls);
   std::vector<Cover> covers;
   std::vector<int> nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
@@ -100,7 +100,7 @@ std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const st
 /// Returns the ball around the centroid of each cell.
 std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
                                     const std::vector<Ball>& balls) {
-  const specimen::StoneGrid<3> grid(body.low(), body.high(), balls);
+  const specimen::GrainGrid<3> grid(body.low(), body.high(), balls);
   std::vector<int> stone, nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     const Vec<3> centre = zone_cell(complex, cell).gridpoints.back();

@@ -7,7 +7,7 @@
 
 namespace pyroclast::solid {
 
-using Ball = specimen::RoundStone<3>;
+using Ball = specimen::Grain<3>;
 
 /// Returns the volume that a cell has in common with a ball, m³. Exact up to rounding.
 double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& centre, double radius);

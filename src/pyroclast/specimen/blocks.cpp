@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <ranges>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -9,10 +14,14 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/block_order.hpp"
+#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/grain_seeds.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
+#include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/topology.hpp"
+#include "pyroclast/specimen/united_cells.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -23,32 +32,160 @@ namespace {
 constexpr int most_rounds = 60;
 /// Number of places tried for a free seed before an Error says that there is none.
 constexpr int kAttempts = 100'000;
+/// Number of places tried before a free seed may come closer to the surface of a grain.
+constexpr int kAttemptsAtOneDistance = 2000;
+/// Steps of the search for the distance of seeds along grains.
+constexpr int kBisections = 14;
 
-/// Seeds of a region: first the seeds that its outline asks for, then the free ones.
+/// Least distance of a free seed from the surface of a grain, in spacings: at first, and where seeds find no
+/// place.
+constexpr double kClearOfGrains = 0.75, kLeastClear = 0.45;
+/// Area of a block beside the surface of a grain, over that of a free one.
+constexpr double kAreaBesideGrain = 0.72;
+/// Share of its area by which the block of a grain may be off, and rounds in which such blocks are corrected.
+constexpr double kOffInArea = 0.005;
+constexpr int kCorrections = 12;
+/// Exponent of a correction. By a half one grain alone would be right at once; grains at a narrow gap move
+/// edges twice as far.
+constexpr double kCorrection = 0.3;
+/// Rounds after which a correction that leaves blocks unfit is taken back.
+constexpr int kRoundsOfCorrection = 8;
+/// Round from which a seed beside a grain whose block is unfit gives way to a free one.
+constexpr int kGivesWay = 4;
+
+struct BlocksOfGrain {
+  int count = 0;
+  double area = 0.0;  ///< m²
+};
+
+/// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
+/// then the free ones.
 class SeedDraw {
  public:
-  SeedDraw(const BlockParameters& parameters, const Region& region, Random& random)
-      : region_(region),
+  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Aggregate> grains,
+           Random& random)
+      : parameters_(parameters),
+        region_(region),
+        grains_(grains),
         random_(random),
         spacing_(std::sqrt(region.area() / parameters.count)),
         outline_(region, spacing_) {
-    const auto needed = static_cast<int>(outline_.positions().size());
-    if (needed > parameters.count)
+    kept_ = outline_.positions().size();
+    if (static_cast<int>(kept_) > parameters.count)
       throw Error(fmt::format("{} blocks are too few for this outline: it takes {} by itself",
-                              parameters.count, needed));
+                              parameters.count, kept_));
     seeds.position = outline_.positions();
     seeds.radius = outline_.radii();
-    const double spread = parameters.radius_spread;
-    for (int i = needed; i < parameters.count; ++i) {
+    owner_.assign(kept_, -1);
+    if (!grains.empty()) {
+      ways_.resize(grains.size());
+      along_spacing_ = spacing_along();
+      add_along();
+    }
+    fill_up();
+  }
+
+  /// Draws the seeds of unfit blocks anew. A seed along a grain whose cell is empty, or stays unfit, gives
+  /// way. Where the outline asks for a seed, or a grain does, the free seed nearest to it is drawn anew
+  /// instead. A radius stays with its seed, or the cells of small radii would die out. \param unfit  seeds,
+  /// ascending
+  void redraw(const std::vector<int>& unfit, bool are_empty, int round) {
+    std::vector<std::size_t> numbers;
+    for (const int seed : unfit | std::views::reverse) {
+      const auto number = static_cast<std::size_t>(seed);
+      const bool is_of_grain = number >= outline_.positions().size() && number < kept_;
+      if (is_of_grain && (are_empty || round >= kGivesWay)) {
+        drop(number);
+        for (std::size_t& other : numbers) --other;
+      } else {
+        numbers.push_back(number);
+      }
+    }
+    for (const std::size_t number : numbers | std::views::reverse) redraw(number);
+    fill_up();
+  }
+
+  /// Follows grains whose blocks are too large or too small as larger or smaller ones, and small grains that
+  /// did not become one block by one seed. Tells whether there was one.
+  bool correct(const std::vector<BlocksOfGrain>& blocks) {
+    bool is_off = false;
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      const double share = blocks[i].area / extent(grains_[i]);
+      if (blocks[i].count > 1 && is_one_cell(static_cast<int>(i)) && !ways_[i].is_of_one_seed) {
+        ways_[i] = {1.0, true};
+        is_off = true;
+        continue;
+      }
+      if (std::abs(share - 1.0) < kOffInArea) continue;
+      is_off = true;
+      ways_[i].size *= std::clamp(std::pow(share, -kCorrection), 0.95, 1.05);
+    }
+    if (!is_off) return false;
+    const auto outline = static_cast<std::ptrdiff_t>(outline_.positions().size());
+    const auto first_free = static_cast<std::ptrdiff_t>(kept_);
+    seeds.position.erase(seeds.position.begin() + outline, seeds.position.begin() + first_free);
+    seeds.radius.erase(seeds.radius.begin() + outline, seeds.radius.begin() + first_free);
+    const Seeds free{{seeds.position.begin() + outline, seeds.position.end()},
+                     {seeds.radius.begin() + outline, seeds.radius.end()}};
+    seeds.position.resize(static_cast<std::size_t>(outline));
+    seeds.radius.resize(static_cast<std::size_t>(outline));
+    owner_.resize(static_cast<std::size_t>(outline));
+    kept_ = static_cast<std::size_t>(outline);
+    along_.emplace(grains_, ways_, region_, outline_, along_spacing_);
+    add_along();
+    const auto missing = static_cast<std::size_t>(std::max(0, parameters_.count - block_count()));
+    const auto count = static_cast<std::ptrdiff_t>(std::min(free.position.size(), missing));
+    seeds.position.insert(seeds.position.end(), free.position.begin(), free.position.begin() + count);
+    seeds.radius.insert(seeds.radius.end(), free.radius.begin(), free.radius.begin() + count);
+    fill_up();
+    return true;
+  }
+
+  std::size_t kept() const { return kept_; }
+
+  /// Returns the grain of each seed, index into the grains, -1: of none; empty where blocks do not follow
+  /// grains.
+  std::vector<int> owners(const std::vector<Vec<2>>& positions) const {
+    if (!along_) return {};
+    std::vector<int> result = owner_;
+    for (std::size_t i = kept_; i < positions.size(); ++i) result.push_back(along_->grain_at(positions[i]));
+    return result;
+  }
+
+  bool is_one_cell(int grain) const { return along_->is_one_cell(grain); }
+
+  Seeds seeds;
+
+ private:
+  /// Returns the number of blocks of the seeds: the cells of a small grain become one.
+  int block_count() const {
+    auto count = static_cast<int>(seeds.position.size());
+    if (!along_) return count;
+    std::vector<char> has_one(grains_.size(), 0);
+    for (const int grain : owner_)
+      if (grain >= 0 && along_->is_one_cell(grain) && std::exchange(has_one[grain], 1)) --count;
+    return count;
+  }
+
+  /// Adds free seeds up to the number of blocks asked for.
+  void fill_up() {
+    const double spread = parameters_.radius_spread;
+    for (int i = block_count(); i < parameters_.count; ++i) {
       seeds.position.push_back(free_position());
       seeds.radius.push_back(0.5 * spacing_ * random_.uniform(1.0 - spread, 1.0 + spread));
     }
   }
 
-  /// Draws the seed of an unfit block anew. Where the outline asks for this seed, draws the free seed nearest
-  /// to it. A radius stays with its seed, or the cells of small radii would die out.
+  void drop(std::size_t number) {
+    const auto at = static_cast<std::ptrdiff_t>(number);
+    seeds.position.erase(seeds.position.begin() + at);
+    seeds.radius.erase(seeds.radius.begin() + at);
+    owner_.erase(owner_.begin() + at);
+    --kept_;
+  }
+
   void redraw(std::size_t unfit) {
-    const std::size_t first = kept();
+    const std::size_t first = kept_;
     if (first == seeds.position.size()) return;
     if (unfit < first) {
       const Vec<2> at = seeds.position[unfit];
@@ -60,17 +197,50 @@ class SeedDraw {
     seeds.position[unfit] = free_position();
   }
 
-  std::size_t kept() const { return outline_.positions().size(); }
+  /// Finds the distance of seeds along surfaces with which all blocks are about as large, those beside a
+  /// surface and the free ones, m. Throws Error where there are not enough blocks.
+  double spacing_along() {
+    const double room = parameters_.count - static_cast<double>(outline_.positions().size());
+    const auto too_many = [&](double spacing) {
+      along_.emplace(grains_, ways_, region_, outline_, spacing);
+      double blocks = 0.0, area = region_.area();
+      std::vector<char> has_one(grains_.size(), 0);
+      for (const int grain : along_->owners()) {
+        const bool is_one_cell = grain >= 0 && along_->is_one_cell(grain);
+        if (is_one_cell && std::exchange(has_one[grain], 1)) continue;
+        ++blocks;
+        area -= is_one_cell ? extent(grains_[grain]) : kAreaBesideGrain * spacing * spacing;
+      }
+      return blocks + std::max(0.0, area / (spacing * spacing)) > room;
+    };
+    double low = 0.5 * spacing_, high = 3.0 * spacing_;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = std::sqrt(low * high);
+      (too_many(middle) ? low : high) = middle;
+    }
+    if (too_many(high))
+      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} grains: take more",
+                              parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
+                              grains_.size()));
+    return high;
+  }
 
-  Seeds seeds;
+  void add_along() {
+    seeds.position.insert(seeds.position.end(), along_->positions().begin(), along_->positions().end());
+    seeds.radius.insert(seeds.radius.end(), along_->radii().begin(), along_->radii().end());
+    owner_.insert(owner_.end(), along_->owners().begin(), along_->owners().end());
+    kept_ = seeds.position.size();
+  }
 
- private:
   Vec<2> free_position() {
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    double clear = kClearOfGrains;
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
       const Box& box = region_.box();
       const double x = random_.uniform(box.low[0], box.high[0]);
       const Vec<2> position{{x, random_.uniform(box.low[1], box.high[1])}};
-      if (region_.is_rectangle() || outline_.leave_room_at(position)) return position;
+      if (along_ && attempt % kAttemptsAtOneDistance == 0) clear = std::max(kLeastClear, clear - 0.05);
+      const bool is_free = region_.is_rectangle() || outline_.leave_room_at(position);
+      if (is_free && (!along_ || along_->leave_room_at(position, clear))) return position;
     }
     throw Error(
         fmt::format("no place for a seed was found in {} attempts: blocks of {:.3g} mm are too large for "
@@ -78,10 +248,17 @@ class SeedDraw {
                     kAttempts, 1e3 * spacing_));
   }
 
+  const BlockParameters& parameters_;
   const Region& region_;
+  std::span<const Aggregate> grains_;
   Random& random_;
   double spacing_;
   OutlineSeeds outline_;
+  double along_spacing_ = 0.0;  ///< distance of seeds along surfaces, m
+  std::vector<GrainSeeds::Way> ways_;
+  std::optional<GrainSeeds> along_;
+  std::vector<int> owner_;  ///< grain of each seed that is kept, -1: of none
+  std::size_t kept_ = 0;    ///< number of seeds that the outline and grains ask for
 };
 
 /// Returns the name of the side of the outline that is nearest to a point.
@@ -92,24 +269,69 @@ std::string side_near(const Region& region, const Vec<2>& point) {
   return region.sides()[nearest->side].name;
 }
 
-Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& region, Random& random,
-                            Team* team) {
-  SeedDraw draw(parameters, region, random);
+/// Makes one cell of the cells of each small grain, where it is convex. Cells keep their order by their first
+/// one. \param grain  grain of each cell; follows \param seed   seed of each cell; follows
+void unite_small_grains(const SeedDraw& draw, Tessellation& tessellation, std::vector<int>& grain,
+                        std::vector<int>& seed) {
+  std::map<int, std::vector<int>> small;
+  for (std::size_t c = 0; c < grain.size(); ++c)
+    if (grain[c] >= 0 && draw.is_one_cell(grain[c])) small[grain[c]].push_back(static_cast<int>(c));
+  std::vector<std::vector<int>> groups;
+  for (auto& [number, cells] : small) groups.push_back(std::move(cells));
+  const std::vector<int> before = unite(tessellation, groups);
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    grain[c] = grain[before[c]];
+    seed[c] = seed[before[c]];
+  }
+  grain.resize(before.size());
+  seed.resize(before.size());
+}
+
+std::vector<BlocksOfGrain> blocks_of_grains(const Blocks& blocks, std::size_t grains) {
+  std::vector<BlocksOfGrain> result(grains);
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < blocks.grain.size(); ++c) {
+    if (blocks.grain[c] < 0) continue;
+    corners(blocks.tessellation, c, polygon);
+    result[blocks.grain[c]].area += area(polygon);
+    ++result[blocks.grain[c]].count;
+  }
+  return result;
+}
+
+Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& region,
+                            std::span<const Aggregate> grains, Random& random, Team* team) {
+  SeedDraw draw(parameters, region, grains, random);
   Blocks blocks{};
+  std::optional<Blocks> fit;
+  int corrections = 0;
   while (true) {
     ++blocks.rounds;
     Seeds seeds = draw.seeds;
     for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, region, draw.kept(), team);
     LaguerreResult result = laguerre_tessellation(seeds, region, team);
     std::vector<int> unfit = std::move(result.broken);
-    if (unfit.empty()) {
+    const bool are_empty = !unfit.empty();
+    if (!are_empty) {
+      std::vector<int> seed(seeds.position.size());
+      std::iota(seed.begin(), seed.end(), 0);
+      blocks.grain = draw.owners(seeds.position);
+      if (!grains.empty()) unite_small_grains(draw, result.tessellation, blocks.grain, seed);
       Regularisation done = regularise(result.tessellation, region, parameters.shortest_edge);
       blocks.tessellation = std::move(result.tessellation);
       blocks.edges_removed = done.edges_removed;
       blocks.edges_left_short = done.edges_left_short;
-      unfit = std::move(done.unfit);
+      for (const int cell : done.unfit) unfit.push_back(seed[cell]);
+      std::ranges::sort(unfit);
     }
-    if (unfit.empty()) return blocks;
+    if (unfit.empty()) {
+      if (corrections == kCorrections || !draw.correct(blocks_of_grains(blocks, grains.size())))
+        return blocks;
+      ++corrections;
+      fit = blocks;
+      continue;
+    }
+    if (fit && blocks.rounds >= fit->rounds + kRoundsOfCorrection) return std::move(*fit);
     if (blocks.rounds == most_rounds) {
       if (!blocks.tessellation.cells.empty()) return blocks;
       const Vec<2> at = seeds.position[static_cast<std::size_t>(unfit.front())];
@@ -121,17 +343,18 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
           unfit.size(), at[0], at[1], side_near(region, at),
           parameters.radius_spread > 0.0 ? ", or blocks more alike (radius_spread)" : ""));
     }
-    for (const int i : unfit) draw.redraw(static_cast<std::size_t>(i));
+    draw.redraw(unfit, are_empty, blocks.rounds - (fit ? fit->rounds : 0));
     blocks.seeds_redrawn += static_cast<int>(unfit.size());
   }
 }
 
 }  // namespace
 
-Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team) {
+Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team,
+                   std::span<const Aggregate> grains) {
   Blocks blocks{};
   if (!parameters.tessellation) {
-    blocks = tessellate_until_fit(parameters, region, random, team);
+    blocks = tessellate_until_fit(parameters, region, grains, random, team);
     require_valid(blocks.tessellation, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
     blocks.tessellation = *parameters.tessellation;
@@ -139,8 +362,11 @@ Blocks make_blocks(const BlockParameters& parameters, const Region& region, Rand
     blocks.edges_removed = done.edges_removed;
     blocks.edges_left_short = done.edges_left_short;
   }
-  for (const std::size_t before : number_along_curve(blocks.tessellation, region.box()))
+  const std::vector<int> grain = std::exchange(blocks.grain, {});
+  for (const std::size_t before : number_along_curve(blocks.tessellation, region.box())) {
     if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
+    if (!grain.empty()) blocks.grain.push_back(grain[before]);
+  }
   return blocks;
 }
 

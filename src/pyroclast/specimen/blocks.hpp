@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pyroclast/base/random.hpp"
@@ -12,6 +13,9 @@ struct Blocks {
   Tessellation tessellation;
   /// Phase of each block, index into `BlockParameters::phases`; empty where not known.
   std::vector<int> phase;
+  /// Grain of which each block is, index into the grains, -1: of none; empty where blocks do not follow
+  /// grains.
+  std::vector<int> grain;
   int edges_removed, edges_left_short;
   int seeds_redrawn;
   int rounds;  ///< number of tessellations made
@@ -23,7 +27,8 @@ struct Blocks {
 /// `parameters.tessellation`. Throws Error when the blocks are not valid at the end; it names the side of the
 /// outline with invalid blocks.
 /// \param team  as for make_specimen
+/// \param grains  grains whose surfaces blocks follow
 Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
-                   Team* team = nullptr);
+                   Team* team = nullptr, std::span<const Aggregate> grains = {});
 
 }  // namespace pyroclast::specimen

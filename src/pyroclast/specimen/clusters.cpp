@@ -65,7 +65,7 @@ std::string skeleton(const Specimen& specimen) {
   if (cluster.share < kClearlyLarge) return {};
   double stone = 0.0;
   for (const Aggregate& circle : specimen.aggregates)
-    if (circle.phase == cluster.phase) stone = std::max(stone, circle_area(circle.diameter));
+    if (circle.phase == cluster.phase) stone = std::max(stone, extent(circle));
   if (stone == 0.0 || cluster.area < kFewStones * stone) return {};
   return fmt::format(
       "stones form a skeleton: {:.0f} % of the {} is one cluster of blocks "

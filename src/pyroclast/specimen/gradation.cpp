@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/outline.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -46,52 +48,79 @@ double passing(const AggregateParameters& parameters, double size) {
   return shares[next - 1] + part * (shares[next] - shares[next - 1]);
 }
 
+namespace {
+
+/// Returns a grain of width 1 of the shapes asked for.
 template <int Dim>
-std::vector<double> draw_diameters(const AggregateParameters& parameters, double specimen_extent,
-                                   Random& random) {
+Grain<Dim> draw_unit_grain(const ShapeParameters& parameters, Random& random) {
+  Grain<Dim> grain{{}, 1.0};
+  if constexpr (Dim == 2) grain.shape = draw_outline(parameters, random);
+  return grain;
+}
+
+/// Returns a grain at the origin, larger by a factor.
+template <int Dim>
+Grain<Dim> scaled(Grain<Dim> grain, double factor) {
+  grain.diameter *= factor;
+  if (grain.shape) grain.shape = grain.shape->scaled(factor);
+  return grain;
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<Grain<Dim>> draw_grains(const AggregateParameters& parameters, double specimen_extent,
+                                    Random& random) {
   const double total = parameters.fraction * specimen_extent;
   const std::vector<double>& sieves = parameters.sieves;
-  std::vector<double> diameters;
+  std::vector<Grain<Dim>> grains;
   double remaining = 0.0;
+  Grain<Dim> next = draw_unit_grain<Dim>(parameters.shape, random);
+  // extent of the next grain over that of a round one
+  const auto factor = [&] { return next.shape ? extent(next) / extent_of_round<Dim>(1.0) : 1.0; };
+  const auto take = [&](double diameter) {
+    grains.push_back(scaled(next, diameter));
+    remaining -= extent(grains.back());
+    next = draw_unit_grain<Dim>(parameters.shape, random);
+  };
   for (std::size_t i = sieves.size() - 1; i > 0; --i) {
     const double low = sieves[i - 1];
     const double share = passing(parameters, sieves[i]) - passing(parameters, low);
     if (share == 0.0) continue;  // a gap of the grading
     remaining += total * share;
-    while (remaining >= extent_of_round<Dim>(low)) {
-      const double high = std::min(sieves[i], diameter_of<Dim>(remaining));
-      diameters.push_back(draw_diameter<Dim>(low, high, parameters.fuller_exponent, random));
-      remaining -= extent_of_round<Dim>(diameters.back());
+    while (remaining >= factor() * extent_of_round<Dim>(low)) {
+      const double high = std::min(sieves[i], diameter_of<Dim>(remaining / factor()));
+      take(draw_diameter<Dim>(low, high, parameters.fuller_exponent, random));
     }
   }
-  if (remaining > 0.5 * extent_of_round<Dim>(parameters.d_min)) diameters.push_back(parameters.d_min);
-  std::sort(diameters.begin(), diameters.end(), std::greater<>());
-  return diameters;
+  if (remaining > 0.5 * factor() * extent_of_round<Dim>(parameters.d_min)) take(parameters.d_min);
+  std::ranges::stable_sort(grains, std::greater<>(), &Grain<Dim>::diameter);
+  return grains;
 }
 
-template std::vector<double> draw_diameters<2>(const AggregateParameters&, double, Random&);
-template std::vector<double> draw_diameters<3>(const AggregateParameters&, double, Random&);
+template std::vector<Grain<2>> draw_grains(const AggregateParameters&, double, Random&);
+template std::vector<Grain<3>> draw_grains(const AggregateParameters&, double, Random&);
 
 template <int Dim>
 std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
-                                      const std::vector<RoundStone<Dim>>& aggregates,
+                                      const std::vector<Grain<Dim>>& aggregates,
                                       std::span<const double> sizes) {
   if (aggregates.empty()) throw Error("No grading curve: the specimen has no aggregates.");
   double total = 0.0;
-  for (const auto& a : aggregates) total += extent_of_round<Dim>(a.diameter);
+  for (const auto& a : aggregates) total += extent(a);
   std::vector<GradationPoint> points;
   for (const double size : sizes) {
     double realised = 0.0;
     for (const auto& a : aggregates)
-      if (a.diameter <= size) realised += extent_of_round<Dim>(a.diameter);
+      if (a.diameter <= size) realised += extent(a);
     points.push_back({size, 100.0 * passing(parameters, size), 100.0 * realised / total});
   }
   return points;
 }
 
-template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<2>>&,
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Grain<2>>&,
                                                std::span<const double>);
-template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<3>>&,
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Grain<3>>&,
                                                std::span<const double>);
 
 }  // namespace pyroclast::specimen

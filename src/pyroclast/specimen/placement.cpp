@@ -9,7 +9,8 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/stone_grid.hpp"
+#include "pyroclast/specimen/grain_grid.hpp"
+#include "pyroclast/specimen/growth.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -19,51 +20,65 @@ namespace {
 template <int Dim>
 constexpr double kDensestPlacement = Dim == 2 ? 0.8 : 0.7;
 
-/// Finds a free place for a stone of this diameter; returns none when `attempts` centres are all taken.
+/// Finds a free place for a grain; tells whether there is one within `attempts` centres.
 template <int Dim>
-std::optional<RoundStone<Dim>> find_place(double diameter, const Room<Dim>& room, const StoneGrid<Dim>& grid,
-                                          const AggregateParameters& parameters, Random& random) {
-  const double margin = 0.5 * diameter + parameters.minimum_gap;
+bool find_place(Grain<Dim>& grain, const Room<Dim>& room, const GrainGrid<Dim>& grid,
+                const AggregateParameters& parameters, Random& random) {
+  const double inner = grain.shape ? grain.shape->inner_radius() : 0.5 * grain.diameter;
+  const double margin = inner + parameters.minimum_gap;
   for (int d = 0; d < Dim; ++d)
-    if (2.0 * margin > room.high[d] - room.low[d]) return std::nullopt;
+    if (2.0 * margin > room.high[d] - room.low[d]) return false;
   for (int attempt = 0; attempt < parameters.attempts; ++attempt) {
-    RoundStone<Dim> stone{{}, diameter};
     for (int d = 0; d < Dim; ++d)
-      stone.centre[d] = random.uniform(room.low[d] + margin, room.high[d] - margin);
-    if (room.distance && room.distance(stone.centre) > -margin) continue;
-    if (!grid.overlaps(stone, parameters.minimum_gap)) return stone;
+      grain.centre[d] = random.uniform(room.low[d] + margin, room.high[d] - margin);
+    if (room.distance && room.distance(grain.centre) > -margin) continue;
+    if (grain.shape && !lies_within(grain, room, parameters.minimum_gap)) continue;
+    if (!grid.overlaps(grain, parameters.minimum_gap)) return true;
   }
-  return std::nullopt;
+  return false;
 }
 
-/// Throws Error for stones that can never fit: with their gaps they would take more than any packing.
+/// Returns the extent of grains.
 template <int Dim>
-void require_feasible(std::span<const double> diameters, double specimen_extent,
+double extent_of(std::span<const Grain<Dim>> grains) {
+  double sum = 0.0;
+  for (const auto& grain : grains) sum += extent(grain);
+  return sum;
+}
+
+/// Throws Error for grains that can never fit: with their gaps they would take more than any packing.
+template <int Dim>
+void require_feasible(const std::vector<Grain<Dim>>& grains, double specimen_extent,
                       const AggregateParameters& parameters) {
-  double extent = 0.0;
-  for (const double d : diameters) extent += extent_of_round<Dim>(d + parameters.minimum_gap);
-  if (extent / specimen_extent < kDensestPlacement<Dim>) return;
+  double sum = 0.0;
+  for (const auto& grain : grains) {
+    const double larger = (grain.diameter + parameters.minimum_gap) / grain.diameter;
+    sum += grain.shape ? extent(grain) * larger * larger
+                       : extent_of_round<Dim>(grain.diameter + parameters.minimum_gap);
+  }
+  if (sum / specimen_extent < kDensestPlacement<Dim>) return;
   throw Error(fmt::format(
       "{}: the aggregates of a fraction of {:.4g} cannot fit: {} {} of {:.4g} to {:.4g} mm with gaps of "
       "{:.4g} mm between them "
       "would take {:.2f} of the specimen, and random placement fills {} at most; allow a lower fraction, a "
       "larger d_min, or a smaller minimum_gap",
-      parameters.place, parameters.fraction, diameters.size(), Dim == 2 ? "circles" : "balls",
-      1e3 * diameters.back(), 1e3 * diameters.front(), 1e3 * parameters.minimum_gap, extent / specimen_extent,
+      parameters.place, parameters.fraction, grains.size(),
+      grains.front().shape ? "grains" : (Dim == 2 ? "circles" : "balls"), 1e3 * grains.back().diameter,
+      1e3 * grains.front().diameter, 1e3 * parameters.minimum_gap, sum / specimen_extent,
       kDensestPlacement<Dim>));
 }
 
 template <int Dim>
-[[noreturn]] void throw_no_place(std::span<const double> diameters, std::size_t placed,
+[[noreturn]] void throw_no_place(const std::vector<Grain<Dim>>& grains, std::size_t placed,
                                  double specimen_extent, const AggregateParameters& parameters) {
-  double extent = 0.0;
-  for (std::size_t i = 0; i < placed; ++i) extent += extent_of_round<Dim>(diameters[i]);
   throw Error(fmt::format(
       "{}: the aggregates do not fit: after {} of {}, {} fraction of {:.3f} of the {:.3f} asked for, "
-      "one of {:.4g} mm found no place in {} attempts; allow a lower fraction, "
-      "a smaller minimum_gap than {:.4g} mm, or more attempts",
-      parameters.place, placed, diameters.size(), Dim == 2 ? "an area" : "a volume", extent / specimen_extent,
-      parameters.fraction, 1e3 * diameters[placed], parameters.attempts, 1e3 * parameters.minimum_gap));
+      "one of {:.4g} mm found no place in {} attempts, nor do all of them come apart while they grow; allow "
+      "a "
+      "lower fraction, a smaller minimum_gap than {:.4g} mm, or more attempts",
+      parameters.place, placed, grains.size(), Dim == 2 ? "an area" : "a volume",
+      extent_of(std::span(grains).first(placed)) / specimen_extent, parameters.fraction,
+      1e3 * grains[placed].diameter, parameters.attempts, 1e3 * parameters.minimum_gap));
 }
 
 }  // namespace
@@ -76,41 +91,62 @@ Room<2> room_in(const Region& region) {
 }
 
 template <int Dim>
-std::vector<RoundStone<Dim>> place(std::span<const double> diameters, const Room<Dim>& room,
-                                   const AggregateParameters& parameters,
-                                   const std::vector<RoundStone<Dim>>& standing, Random& random) {
-  require_feasible<Dim>(diameters, room.extent, parameters);
-  // Bins twice the smallest diameter: a small stone looks at few neighbours, a large one lists in few bins.
-  StoneGrid<Dim> grid(room.low, room.high, 2.0 * parameters.d_min);
-  for (const auto& stone : standing) grid.insert(stone);
-  for (std::size_t i = 0; i < diameters.size(); ++i) {
-    const auto stone = find_place(diameters[i], room, grid, parameters, random);
-    if (!stone) throw_no_place<Dim>(diameters, i, room.extent, parameters);
-    grid.insert(*stone);
+bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance) {
+  const auto is_within = [&](const Vec<Dim>& point, double least) {
+    for (int d = 0; d < Dim; ++d)
+      if (point[d] - least < room.low[d] || point[d] + least > room.high[d]) return false;
+    return !room.distance || room.distance(point) <= -least;
+  };
+  if (!grain.shape) return is_within(grain.centre, 0.5 * grain.diameter + distance);
+  if constexpr (Dim == 2)
+    return std::ranges::all_of(outline_points(grain),
+                               [&](const Vec<2>& point) { return is_within(point, distance); });
+  return false;
+}
+
+template bool lies_within(const Grain<2>&, const Room<2>&, double);
+template bool lies_within(const Grain<3>&, const Room<3>&, double);
+
+template <int Dim>
+std::vector<Grain<Dim>> place(const std::vector<Grain<Dim>>& grains, const Room<Dim>& room,
+                              const AggregateParameters& parameters, const std::vector<Grain<Dim>>& standing,
+                              Random& random) {
+  require_feasible<Dim>(grains, room.extent, parameters);
+  // Bins twice the smallest diameter: a small grain looks at few neighbours, a large one lists in few bins.
+  GrainGrid<Dim> grid(room.low, room.high, 2.0 * parameters.d_min);
+  for (const auto& grain : standing) grid.insert(grain);
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    Grain<Dim> grain = grains[i];
+    if (!find_place(grain, room, grid, parameters, random)) {
+      auto grown = grow(grains, room, parameters.minimum_gap, standing, random);
+      if (!grown) throw_no_place<Dim>(grains, i, room.extent, parameters);
+      return std::move(*grown);
+    }
+    grid.insert(grain);
   }
   return {grid.stones().begin() + static_cast<std::ptrdiff_t>(standing.size()), grid.stones().end()};
 }
 
-template std::vector<RoundStone<2>> place(std::span<const double>, const Room<2>&, const AggregateParameters&,
-                                          const std::vector<RoundStone<2>>&, Random&);
-template std::vector<RoundStone<3>> place(std::span<const double>, const Room<3>&, const AggregateParameters&,
-                                          const std::vector<RoundStone<3>>&, Random&);
+template std::vector<Grain<2>> place(const std::vector<Grain<2>>&, const Room<2>&, const AggregateParameters&,
+                                     const std::vector<Grain<2>>&, Random&);
+template std::vector<Grain<3>> place(const std::vector<Grain<3>>&, const Room<3>&, const AggregateParameters&,
+                                     const std::vector<Grain<3>>&, Random&);
 
 template <int Dim>
 void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
-                    Random& random, std::vector<RoundStone<Dim>>& standing) {
-  const auto diameters = draw_diameters<Dim>(parameters, room.extent, random);
-  for (RoundStone<Dim>& stone : place(diameters, room, parameters, standing, random)) {
-    stone.phase = phase;
-    stone.kind = kind;
-    standing.push_back(stone);
+                    Random& random, std::vector<Grain<Dim>>& standing) {
+  const auto grains = draw_grains<Dim>(parameters, room.extent, random);
+  for (Grain<Dim>& grain : place(grains, room, parameters, standing, random)) {
+    grain.phase = phase;
+    grain.kind = kind;
+    standing.push_back(grain);
   }
 }
 
 template void draw_and_place(const Room<2>&, const AggregateParameters&, int, int, Random&,
-                             std::vector<RoundStone<2>>&);
+                             std::vector<Grain<2>>&);
 template void draw_and_place(const Room<3>&, const AggregateParameters&, int, int, Random&,
-                             std::vector<RoundStone<3>>&);
+                             std::vector<Grain<3>>&);
 
 void require_placed(double placed, double asked, double d_min) {
   if (std::abs(placed - asked) > 0.01)
@@ -125,9 +161,8 @@ std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
   const auto fits = [&](const Fibre& fibre) {
     for (const Vec<2>& end : {fibre.from, fibre.to})
       if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
-    return std::ranges::none_of(standing, [&](const Aggregate& a) {
-      return distance_from_segment(a.centre, fibre.from, fibre.to) < 0.5 * a.diameter + p.minimum_gap;
-    });
+    return std::ranges::none_of(
+        standing, [&](const Aggregate& a) { return are_closer(a, fibre.from, fibre.to, p.minimum_gap); });
   };
   std::vector<Fibre> fibres;
   for (int i = 0; i < p.count; ++i) {

@@ -22,18 +22,23 @@ struct Room {
 /// aggregate.
 Room<2> room_in(const Region& region);
 
-/// Takes and places: puts a stone of each diameter (m, largest first) at a random centre in the room. There
-/// the stone keeps `minimum_gap` to the others, to stones that stand already, and to the surface. Throws
-/// Error, and says how much is missing, when a stone finds no place within `attempts` centres.
+/// Tells whether a grain lies within a room and keeps a distance from the room's surface (m).
 template <int Dim>
-std::vector<RoundStone<Dim>> place(std::span<const double> diameters, const Room<Dim>& room,
-                                   const AggregateParameters& parameters,
-                                   const std::vector<RoundStone<Dim>>& standing, Random& random);
+bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance);
 
-/// Draws the diameters of the stones of a kind, places them as above and adds them to those that stand.
+/// Takes and places: puts each grain (largest first) at a random centre in the room. There the grain keeps
+/// `minimum_gap` to the others, to grains that stand already, and to the surface. Where a grain finds no
+/// place within `attempts` centres, all of them begin anew, smaller, and grow while they push each other away
+/// (grow). Throws Error when they do not fit in that way either.
+template <int Dim>
+std::vector<Grain<Dim>> place(const std::vector<Grain<Dim>>& grains, const Room<Dim>& room,
+                              const AggregateParameters& parameters, const std::vector<Grain<Dim>>& standing,
+                              Random& random);
+
+/// Draws the grains of a kind, places them as above and adds them to those that stand.
 template <int Dim>
 void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
-                    Random& random, std::vector<RoundStone<Dim>>& standing);
+                    Random& random, std::vector<Grain<Dim>>& standing);
 
 /// Throws Error when the placed fraction of aggregate is off by more than 0.01 from that asked for.
 /// \param d_min  smallest diameter, which the message names, m

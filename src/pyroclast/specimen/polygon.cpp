@@ -104,4 +104,22 @@ double common_area(Corners polygon, const Vec<2>& centre, double radius) {
   return sum;
 }
 
+double common_area(Corners convex, std::vector<Vec<2>> other) {
+  std::vector<Vec<2>> kept;
+  for (std::size_t i = 0; i < convex.size() && !other.empty(); ++i) {
+    const Vec<2> from = convex[i], along = convex[(i + 1) % convex.size()] - from;
+    const auto side = [&](const Vec<2>& p) { return cross(along, p - from); };
+    kept.clear();
+    for (std::size_t k = 0; k < other.size(); ++k) {
+      const Vec<2>&a = other[k], &b = other[(k + 1) % other.size()];
+      const double side_a = side(a), side_b = side(b);
+      if (side_a >= 0.0) kept.push_back(a);
+      if ((side_a > 0.0 && side_b < 0.0) || (side_a < 0.0 && side_b > 0.0))
+        kept.push_back(a + (side_a / (side_a - side_b)) * (b - a));
+    }
+    other.swap(kept);
+  }
+  return other.size() < 3 ? 0.0 : area(other);
+}
+
 }  // namespace pyroclast::specimen

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "pyroclast/base/vec.hpp"
 
@@ -33,5 +34,8 @@ double smallest_angle(const std::array<Vec<2>, 3>& triangle);
 /// Returns the area that a convex or non-convex polygon has in common with a circle, m^2. Exact up to
 /// rounding.
 double common_area(Corners polygon, const Vec<2>& centre, double radius);
+
+/// Returns the area that a convex polygon has in common with another one, m^2. Exact up to rounding.
+double common_area(Corners convex, std::vector<Vec<2>> other);
 
 }  // namespace pyroclast::specimen

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -16,10 +15,10 @@
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
-#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/superposition.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -94,7 +93,7 @@ constexpr double kTouching = 1e-6;
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
-  StoneGrid<2> grid(p.region.box().low, p.region.box().high, 2.0 * asked.d_min);
+  GrainGrid<2> grid(p.region.box().low, p.region.box().high, 2.0 * asked.d_min);
   for (const Aggregate& circle : specimen.aggregates) grid.insert(circle);
   std::vector<Aggregate> circles;
   for (const Stone& stone : asked.stones) {
@@ -104,9 +103,15 @@ void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, i
                               stone.place, 1e3 * stone.diameter, 1e3 * stone.centre[0], 1e3 * stone.centre[1],
                               what));
     };
-    if (p.region.distance_before_cuts(stone.centre) > tolerance - radius)
-      fail("does not lie in the specimen, all of it");
-    const Aggregate circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind};
+    const Aggregate circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
+                           stone.shape};
+    const bool is_within =
+        stone.shape ? std::ranges::all_of(outline_points(circle),
+                                          [&](const Vec<2>& point) {
+                                            return p.region.distance_before_cuts(point) <= tolerance;
+                                          })
+                    : p.region.distance_before_cuts(stone.centre) <= tolerance - radius;
+    if (!is_within) fail("does not lie in the specimen, all of it");
     if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
     grid.insert(circle);
     circles.push_back(circle);
@@ -136,7 +141,7 @@ void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random
 
 double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_area) {
   double sum = 0.0;
-  for (const Aggregate& a : aggregates) sum += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  for (const Aggregate& a : aggregates) sum += extent(a);
   return sum / specimen_area;
 }
 
@@ -220,13 +225,24 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   specimen.fraction_placed = fraction_of(specimen.aggregates, specimen_area);
   require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min);
 
-  Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
+  const bool follows = parameters.superposition == Superposition::follow;
+  const std::span<const Aggregate> followed =
+      follows ? std::span<const Aggregate>(specimen.aggregates) : std::span<const Aggregate>();
+  Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team, followed);
   specimen.tessellation = std::move(blocks.tessellation);
   if (blocks.phase.empty()) {
     const int matrix = specimen.matrix = place_in(specimen.phases, parameters.matrix);
-    Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
-    specimen.covered_fraction = superposed.covered_fraction;
-    specimen.phase = std::move(superposed.phase);
+    if (follows) {
+      specimen.grain = std::move(blocks.grain);
+      specimen.grain.resize(specimen.tessellation.cells.size(), -1);
+      for (const int grain : specimen.grain)
+        specimen.phase.push_back(grain < 0 ? matrix : specimen.aggregates[grain].phase);
+    } else {
+      Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+      specimen.covered_fraction = superposed.covered_fraction;
+      specimen.phase = std::move(superposed.phase);
+      specimen.grain = std::move(superposed.grain);
+    }
     specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
     superpose(specimen.tessellation, specimen.fibres, specimen.phase);
     specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,21 +12,24 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/specimen/region.hpp"
+#include "pyroclast/specimen/shape.hpp"
 
 namespace pyroclast::specimen {
 
 /// Largest seed of the random numbers of a specimen; decks and the command line take 0 and up.
 inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
-/// Round aggregate as placed, before superposition on the blocks: a circle, or a ball in a solid.
+/// Aggregate as placed, before blocks take its place: a circle, in a solid a ball, or a shape of its own.
 template <int Dim>
-struct RoundStone {
+struct Grain {
   Vec<Dim> centre;  ///< m
-  double diameter;  ///< m
-  int phase = 0;    ///< index into the specimen's phases
-  int kind = 0;     ///< 0 for the first aggregates, then counting the inclusions that are round, in turn
+  /// Diameter, m; of another shape its width: the sieve that it passes.
+  double diameter;
+  int phase = 0;  ///< index into the specimen's phases
+  int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are grains, in turn
+  std::shared_ptr<const Shape<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
-using Aggregate = RoundStone<2>;
+using Aggregate = Grain<2>;
 
 /// Straight fibre as placed: the blocks that it crosses become its phase.
 struct Fibre {
@@ -32,12 +37,35 @@ struct Fibre {
   int phase = 0;    ///< index into Specimen::phases
 };
 
-/// Stone that is known: a circle at a place, read from a list.
+/// Stone that is known, read from a list.
 struct Stone {
-  Vec<2> centre;      ///< m
-  double diameter;    ///< m
-  std::string phase;  ///< phase of the stone
-  std::string place;  ///< place that states the stone, "stones.csv:7", for errors
+  Vec<2> centre;                               ///< m
+  double diameter;                             ///< m, as of a grain
+  std::string phase;                           ///< phase of the stone
+  std::string place;                           ///< place that states the stone, "stones.csv:7", for errors
+  std::shared_ptr<const Shape<2>> shape = {};  ///< shape around the centre; none: a circle
+};
+
+enum class GrainShape : std::uint8_t {
+  circle,    ///< a ball in a solid
+  ellipse,   ///< an ellipse of this elongation
+  polygon,   ///< convex, with corners at random on an ellipse (Wang, Kwan and Chan 1999)
+  harmonics  ///< r(angle) = 1 + sum D_n cos(n angle + phase_n) with n from 3 on, drawn out to the elongation
+};
+
+/// Numbers between two bounds, each as likely as the other.
+struct Spread {
+  double low, high;
+};
+
+/// Shapes of grains asked for.
+struct ShapeParameters {
+  GrainShape kind = GrainShape::circle;
+  Spread elongation{1.0, 1.0};                ///< length over width
+  Spread orientation{0.0, std::numbers::pi};  ///< angle of the length from the x axis, radians
+  Spread corners{5.0, 8.0};                   ///< number of corners of a polygon
+  Spread roughness{0.0, 0.0};                 ///< D_3 of harmonics
+  double decay = 5.0 / 3.0;  ///< D_n falls as n^-decay (Barclay and Buckingham 2009, of sands)
 };
 
 /// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16), a
@@ -54,9 +82,10 @@ struct AggregateParameters {
   /// 1, for which a curve is straight between sieves.
   std::vector<double> passing = {};
   std::vector<Stone> stones = {};  ///< stones as they lie; then nothing is drawn or placed
-  double minimum_gap = 0.0;        ///< smallest distance between aggregates and to the outline, m
-  int attempts = 0;                ///< random centres tried for one aggregate before placing fails
-  std::string place = "";          ///< place that asks for them, "mine.toml:12: aggregates", for errors
+  ShapeParameters shape = {};
+  double minimum_gap = 0.0;  ///< smallest distance between aggregates and to the outline, m
+  int attempts = 0;          ///< random centres tried for one aggregate before placing fails
+  std::string place = "";    ///< place that asks for them, "mine.toml:12: aggregates", for errors
 };
 
 /// Fibres asked for: each at a random place, in a random direction.
@@ -73,9 +102,10 @@ struct FibreParameters {
 using Inclusions = std::variant<AggregateParameters, FibreParameters>;
 
 enum class Superposition : std::uint8_t {
-  area,     ///< a block is aggregate where circles cover more than a stated fraction of it
-  fit,      ///< a block is aggregate above the fraction by which the blocks take the area of the circles
-  centroid  ///< a block is of the aggregate in whose circle its centroid lies
+  area,      ///< a block is aggregate where circles cover more than a stated fraction of it
+  fit,       ///< a block is aggregate above the fraction by which the blocks take the area of the circles
+  centroid,  ///< a block is of the aggregate in whose circle its centroid lies
+  follow     ///< nothing is superposed: blocks follow the surfaces of grains, by mirrored seeds
 };
 
 /// Convex cells that tile a region exactly; neighbours share vertices.
@@ -99,7 +129,9 @@ struct BlockParameters {
   /// Spread of the Laguerre radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0,
   /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;
-  int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
+  int relaxation = 0;  ///< Lloyd iterations; 0 leaves the seeds at random
+  /// True where blocks follow the surfaces of grains, by mirrored seeds; then nothing is superposed but
+  /// fibres.
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
   /// Tessellation of the region, made elsewhere and still to be regularised; then only `shortest_edge`
   /// counts.
@@ -170,9 +202,11 @@ struct BlockMetrics {
 struct Specimen {
   Region region;
   Tessellation tessellation;
-  std::vector<std::string> phases;    ///< phases that blocks can have
-  int matrix = -1;                    ///< index into `phases`; -1: not known
-  std::vector<int> phase;             ///< phase of each cell, index into `phases`
+  std::vector<std::string> phases;  ///< phases that blocks can have
+  int matrix = -1;                  ///< index into `phases`; -1: not known
+  std::vector<int> phase;           ///< phase of each cell, index into `phases`
+  /// Grain of which each cell is, index into `aggregates`; -1: of none. Empty where cells are made elsewhere.
+  std::vector<int> grain;
   std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
   std::vector<Fibre> fibres;          ///< fibres as placed
   /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.

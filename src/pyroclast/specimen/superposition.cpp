@@ -4,52 +4,46 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 
+#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
-#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Calls f(corners, circles nearby) for each cell and returns the value for each.
+/// Calls f(corners, numbers of the grains nearby) for each cell and returns the value for each.
 template <class F>
-auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> aggregates,
+auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> grains,
                    F&& f) {
-  const StoneGrid<2> grid(box.low, box.high, aggregates);
-  std::vector<decltype(f(Corners{}, grid.stones()))> result;
-  std::vector<Vec<2>> polygon;
-  std::vector<Aggregate> nearby;
+  const GrainGrid<2> grid(box.low, box.high, grains);
   std::vector<int> numbers;
+  std::vector<decltype(f(Corners{}, numbers))> result;
+  std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
-    Vec<2> lower = polygon.front();
-    Vec<2> upper = polygon.front();
-    for (const Vec<2>& p : polygon) {
-      for (int i = 0; i < 2; ++i) {
-        lower[i] = std::min(lower[i], p[i]);
-        upper[i] = std::max(upper[i], p[i]);
-      }
-    }
-    grid.collect(lower, upper, numbers);
-    nearby.clear();
-    for (const int number : numbers) nearby.push_back(grid.stones()[number]);
-    result.push_back(f(Corners(polygon), nearby));
+    const Box around = box_of(polygon);
+    grid.collect(around.low, around.high, numbers);
+    result.push_back(f(Corners(polygon), numbers));
   }
   return result;
 }
 
-Cover cover_of(Corners polygon, const std::vector<Aggregate>& nearby) {
+Cover cover_of(Corners polygon, std::span<const Aggregate> grains, const std::vector<int>& numbers) {
   constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
-  double covered = 0.0;
+  double covered = 0.0, most_of_one = 0.0;
   std::map<int, double> by_phase;
-  for (const Aggregate& a : nearby) {
-    const double common = common_area(polygon, a.centre, 0.5 * a.diameter);
+  Cover cover;
+  for (const int number : numbers) {
+    const Aggregate& a = grains[number];
+    const double common =
+        a.shape ? common_area(polygon, corners_of(a)) : common_area(polygon, a.centre, 0.5 * a.diameter);
     covered += common;
     by_phase[a.phase] += common;
+    if (common <= most_of_one) continue;
+    most_of_one = common;
+    cover.grain = number;
   }
-  Cover cover;
   double most = 0.0;
   for (const auto& [phase, area] : by_phase)
     if (area > most) {
@@ -61,15 +55,15 @@ Cover cover_of(Corners polygon, const std::vector<Aggregate>& nearby) {
   return cover;
 }
 
-std::vector<int> phases_at_centroids(const Tessellation& tessellation, const Box& box,
-                                     std::span<const Aggregate> aggregates, int matrix) {
-  const auto phase_of = [&](Corners polygon, const std::vector<Aggregate>& nearby) {
+/// Returns the grain in which the centroid of each cell lies, -1: in none.
+std::vector<int> grains_at_centroids(const Tessellation& tessellation, const Box& box,
+                                     std::span<const Aggregate> grains) {
+  return for_each_cell(tessellation, box, grains, [&](Corners polygon, const std::vector<int>& numbers) {
     const Vec<2> centre = centroid(polygon);
-    const auto around = std::ranges::find_if(
-        nearby, [&](const Aggregate& a) { return norm(centre - a.centre) <= 0.5 * a.diameter; });
-    return around == nearby.end() ? matrix : around->phase;
-  };
-  return for_each_cell(tessellation, box, aggregates, phase_of);
+    const auto around =
+        std::ranges::find_if(numbers, [&](int number) { return holds(grains[number], centre); });
+    return around == numbers.end() ? -1 : *around;
+  });
 }
 
 /// Tells whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
@@ -94,7 +88,9 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
 
 std::vector<Cover> covers_of(const Tessellation& tessellation, const Box& box,
                              std::span<const Aggregate> aggregates) {
-  return for_each_cell(tessellation, box, aggregates, cover_of);
+  return for_each_cell(tessellation, box, aggregates, [&](Corners polygon, const std::vector<int>& numbers) {
+    return cover_of(polygon, aggregates, numbers);
+  });
 }
 
 double fitting_fraction(const Tessellation& tessellation, std::span<const Cover> covers,
@@ -110,7 +106,7 @@ double fitting_fraction(const Tessellation& tessellation, std::span<const Cover>
   }
   std::ranges::sort(cells, std::greater<>(), &Cell::covered);
   double missing = 0.0;
-  for (const Aggregate& a : aggregates) missing += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  for (const Aggregate& a : aggregates) missing += extent(a);
   // cells become aggregate, the most covered first, while that brings their area nearer to that of the
   // circles
   std::size_t taken = 0;
@@ -125,14 +121,18 @@ Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate
   const Box& box = parameters.region.box();
   Superposed result{.covered_fraction = parameters.covered_fraction};
   if (parameters.superposition == Superposition::centroid) {
-    result.phase = phases_at_centroids(tessellation, box, aggregates, matrix);
+    result.grain = grains_at_centroids(tessellation, box, aggregates);
+    for (const int grain : result.grain) result.phase.push_back(grain < 0 ? matrix : aggregates[grain].phase);
     return result;
   }
   const std::vector<Cover> covers = covers_of(tessellation, box, aggregates);
   if (parameters.superposition == Superposition::fit)
     result.covered_fraction = fitting_fraction(tessellation, covers, aggregates);
-  for (const Cover& cover : covers)
-    result.phase.push_back(cover.share > result.covered_fraction ? cover.phase : matrix);
+  for (const Cover& cover : covers) {
+    const bool is_covered = cover.share > result.covered_fraction;
+    result.phase.push_back(is_covered ? cover.phase : matrix);
+    result.grain.push_back(is_covered ? cover.grain : -1);
+  }
   return result;
 }
 

@@ -11,7 +11,8 @@ namespace pyroclast::specimen {
 struct Cover {
   /// Share of the cell's area, by all circles together, in [0, 1]; exact where these do not overlap.
   double share = 0.0;
-  int phase = -1;  ///< phase of the circles that cover most of the cell; -1 where none does
+  int phase = -1;  ///< phase of the grains that cover most of the cell; -1 where none does
+  int grain = -1;  ///< grain that covers most of the cell; -1 where none does
 };
 
 /// Returns the cover of each cell.
@@ -28,6 +29,7 @@ double fitting_fraction(const Tessellation& tessellation, std::span<const Cover>
 struct Superposed {
   /// Phase of each cell: that of the circles which cover most of it, or the matrix.
   std::vector<int> phase = {};
+  std::vector<int> grain = {};    ///< grain of which each cell is, index into the grains; -1: of none
   double covered_fraction = 0.0;  ///< fraction above which a cell is of the circles, as stated or as it fits
 };
 

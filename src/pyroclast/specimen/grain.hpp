@@ -1,0 +1,66 @@
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Returns the extent of a round grain, from its diameter: the area of a circle, m², or the volume of a ball,
+/// m³.
+template <int Dim>
+double extent_of_round(double diameter) {
+  if constexpr (Dim == 2)
+    return 0.25 * std::numbers::pi * diameter * diameter;
+  else
+    return std::numbers::pi / 6.0 * diameter * diameter * diameter;
+}
+
+/// Returns the area of a circle, from its diameter.
+inline double circle_area(double diameter) {
+  return extent_of_round<2>(diameter);
+}
+
+/// Returns the area of a grain, m², or its volume, m³.
+template <int Dim>
+double extent(const Grain<Dim>& grain) {
+  return grain.shape ? grain.shape->extent() : extent_of_round<Dim>(grain.diameter);
+}
+
+/// Returns the radius of a ball around the grain's centre that holds the grain, m.
+template <int Dim>
+double reach(const Grain<Dim>& grain) {
+  return grain.shape ? grain.shape->bounding_radius() : 0.5 * grain.diameter;
+}
+
+/// Tells whether a place lies in a grain or on its surface.
+bool holds(const Grain<2>& grain, const Vec<2>& place);
+
+/// Tells whether two grains are closer to each other than `gap` (m), or overlap. Exact for circles, balls and
+/// outlines.
+template <int Dim>
+bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap);
+
+/// Nearest approach of two grains.
+template <int Dim>
+struct Approach {
+  double gap;          ///< m; negative where they overlap
+  Vec<Dim> direction;  ///< unit vector in which the second one leaves the first soonest
+};
+
+/// Returns the nearest approach of two grains.
+template <int Dim>
+Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b);
+
+/// Returns the corners of a grain's outline where it lies, m; empty for a circle.
+std::vector<Vec<2>> corners_of(const Grain<2>& grain);
+
+/// Tells whether a segment comes closer to a grain than `gap` (m), or runs through the grain.
+bool are_closer(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double gap);
+
+/// Returns points of the grain's surface close enough together to tell where the grain lies, m; empty for
+/// round grains.
+std::vector<Vec<2>> outline_points(const Grain<2>& grain);
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,61 @@
+#include "pyroclast/specimen/grain_fit.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// Returns the mean square distance of an edge from the outline of a grain, m²: by Gauss's rule of three
+/// points.
+double mean_square_distance(const Aggregate& grain, const Vec<2>& from, const Vec<2>& to) {
+  const std::array<double, 3> at{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
+  const std::array<double, 3> weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Vec<2> place = from + at[i] * (to - from) - grain.centre;
+    const double distance =
+        grain.shape ? grain.shape->nearest(place).distance : norm(place) - 0.5 * grain.diameter;
+    sum += weight[i] * distance * distance;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<GrainFit> fits_of(const Specimen& specimen) {
+  if (specimen.grain.empty()) return {};
+  std::vector<GrainFit> fits;
+  for (const Aggregate& grain : specimen.aggregates)
+    fits.push_back({extent(grain), grain.shape ? grain.shape->surface_size()
+                                               : Ball<2>(0.5 * grain.diameter).surface_size()});
+  const Tessellation& tessellation = specimen.tessellation;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    if (specimen.grain[c] < 0) continue;
+    corners(tessellation, c, polygon);
+    GrainFit& fit = fits[specimen.grain[c]];
+    fit.area_of_blocks += area(polygon);
+    ++fit.blocks;
+  }
+  for (const Edge& edge : edges(tessellation)) {
+    const int left = specimen.grain[edge.left], right = edge.right < 0 ? -1 : specimen.grain[edge.right];
+    if (left == right || edge.right < 0) continue;
+    const Vec<2>&from = tessellation.vertices[edge.v0], &to = tessellation.vertices[edge.v1];
+    for (const int grain : {left, right}) {
+      if (grain < 0) continue;
+      fits[grain].interface += norm(to - from);
+      fits[grain].deviation += norm(to - from) * mean_square_distance(specimen.aggregates[grain], from, to);
+    }
+  }
+  for (GrainFit& fit : fits)
+    if (fit.interface > 0.0) fit.deviation = std::sqrt(fit.deviation / fit.interface);
+  return fits;
+}
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pyroclast/specimen/grain_grid.hpp"
+#include "pyroclast/specimen/outline_seeds.hpp"
+
+namespace pyroclast::specimen {
+
+/// Seeds of a tessellation that make its edges follow the surfaces of grains.
+///
+/// Seeds stand in pairs on both sides of a surface, so the edge between the two cells is a tangent. Each
+/// grain is first drawn smaller, by the factor by which the polygon of its tangents is larger than the grain.
+/// A small grain is one cell. Where two grains are so near to each other that two rows of seeds do not fit
+/// between them, they share one row in the middle of the gap.
+///
+/// All seeds near a surface have the same power there: r² = h² + constant, with the radius r of the seed and
+/// its distance h from the surface. So the edge between two of them is where the surface is, whatever h.
+class GrainSeeds {
+ public:
+  /// Way to follow a grain.
+  struct Way {
+    double size = 1.0;            ///< factor by which it is followed larger
+    bool is_of_one_seed = false;  ///< true where a small grain must have one seed
+  };
+
+  /// Places the seeds.
+  /// \param grains   grains as they lie, without overlaps
+  /// \param ways     ways of each grain
+  /// \param outline  seeds that the outline asks for: the others keep away from them
+  /// \param spacing  mean distance of seeds: the block size, m
+  GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
+             const OutlineSeeds& outline, double spacing);
+
+  const std::vector<Vec<2>>& positions() const { return positions_; }
+  const std::vector<double>& radii() const { return radii_; }  ///< Returns the Laguerre radii, m.
+  /// Returns the grain of each seed, index into the grains; -1: the seed stands between grains.
+  const std::vector<int>& owners() const { return owners_; }
+  /// Tells whether a grain is so small that its cells become one.
+  bool is_one_cell(int grain) const { return grains_[grain].is_one_cell; }
+  /// Returns the grain in which a place lies, index into the grains; -1: it lies between them.
+  int grain_at(const Vec<2>& place) const;
+  /// Tells whether another seed may stand at a place: not so near to a surface that its cell would reach
+  /// across. \param clear  least distance from surfaces, in spacings
+  bool leave_room_at(const Vec<2>& place, double clear) const;
+
+ private:
+  struct Foot {
+    Vec<2> at, normal;
+  };
+  /// Grain as its surface is followed.
+  struct Followed {
+    Vec<2> centre;
+    std::shared_ptr<const Shape<2>> shape;  ///< drawn smaller
+    bool is_one_cell;
+    double power =
+        0.0;  ///< square of the radius of the one seed, m²; 0: each place of the surface has its own
+    double along = 0.0;             ///< distance from foot to foot, m
+    std::vector<Vec<2>> feet = {};  ///< places on the surface that have their seeds, m
+  };
+  /// Seed between grains that a surface asks for.
+  struct Gap {
+    double half;  ///< distance of the seed from the surface, m
+    int other;    ///< grain at the other side, for which the seed stands too; -1: none
+  };
+
+  Followed followed(const Aggregate& grain, const Way& way) const;
+  void follow(int number);
+  Gap gap_from(int number, const Foot& foot) const;
+  Foot nearest(int number, const Vec<2>& place) const;
+  void add_between(const Vec<2>& place, double square);
+  void add_within(int number, const Foot& foot);
+  void add(const Vec<2>& place, double square, int owner);
+  std::vector<int> near(const Vec<2>& place, double distance) const;
+
+  const Region& region_;
+  const OutlineSeeds& outline_;
+  double spacing_;
+  GrainGrid<2> grid_;
+  std::vector<Followed> grains_;
+  std::vector<Vec<2>> positions_;
+  std::vector<double> radii_;
+  std::vector<int> owners_;
+};
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,176 @@
+#include "pyroclast/specimen/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "pyroclast/specimen/grain_grid.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+constexpr double kSmallest = 0.6;  ///< size at which grains begin, as a share
+constexpr int kStages = 16;        ///< sizes from the smallest to the whole one
+/// Most rounds of pushes at one size. Those before the last need not come to an end.
+constexpr int kRoundsOfStage = 60, kRoundsOfLast = 6000;
+/// Gap beyond the one asked for to which grains are pushed apart, as a share of the smallest diameter:
+/// without it, pushes would end only in the limit.
+constexpr double kBeyond = 2e-3;
+/// Push with which a size before the last is left, as the same share.
+constexpr double kLoose = 0.02;
+
+template <int Dim>
+class Growth {
+ public:
+  Growth(const std::vector<Grain<Dim>>& grains, const Room<Dim>& room, double gap,
+         const std::vector<Grain<Dim>>& standing)
+      : whole_(grains), room_(room), gap_(gap), standing_(standing) {
+    for (const auto& grain : whole_) smallest_ = std::min(smallest_, grain.diameter);
+  }
+
+  std::optional<std::vector<Grain<Dim>>> run(Random& random) {
+    grains_ = whole_;
+    for (auto& grain : grains_) {
+      const double margin = std::min(reach(grain) + gap_, 0.45 * least_width());
+      do {
+        for (int d = 0; d < Dim; ++d)
+          grain.centre[d] = random.uniform(room_.low[d] + margin, room_.high[d] - margin);
+      } while (room_.distance && room_.distance(grain.centre) > 0.0);
+    }
+    for (int stage = 0; stage <= kStages; ++stage) {
+      set_size(kSmallest + (1.0 - kSmallest) * stage / kStages);
+      const bool is_last = stage == kStages;
+      for (int round = 0; round < (is_last ? kRoundsOfLast : kRoundsOfStage); ++round)
+        if (const double lacking = push_apart(); is_last && lacking <= kBeyond * smallest_) {
+          if (fits()) return grains_;
+        } else if (!is_last && lacking <= kLoose * smallest_) {
+          break;
+        }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  double least_width() const {
+    double width = room_.high[0] - room_.low[0];
+    for (int d = 1; d < Dim; ++d) width = std::min(width, room_.high[d] - room_.low[d]);
+    return width;
+  }
+
+  void set_size(double share) {
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      const Vec<Dim> centre = grains_[i].centre;
+      grains_[i] = whole_[i];
+      grains_[i].centre = centre;
+      grains_[i].diameter *= share;
+      if (whole_[i].shape) grains_[i].shape = whole_[i].shape->scaled(share);
+    }
+  }
+
+  /// Moves each grain by the pushes of all that are too close to it. Returns the largest of these before, m.
+  double push_apart() {
+    const double target = gap_ + kBeyond * smallest_;
+    GrainGrid<Dim> grid(room_.low, room_.high, 2.0 * smallest_);
+    for (const auto& grain : grains_) grid.insert(grain);
+    for (const auto& grain : standing_) grid.insert(grain);
+    std::vector<Vec<Dim>> move(grains_.size());
+    std::vector<int> nearby;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      const Grain<Dim>& grain = grains_[i];
+      Vec<Dim> half;
+      half.c.fill(reach(grain) + target);
+      grid.collect(grain.centre - half, grain.centre + half, nearby);
+      for (const int number : nearby) {
+        const auto other = static_cast<std::size_t>(number);
+        const bool stands = other >= grains_.size();
+        if (!stands && other <= i) continue;
+        const Grain<Dim>& beside = grid.stones()[other];
+        if (!are_closer(grain, beside, target)) continue;
+        const Approach<Dim> near = approach(grain, beside);
+        largest = std::max(largest, target - near.gap);
+        const Vec<Dim> push = (target - near.gap) * near.direction;
+        // the smaller one gives way
+        const double share = stands ? 1.0 : extent(beside) / (extent(grain) + extent(beside));
+        move[i] -= share * push;
+        if (!stands) move[other] += (1.0 - share) * push;
+      }
+      largest = std::max(largest, push_from_surface(grain, target, move[i]));
+    }
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      // a grain between many is not thrown out by the sum of their pushes
+      const double length = norm(move[i]), most = 0.25 * grains_[i].diameter;
+      grains_[i].centre += length > most ? move[i] * (most / length) : move[i];
+    }
+    return largest;
+  }
+
+  /// Adds the push of the room's surface to a move. Returns its length, m.
+  double push_from_surface(const Grain<Dim>& grain, double target, Vec<Dim>& move) const {
+    if (lies_within(grain, room_, target)) return 0.0;
+    std::vector<Vec<Dim>> points{grain.centre};
+    double least = target + 0.5 * grain.diameter;
+    if constexpr (Dim == 2)
+      if (grain.shape) {
+        points = outline_points(grain);
+        least = target;
+      }
+    Vec<Dim> push{};
+    for (const Vec<Dim>& point : points)
+      for (int d = 0; d < Dim; ++d) {
+        const double below = room_.low[d] + least - point[d], above = point[d] - (room_.high[d] - least);
+        if (below > push[d]) push[d] = below;
+        if (above > 0.0 && -above < push[d]) push[d] = -above;
+      }
+    if (room_.distance) {
+      Vec<Dim> worst = points.front();
+      double out = -least;
+      for (const Vec<Dim>& point : points)
+        if (const double distance = room_.distance(point); distance > out) {
+          out = distance;
+          worst = point;
+        }
+      const double step = 1e-3 * smallest_;
+      for (int d = 0; d < Dim && out > -least; ++d) {
+        Vec<Dim> beside = worst;
+        beside[d] += step;
+        push[d] -= (out + least) * (room_.distance(beside) - room_.distance(worst)) / step;
+      }
+    }
+    move += push;
+    return norm(push);
+  }
+
+  bool fits() const {
+    GrainGrid<Dim> grid(room_.low, room_.high, 2.0 * smallest_);
+    for (const auto& grain : standing_) grid.insert(grain);
+    for (const auto& grain : grains_) {
+      if (!lies_within(grain, room_, gap_) || grid.overlaps(grain, gap_)) return false;
+      grid.insert(grain);
+    }
+    return true;
+  }
+
+  const std::vector<Grain<Dim>>& whole_;
+  const Room<Dim>& room_;
+  double gap_;
+  const std::vector<Grain<Dim>>& standing_;
+  double smallest_ = std::numeric_limits<double>::infinity();
+  std::vector<Grain<Dim>> grains_;
+};
+
+}  // namespace
+
+template <int Dim>
+std::optional<std::vector<Grain<Dim>>> grow(std::vector<Grain<Dim>> grains, const Room<Dim>& room, double gap,
+                                            const std::vector<Grain<Dim>>& standing, Random& random) {
+  return Growth<Dim>(grains, room, gap, standing).run(random);
+}
+
+template std::optional<std::vector<Grain<2>>> grow(std::vector<Grain<2>>, const Room<2>&, double,
+                                                   const std::vector<Grain<2>>&, Random&);
+template std::optional<std::vector<Grain<3>>> grow(std::vector<Grain<3>>, const Room<3>&, double,
+                                                   const std::vector<Grain<3>>&, Random&);
+
+}  // namespace pyroclast::specimen

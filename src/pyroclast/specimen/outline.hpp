@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/specimen/shape.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Circle or ball around the origin.
+template <int Dim>
+class Ball final : public Shape<Dim> {
+ public:
+  explicit Ball(double radius) : radius_(radius) {}
+
+  NearestPoint<Dim> nearest(const Vec<Dim>& place) const override;
+  double bounding_radius() const override { return radius_; }
+  double inner_radius() const override { return radius_; }
+  double extent() const override;
+  double surface_size() const override;
+  std::vector<SurfacePoint<Dim>> surface(double spacing, std::span<const Vec<Dim>> taken = {}) const override;
+  std::shared_ptr<const Shape<Dim>> scaled(double factor) const override;
+
+ private:
+  double radius_;
+};
+
+/// Closed line in the plane as straight pieces, without crossings, around its centroid: an ellipse, a
+/// polygon, a stone of harmonics or of an image. Pieces that meet at a small angle stand for a curve; at a
+/// larger one they have a corner.
+class Outline final : public Shape<2> {
+ public:
+  /// Makes an outline; moves it so that its centroid is the origin. Throws Error where it has fewer than
+  /// three corners, crosses itself or has no area. \param corners  corners in either sense, m
+  explicit Outline(std::vector<Vec<2>> corners);
+
+  NearestPoint<2> nearest(const Vec<2>& place) const override;
+  double bounding_radius() const override { return bounding_radius_; }
+  double inner_radius() const override { return inner_radius_; }
+  double extent() const override { return area_; }
+  double surface_size() const override { return starts_.back(); }
+  std::vector<SurfacePoint<2>> surface(double spacing, std::span<const Vec<2>> taken = {}) const override;
+  std::shared_ptr<const Shape<2>> scaled(double factor) const override;
+  int corner_count() const override { return static_cast<int>(corners_along_.size()); }
+
+  const std::vector<Vec<2>>& corners() const {
+    return corners_;
+  }  ///< Returns the corners, counter-clockwise, m.
+  /// Returns the least distance between two parallel lines that hold the outline, m: the sieve that it
+  /// passes.
+  double width() const;
+
+ private:
+  std::size_t next(std::size_t i) const { return i + 1 == corners_.size() ? 0 : i + 1; }
+  SurfacePoint<2> at(double along) const;
+  double along_of(const Vec<2>& point) const;
+
+  std::vector<Vec<2>> corners_;
+  std::vector<double> starts_;         ///< length of the line up to each corner, then up to its end, m
+  std::vector<double> corners_along_;  ///< places of true corners on the line, m
+  double area_ = 0.0, bounding_radius_ = 0.0, inner_radius_ = 0.0;
+};
+
+/// Returns the outline around its centroid of points that lie anywhere, and the centroid, m.
+std::pair<std::shared_ptr<const Outline>, Vec<2>> outline_around(std::vector<Vec<2>> points);
+
+/// Draws the outline of a grain whose width is 1. A circle draws nothing and returns none.
+std::shared_ptr<const Outline> draw_outline(const ShapeParameters& parameters, Random& random);
+
+}  // namespace pyroclast::specimen
