@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import Error
 from .files import LARGEST, GrowingTable, Lock, Table, Writer, read_array, read_json
@@ -628,6 +629,16 @@ class SpecimenFolder:
     def aggregates(self) -> Table:
         """Placed circles: x_m, y_m, diameter_m; of a solid the balls, with z_m."""
         return Table(self._tables / "aggregates.csv", may_be_empty=True)
+
+    @cached_property
+    def outlines(self) -> list[NDArray[np.float64]]:
+        """Outlines of grains that are not round, each (n, 2) in m; empty where all are circles."""
+        file = self._tables / "outlines.csv"
+        if not file.exists():
+            return []
+        table = Table(file)
+        begins = np.flatnonzero(np.diff(table["grain"], prepend=-1.0))
+        return np.split(np.column_stack([table["x_m"], table["y_m"]]), begins[1:])
 
     @cached_property
     def gradation(self) -> Table:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Patch, Polygon
 
 from . import style
 from .crack_styles import material_legend
@@ -96,7 +96,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
     if blocks.dimension == 3:
         frame_section(axes, blocks)
     else:
-        _draw_circles(axes, circles)
+        _draw_grains(axes, specimen)
         axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
         axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
         axes.set_aspect("equal")
@@ -108,7 +108,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
     handles: list[Artist] = list(material_legend(blocks))
     if circles.rows and blocks.dimension == 2:
         handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
-                              label="placed circle"))
+                              label="placed grain" if specimen.outlines else "placed circle"))
     column = style.page().is_column
     style.legend_alone(place, handles, [handle.get_label() for handle in handles],
                        loc="center" if column else "upper left", ncol=2 if column else 1)
@@ -125,9 +125,13 @@ def _axes_of_morphology(ratio: float) -> tuple[Figure, Axes, Axes]:
     return figure, *figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.32]})
 
 
-def _draw_circles(axes: Axes, circles: Table) -> None:
-    places = style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]])
-    outlines = [Circle(place, radius) for place, radius in zip(places, 0.5 * style.MILLI * circles["diameter_m"])]
+def _draw_grains(axes: Axes, specimen: SpecimenFolder) -> None:
+    """Draws the surfaces of the grains as they were placed."""
+    circles = specimen.aggregates
+    outlines: list[Patch] = [Polygon(style.MILLI * outline) for outline in specimen.outlines]
+    if not outlines:
+        places = style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]])
+        outlines = [Circle(place, radius) for place, radius in zip(places, 0.5 * style.MILLI * circles["diameter_m"])]
     axes.add_collection(PatchCollection(outlines, facecolors="none", edgecolors=style.BLUE, linewidths=0.9))
 
 

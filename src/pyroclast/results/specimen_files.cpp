@@ -59,6 +59,7 @@ std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
   return csv;
 }
 
+/// Returns the outlines of all grains; circles among them as polygons.
 std::string outlines_csv(const std::vector<specimen::Aggregate>& grains) {
   std::string csv = "grain,x_m,y_m,phase\n";
   for (std::size_t i = 0; i < grains.size(); ++i)

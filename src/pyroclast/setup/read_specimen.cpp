@@ -1125,7 +1125,7 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
        {"follow", specimen::Superposition::follow,
         "nothing is superposed: edges of blocks follow the surfaces of the grains, "
-        "see [bodies.md](bodies.md#grains)"}},
+        "see [Grains](../do/bodies.md#grains)"}},
       "when a block is aggregate");
   if (p.superposition == specimen::Superposition::follow) {
     if (space.is_solid())
