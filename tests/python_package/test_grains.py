@@ -95,7 +95,7 @@ class ByDeck(unittest.TestCase):
 
     def test_outlines_of_a_run_make_the_same_specimen(self):
         shaped = ('[aggregates]\nfraction = 0.3\nd_min = "6 mm"\nd_max = "20 mm"\nfuller_exponent = 0.5\n'
-                  'minimum_gap = "0.5 mm"\n[aggregates.shape]\nkind = "ellipse"\nelongation = [1.2, 1.6]\n')
+                  'minimum_gap = "0.5 mm"\n[aggregates.grain_shape]\nkind = "ellipse"\nelongation = [1.2, 1.6]\n')
         code, told, tables = self.specimen(self.deck(shaped))
         self.assertEqual(code, 0, told)
         first = json.loads((tables / "specimen.json").read_text())
@@ -112,9 +112,9 @@ class ByDeck(unittest.TestCase):
         self.assertNotEqual(code, 0)
         self.assertRegex(told, r"bad\.csv:5: an outline of a grain has 2 corners")
         shape = ('[aggregates]\nfraction = 0.3\nd_min = "6 mm"\nd_max = "20 mm"\nfuller_exponent = 0.5\nminimum_gap = "0.5 mm"\n'
-                 '[aggregates.shape]\nkind = "{}"\nelongation = {}\n')
+                 '[aggregates.grain_shape]\nkind = "{}"\nelongation = {}\n')
         for kind, elongation, message in (("elipse", "[1, 2]", "ellipse"), ("ellipse", "[2, 1]", "least and the largest"),
-                                          ("ellipse", "[0.5, 1]", "1 to 5"), ("polygon", "[1, 2]", "corners")):
+                                          ("ellipse", "[0.5, 1]", "between 1 and 5"), ("polygon", "[1, 2]", "corners")):
             code, told, _ = self.specimen(self.deck(shape.format(kind, elongation)))
             self.assertNotEqual(code, 0)
             self.assertIn(message, told)

@@ -12,7 +12,7 @@ TEST(Outline, ASquareIsMeasuredExactly) {
   const auto [square, centre] = outline_around({{{1, 1}}, {{1, 3}}, {{3, 3}}, {{3, 1}}});  // clockwise
   EXPECT_EQ(centre, (Vec<2>{{2, 2}}));
   EXPECT_DOUBLE_EQ(square->extent(), 4.0);
-  EXPECT_DOUBLE_EQ(square->surface_size(), 8.0);
+  EXPECT_DOUBLE_EQ(square->size(), 8.0);
   EXPECT_DOUBLE_EQ(square->width(), 2.0);
   EXPECT_DOUBLE_EQ(square->inner_radius(), 1.0);
   EXPECT_DOUBLE_EQ(square->bounding_radius(), std::sqrt(2.0));
@@ -28,7 +28,7 @@ TEST(Outline, ASquareIsMeasuredExactly) {
 
 TEST(Outline, PointsOfASurfaceStandBesideItsCorners) {
   const auto [square, centre] = outline_around({{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}});
-  const auto points = square->surface(1.0);
+  const auto points = square->points(1.0);
   ASSERT_EQ(points.size(), 8U);
   for (const auto& [at, normal] : points) {
     EXPECT_NEAR(std::max(std::abs(at[0]), std::abs(at[1])), 1.0, 1e-12);
@@ -40,9 +40,9 @@ TEST(Outline, PointsOfASurfaceStandBesideItsCorners) {
 TEST(Outline, PointsFillTheRestBesideThoseThatAreTaken) {
   const Ball<2> circle(1.0);
   const double turn = 2.0 * std::numbers::pi;
-  EXPECT_EQ(circle.surface(turn / 12).size(), 12U);
+  EXPECT_EQ(circle.points(turn / 12).size(), 12U);
   const std::vector<Vec<2>> taken{{{1, 0}}, {{0, 1}}};
-  const auto points = circle.surface(turn / 12, taken);
+  const auto points = circle.points(turn / 12, taken);
   ASSERT_EQ(points.size(), 10U);
   for (const auto& [at, normal] : points)
     for (const Vec<2>& point : taken) EXPECT_GT(norm(at - point), 0.9 * 2.0 * std::sin(turn / 24));

@@ -352,7 +352,7 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
                                               const DeckSpace& space) {
   specimen::AggregateParameters a;
   a.phase = s.text("phase", "aggregate", kPhase);
-  s.know({"stones", "outlines", "shape", "fraction", "minimum_gap", "attempts", "passing", "passing_by",
+  s.know({"stones", "outlines", "grain_shape", "fraction", "minimum_gap", "attempts", "passing", "passing_by",
           "d_min", "d_max", "fuller_exponent", "sieves"});
   if (s.has("stones")) {
     if (space.is_solid())
@@ -374,7 +374,7 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
   else
     read_fuller_grading(s, a);
   if (const auto shape = s.optional_section(
-          "shape", "shapes of the grains; their size is the sieve that they pass, their width"))
+          "grain_shape", "shapes of the grains; their size is the sieve that they pass, their width"))
     a.shape = read_shape(*shape, space);
   a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
                              "between two aggregates, and between an aggregate and the outline");

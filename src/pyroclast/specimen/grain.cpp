@@ -29,7 +29,7 @@ std::vector<Vec<2>> outline_points(const Grain<2>& grain) {
   constexpr double kFine = 1.0 / 64.0;  // share of the outline's length
   std::vector<Vec<2>> points = corners_of(grain);
   if (grain.shape)
-    for (const auto& point : grain.shape->surface(kFine * grain.shape->surface_size()))
+    for (const auto& point : grain.shape->points(kFine * grain.shape->size()))
       points.push_back(grain.centre + point.at);
   return points;
 }

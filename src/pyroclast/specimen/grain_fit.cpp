@@ -32,8 +32,7 @@ std::vector<GrainFit> fits_of(const Specimen& specimen) {
   if (specimen.grain.empty()) return {};
   std::vector<GrainFit> fits;
   for (const Aggregate& grain : specimen.aggregates)
-    fits.push_back({extent(grain), grain.shape ? grain.shape->surface_size()
-                                               : Ball<2>(0.5 * grain.diameter).surface_size()});
+    fits.push_back({extent(grain), grain.shape ? grain.shape->size() : Ball<2>(0.5 * grain.diameter).size()});
   const Tessellation& tessellation = specimen.tessellation;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {

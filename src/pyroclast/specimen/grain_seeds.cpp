@@ -63,17 +63,16 @@ GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> w
 }
 
 GrainSeeds::Followed GrainSeeds::followed(const Aggregate& grain, const Way& way) const {
-  std::shared_ptr<const Shape<2>> shape = grain.shape;
+  std::shared_ptr<const Surface<2>> shape = grain.shape;
   if (!shape) shape = std::make_shared<Ball<2>>(0.5 * grain.diameter);
   const double radius = std::sqrt(shape->extent() / std::numbers::pi);
   // seeds outside of a small grain are as far from each other as those along a large one
   const double along = kAlongSurface * spacing_ * radius / (radius + kFromSurface * spacing_);
   Followed result{grain.centre, shape, radius < kOneCell * spacing_};
   const int tangents = shape->corner_count() > 0 ? kFewestSides : kFewestTangents;
-  result.along =
-      result.is_one_cell ? std::min(along, shape->surface_size() / tangents) : kAlongSurface * spacing_;
-  if (result.is_one_cell && shape->corner_count() > 0) result.along = shape->surface_size() / tangents;
-  const double larger = std::sqrt(area_of_tangents(shape->surface(result.along)) / shape->extent());
+  result.along = result.is_one_cell ? std::min(along, shape->size() / tangents) : kAlongSurface * spacing_;
+  if (result.is_one_cell && shape->corner_count() > 0) result.along = shape->size() / tangents;
+  const double larger = std::sqrt(area_of_tangents(shape->points(result.along)) / shape->extent());
   result.shape = shape->scaled(way.size / std::clamp(larger, 0.9, 1.25));
   const double inner = result.shape->inner_radius(), outer = result.shape->bounding_radius();
   if (result.is_one_cell && (way.is_of_one_seed || outer < kRound * inner))
@@ -89,7 +88,7 @@ void GrainSeeds::follow(int number) {
   if (grain.power > 0.0) add(grain.centre, grain.power, number);
   std::vector<Vec<2>> taken;
   for (const Vec<2>& foot : grain.feet) taken.push_back(foot - grain.centre);
-  for (const auto& [at, normal] : grain.shape->surface(grain.along, taken)) {
+  for (const auto& [at, normal] : grain.shape->points(grain.along, taken)) {
     const Foot foot{grain.centre + at, normal};
     grain.feet.push_back(foot.at);
     const auto [half, other] = gap_from(number, foot);

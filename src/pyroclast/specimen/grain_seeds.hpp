@@ -53,7 +53,7 @@ class GrainSeeds {
   /// Grain as its surface is followed.
   struct Followed {
     Vec<2> centre;
-    std::shared_ptr<const Shape<2>> shape;  ///< drawn smaller
+    std::shared_ptr<const Surface<2>> shape;  ///< drawn smaller
     bool is_one_cell;
     double power =
         0.0;  ///< square of the radius of the one seed, m²; 0: each place of the surface has its own

@@ -97,17 +97,17 @@ double Ball<Dim>::extent() const {
 }
 
 template <int Dim>
-double Ball<Dim>::surface_size() const {
+double Ball<Dim>::size() const {
   return Dim == 2 ? 2.0 * std::numbers::pi * radius_ : 4.0 * std::numbers::pi * radius_ * radius_;
 }
 
 template <int Dim>
-std::shared_ptr<const Shape<Dim>> Ball<Dim>::scaled(double factor) const {
+std::shared_ptr<const Surface<Dim>> Ball<Dim>::scaled(double factor) const {
   return std::make_shared<Ball>(factor * radius_);
 }
 
 template <>
-std::vector<SurfacePoint<2>> Ball<2>::surface(double spacing, std::span<const Vec<2>> taken) const {
+std::vector<SurfacePoint<2>> Ball<2>::points(double spacing, std::span<const Vec<2>> taken) const {
   std::vector<std::pair<double, bool>> fixed;
   for (const Vec<2>& point : taken) {
     const double angle = std::atan2(point[1], point[0]);
@@ -115,7 +115,7 @@ std::vector<SurfacePoint<2>> Ball<2>::surface(double spacing, std::span<const Ve
   }
   std::ranges::sort(fixed);
   std::vector<SurfacePoint<2>> points;
-  for (const double along : fill(surface_size(), spacing, fixed)) {
+  for (const double along : fill(size(), spacing, fixed)) {
     const Vec<2> normal{{std::cos(along / radius_), std::sin(along / radius_)}};
     points.push_back({radius_ * normal, normal});
   }
@@ -224,17 +224,17 @@ double Outline::along_of(const Vec<2>& point) const {
   return along;
 }
 
-std::vector<SurfacePoint<2>> Outline::surface(double spacing, std::span<const Vec<2>> taken) const {
+std::vector<SurfacePoint<2>> Outline::points(double spacing, std::span<const Vec<2>> taken) const {
   std::vector<std::pair<double, bool>> fixed;
   for (const double corner : corners_along_) fixed.emplace_back(corner, false);
   for (const Vec<2>& point : taken) fixed.emplace_back(along_of(point), true);
   std::ranges::sort(fixed);
   std::vector<SurfacePoint<2>> points;
-  for (const double along : fill(surface_size(), spacing, fixed)) points.push_back(at(along));
+  for (const double along : fill(size(), spacing, fixed)) points.push_back(at(along));
   return points;
 }
 
-std::shared_ptr<const Shape<2>> Outline::scaled(double factor) const {
+std::shared_ptr<const Surface<2>> Outline::scaled(double factor) const {
   std::vector<Vec<2>> corners = corners_;
   for (Vec<2>& corner : corners) corner *= factor;
   return std::make_shared<Outline>(std::move(corners));

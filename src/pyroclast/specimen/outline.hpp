@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "pyroclast/base/random.hpp"
-#include "pyroclast/specimen/shape.hpp"
 #include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/specimen/surface.hpp"
 
 namespace pyroclast::specimen {
 
 /// Circle or ball around the origin.
 template <int Dim>
-class Ball final : public Shape<Dim> {
+class Ball final : public Surface<Dim> {
  public:
   explicit Ball(double radius) : radius_(radius) {}
 
@@ -20,9 +20,9 @@ class Ball final : public Shape<Dim> {
   double bounding_radius() const override { return radius_; }
   double inner_radius() const override { return radius_; }
   double extent() const override;
-  double surface_size() const override;
-  std::vector<SurfacePoint<Dim>> surface(double spacing, std::span<const Vec<Dim>> taken = {}) const override;
-  std::shared_ptr<const Shape<Dim>> scaled(double factor) const override;
+  double size() const override;
+  std::vector<SurfacePoint<Dim>> points(double spacing, std::span<const Vec<Dim>> taken = {}) const override;
+  std::shared_ptr<const Surface<Dim>> scaled(double factor) const override;
 
  private:
   double radius_;
@@ -31,7 +31,7 @@ class Ball final : public Shape<Dim> {
 /// Closed line in the plane as straight pieces, without crossings, around its centroid: an ellipse, a
 /// polygon, a stone of harmonics or of an image. Pieces that meet at a small angle stand for a curve; at a
 /// larger one they have a corner.
-class Outline final : public Shape<2> {
+class Outline final : public Surface<2> {
  public:
   /// Makes an outline; moves it so that its centroid is the origin. Throws Error where it has fewer than
   /// three corners, crosses itself or has no area. \param corners  corners in either sense, m
@@ -41,9 +41,9 @@ class Outline final : public Shape<2> {
   double bounding_radius() const override { return bounding_radius_; }
   double inner_radius() const override { return inner_radius_; }
   double extent() const override { return area_; }
-  double surface_size() const override { return starts_.back(); }
-  std::vector<SurfacePoint<2>> surface(double spacing, std::span<const Vec<2>> taken = {}) const override;
-  std::shared_ptr<const Shape<2>> scaled(double factor) const override;
+  double size() const override { return starts_.back(); }
+  std::vector<SurfacePoint<2>> points(double spacing, std::span<const Vec<2>> taken = {}) const override;
+  std::shared_ptr<const Surface<2>> scaled(double factor) const override;
   int corner_count() const override { return static_cast<int>(corners_along_.size()); }
 
   const std::vector<Vec<2>>& corners() const {

@@ -12,7 +12,7 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/specimen/region.hpp"
-#include "pyroclast/specimen/shape.hpp"
+#include "pyroclast/specimen/surface.hpp"
 
 namespace pyroclast::specimen {
 
@@ -27,7 +27,7 @@ struct Grain {
   double diameter;
   int phase = 0;  ///< index into the specimen's phases
   int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are grains, in turn
-  std::shared_ptr<const Shape<Dim>> shape = {};  ///< shape around the centre; none: it is round
+  std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
 using Aggregate = Grain<2>;
 
@@ -39,11 +39,11 @@ struct Fibre {
 
 /// Stone that is known, read from a list.
 struct Stone {
-  Vec<2> centre;                               ///< m
-  double diameter;                             ///< m, as of a grain
-  std::string phase;                           ///< phase of the stone
-  std::string place;                           ///< place that states the stone, "stones.csv:7", for errors
-  std::shared_ptr<const Shape<2>> shape = {};  ///< shape around the centre; none: a circle
+  Vec<2> centre;                                 ///< m
+  double diameter;                               ///< m, as of a grain
+  std::string phase;                             ///< phase of the stone
+  std::string place;                             ///< place that states the stone, "stones.csv:7", for errors
+  std::shared_ptr<const Surface<2>> shape = {};  ///< shape around the centre; none: a circle
 };
 
 enum class GrainShape : std::uint8_t {

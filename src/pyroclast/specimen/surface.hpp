@@ -24,9 +24,9 @@ struct NearestPoint {
 
 /// Shape of a grain around its own origin, turned and scaled as it lies.
 template <int Dim>
-class Shape {
+class Surface {
  public:
-  virtual ~Shape() = default;
+  virtual ~Surface() = default;
   /// Returns the point of the surface that is nearest to a place; of several, one.
   virtual NearestPoint<Dim> nearest(const Vec<Dim>& place) const = 0;
   /// Returns the radius of a ball around the origin that holds the shape, m.
@@ -34,17 +34,16 @@ class Shape {
   /// Returns the radius of a ball around the origin within the shape, m; 0 where the origin lies outside.
   virtual double inner_radius() const = 0;
   virtual double extent() const = 0;  ///< Returns the area, m², or the volume, m³.
-  virtual double surface_size()
-      const = 0;  ///< Returns the length of the outline, m, or the surface's area, m².
+  virtual double size() const = 0;    ///< Returns the length of the outline, m, or the surface's area, m².
   virtual int corner_count() const {
     return 0;
   }  ///< Returns the number of true corners; 0: the surface is smooth.
   /// Returns points of the surface, evenly and about `spacing` apart (m). Together with points that are taken
   /// they go all around; there are three at least.
-  virtual std::vector<SurfacePoint<Dim>> surface(double spacing,
-                                                 std::span<const Vec<Dim>> taken = {}) const = 0;
+  virtual std::vector<SurfacePoint<Dim>> points(double spacing,
+                                                std::span<const Vec<Dim>> taken = {}) const = 0;
   /// Returns the same shape, larger by a factor.
-  virtual std::shared_ptr<const Shape> scaled(double factor) const = 0;
+  virtual std::shared_ptr<const Surface> scaled(double factor) const = 0;
 };
 
 }  // namespace pyroclast::specimen
