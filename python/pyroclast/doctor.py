@@ -6,6 +6,7 @@ import importlib
 import sys
 
 _NEEDED = {"numpy": "figures", "h5py": "figures", "matplotlib": "figures", "scipy": "studies", "cmaes": "calibration",
+           "jinja2": "pages of runs",
            "openturns": "Sobol' indices, polynomial chaos", "emcee": "posteriors", "pandas": "tables as DataFrames",
            "xarray": "fields as xarray", "meshio": "meshes from and to other programs", "PIL": "labelled images",
            "tkinter": "windows of watch"}

@@ -14,9 +14,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from . import figures, watch
+from .report.command_line import parser as report_parser
 from .study.command_line import parser as study_parser
 
-_OF_PACKAGE = {"figures": figures.parser, "watch": watch.parser, "study": study_parser}
+_OF_PACKAGE = {"figures": figures.parser, "report": report_parser, "watch": watch.parser, "study": study_parser}
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ def manual(line: CommandLine) -> str:
     text += ".SH EXIT STATUS\n" + "".join(f".TP\n{code}\n{_roff(meaning)}\n"
                                            for code, meaning in line.exit_codes.items())
     return text + (".SH ENVIRONMENT\n.TP\nPYROCLAST_LAW_PATH\nFolders with contact laws of one\\(aqs own, separated by "
-                   "colons.\n.TP\nPYROCLAST_PYTHON\nThe Python that draws figures and runs studies, if not that of the "
+                   "colons.\n.TP\nPYROCLAST_PYTHON\nThe Python that draws figures, makes pages and runs studies, if not that of the "
                    "installation.\n")
 
 

@@ -16,9 +16,9 @@ from .errors import Error
 if TYPE_CHECKING:
     from .results import Results
 
-_ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
+ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
               "energy_mass_scaling_J")
-_ENERGY_OUT = (
+ENERGY_OUT = (
     ("energy_zones_J", "stored in zones", "#9ecae1", None),
     ("energy_contacts_J", "stored in contacts", style.BLUE, None),
     ("energy_kinetic_J", "kinetic", style.BLACK, None),
@@ -173,7 +173,7 @@ def energy(course: Course) -> Figure:
     for axes in all_axes[:-1]:
         axes.tick_params(labelbottom=False)
     figure.suptitle(style.title_of(course.run), fontsize=style.page().size(9.0))
-    parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
+    parts = [course[name] for name in ENERGY_IN if name in course.run.history]
     work_in = sum(parts)
     turned_over = sum(map(np.abs, parts))
     if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
@@ -203,9 +203,9 @@ def energy(course: Course) -> Figure:
 
 def _energies(run: Results) -> list[tuple[str, str, str, str | None]]:
     """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
-    known = [entry for entry in _ENERGY_OUT if entry[0] in run.history]
+    known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
     others = [name for name in run.history.names
-              if name.startswith("dissipated_") and name not in {column for column, *_ in _ENERGY_OUT}]
+              if name.startswith("dissipated_") and name not in {column for column, *_ in ENERGY_OUT}]
     return known + [(name, name.removeprefix("dissipated_").removesuffix("_J").replace("_", " "), colour, "++")
                     for name, colour in zip(others, cycle(_MORE_LOSSES))]
 

@@ -29,6 +29,7 @@ struct RunOptions {
   std::filesystem::path out;  ///< output folder; empty: runs/<name of the deck>
   bool overwrite = false;
   bool figures = true;
+  bool page = true;  ///< false: no page of the run at its end
   bool watch = false;
   int threads = 0;                   ///< most threads; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best available
@@ -146,5 +147,14 @@ int figures(const std::vector<std::string>& words);
 void draw_figures(
     const std::string& what, const std::filesystem::path& folder, Speech speech = Speech::usual,
     const std::function<bool()>& skip = [] { return false; });
+
+/// Goes on as the program that makes the page of a run, see the Python package.
+/// \param words  as typed
+[[noreturn]] void report(const std::vector<std::string>& words);
+
+/// Makes the page of a run with the Python package; warns when that is not possible.
+/// \param speech  quiet: the name of the file is not printed
+/// \param skip    asked before and while the page is made; true ends the making
+void make_page(const std::filesystem::path& folder, Speech speech, const std::function<bool()>& skip);
 
 }  // namespace pyroclast::app

@@ -16,12 +16,15 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Runs the package's command; returns its exit code, -1 if it was ended, or none where Python cannot be run.
+constexpr const char* kFigures = "pyroclast.figures";
+constexpr const char* kReport = "pyroclast.report";
+
+/// Runs a module of the package; returns its exit code, -1 if it was ended, or none where Python cannot be run.
 std::optional<int> draw(
-    const std::vector<std::string>& words, Speech speech = Speech::usual,
+    const char* module, const std::vector<std::string>& words, Speech speech = Speech::usual,
     const std::function<bool()>& skip = [] { return false; }) {
   if (skip()) return -1;
-  const auto child = start_package("pyroclast.figures", words, {.prints = speech != Speech::quiet});
+  const auto child = start_package(module, words, {.prints = speech != Speech::quiet});
   if (!child) return std::nullopt;
   const int status = wait_for(*child, skip);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -35,19 +38,32 @@ int figures(const std::vector<std::string>& words) {
   if (words.size() >= 2 && (words[0] == "run" || words[0] == "plane") &&
       std::ranges::none_of(words, is_out) && std::filesystem::is_directory(words[1]))
     lock.emplace(words[1]);
-  const auto code = draw(words);
+  const auto code = draw(kFigures, words);
   if (!code) throw Error(no_python());
   return *code == 0 ? 0 : 1;
 }
 
 void draw_figures(const std::string& what, const std::filesystem::path& folder, Speech speech,
                   const std::function<bool()>& skip) {
-  const auto code = draw({what, folder.string()}, speech, skip);
+  const auto code = draw(kFigures, {what, folder.string()}, speech, skip);
   if (code == 0) return;
   say_aside(
       fmt::format("warning: no figures were drawn{}; the results are complete without them.\n"
                   "To draw them later: pyroclast figures {} {}\n",
                   code ? "" : ": " + no_python(), what, folder.string()));
+}
+
+void report(const std::vector<std::string>& words) {
+  become_package(kReport, words);
+}
+
+void make_page(const std::filesystem::path& folder, Speech speech, const std::function<bool()>& skip) {
+  const auto code = draw(kReport, {folder.string()}, speech, skip);
+  if (code == 0) return;
+  say_aside(
+      fmt::format("warning: no page was made{}; the results are complete without it.\n"
+                  "To make it later: pyroclast report {}\n",
+                  code ? "" : ": " + no_python(), folder.string()));
 }
 
 }  // namespace pyroclast::app

@@ -54,6 +54,10 @@ void add_output(CLI::App* command, app::RunOptions& options) {
   command->add_flag("!--no-figures", options.figures, "Draw no figures");
 }
 
+void add_page(CLI::App* command, app::RunOptions& options) {
+  command->add_flag("!--no-report", options.page, "Make no page of the run; --no-figures makes none either");
+}
+
 void add_speech(CLI::App* command, app::RunOptions& options) {
   auto* quiet = command->add_flag_callback(
       "--quiet", [&options] { options.speech = app::Speech::quiet; },
@@ -136,6 +140,7 @@ int command_line(int argc, char** argv) {
     add_changes(command, options);
   }
   for (auto* command : {run, specimen}) add_output(command, options);
+  add_page(run, options);
   for (auto* command : {run, check}) add_processor(command, options);
   add_threads(specimen, options.threads);
 
@@ -163,6 +168,7 @@ int command_line(int argc, char** argv) {
       ->excludes(from_stage);
   add_changes(resume, resume_options.as);
   add_output(resume, resume_options.as);
+  add_page(resume, resume_options.as);
   add_processor(resume, resume_options.as);
   add_own_laws(resume, resume_options.as.laws);
   add_checkpoint(resume, resume_options.as);
@@ -223,6 +229,11 @@ int command_line(int argc, char** argv) {
       "Draw figures of runs that are there, several in one too: figures compare RUN... --out FILE");
   figures->prefix_command();
   figures->set_help_flag();
+
+  auto* report = cli.add_subcommand(
+      "report", "Make the page of a run, which needs nothing but a browser: report RUN [--out FILE]");
+  report->prefix_command();
+  report->set_help_flag();
 
   auto* watch = cli.add_subcommand("watch", "Show a run that another process computes: watch RUN [--once]");
   watch->prefix_command();
@@ -325,6 +336,7 @@ int command_line(int argc, char** argv) {
     if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
     if (*properties) return app::plot_properties(properties_options);
     if (*figures) return app::figures(figures->remaining());
+    if (*report) app::report(report->remaining());
     if (*watch) app::watch(watch->remaining());
     if (*study) app::study(study->remaining());
     if (*concrete) return app::write_concrete(concrete_options);

@@ -168,6 +168,8 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
     draw_figures("run", folder, log.speech(), [&] { return interrupt.asked_twice(); });
   }
+  if (options.figures && options.page)
+    make_page(folder, log.speech(), [&] { return interrupt.asked_twice(); });
   return exit_code(summary);
 }
 

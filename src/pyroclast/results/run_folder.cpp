@@ -29,7 +29,7 @@ constexpr const char* kManifest = "manifest.json";
 constexpr const char* kReferences = "references.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// Files that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
+/// Files that a run, `specimen`, `figures`, `report` and `watch` write into the folder of a run, as patterns of
 /// fnmatch(3), besides the manifest and the figures. Other files outlive `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
@@ -39,6 +39,7 @@ constexpr auto kWritten = std::to_array<const char*>({
     "temperature_profile.csv",
     "summary.json",
     "lock",
+    "report.html",
     "run.log",
     "inputs/*",
     "checkpoints/*.state",

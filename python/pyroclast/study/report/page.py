@@ -13,7 +13,7 @@ from ...decks import toml
 from ..driver import duration
 from ..store import DONE
 from .drawing import parameter_label, value_text
-from .markup import Markup, element, picture, together
+from ...report.markup import Markup, element, picture, together
 from .section import PageTable, Section, Shown
 from .seen import Seen, number
 

@@ -7,7 +7,10 @@ import html
 
 
 class Markup(str):
-    """Text that is HTML already."""
+    """Text that is HTML already; Jinja2 knows it by its method."""
+
+    def __html__(self) -> str:
+        return str(self)
 
 
 def element(name: str, *inside: str, **attributes: str) -> Markup:

@@ -1,0 +1,168 @@
+"""The history of a run for a page: its columns, and what may be drawn over what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import style
+from ..progress import ENERGY_IN, ENERGY_OUT
+from ..records import abscissa, leading, records_of
+from ..reference import TRANSIENT_STRAIN, strain_band
+from ..results import Results
+from .marks import Mark, marks
+from .packing import packed_floats
+
+_MOST_CELLS = 40_000  # of the history that a page keeps
+_MOST_ROWS_OF_PARENT = 400
+
+
+@dataclass(frozen=True)
+class CurveQuantity:
+    """A column that curves are drawn of or over. The name of a reference is that of decks."""
+
+    id: str
+    label: str
+    column: str
+    factor: float = 1.0
+    reference: str = ""
+
+
+def quantities(run: Results) -> list[CurveQuantity]:
+    """All that a run has."""
+    return [one for one in _all(run) if one.column in run.history.names]
+
+
+def _all(run: Results) -> Iterator[CurveQuantity]:
+    yield CurveQuantity("strain", "axial strain, compression positive [10⁻³]", "strain", 1e3, "strain")
+    yield CurveQuantity("stress", "axial stress, compression positive [MPa]", "stress_MPa", 1.0, "stress")
+    yield CurveQuantity("total_strain", "total axial strain, expansion positive [10⁻³]", "specimen_strain", -1e3,
+                   "total_strain")
+    yield CurveQuantity("lateral_strain", "lateral strain, expansion positive [10⁻³]", "lateral_strain", 1e3)
+    for record in records_of(run):
+        yield CurveQuantity(f"record_{record.name}", record.title, record.column, record.factor, record.name)
+    mean = "" if run.uniform else "mean "
+    yield CurveQuantity("temperature", f"{mean}temperature [°C]", "temperature_degC", 1.0, "temperature")
+    yield CurveQuantity("minutes", "time of heating [min]", "heating_time_s", 1.0 / 60.0, "heating_time")
+    yield CurveQuantity("temperature_min", "least temperature [°C]", "temperature_min_degC")
+    yield CurveQuantity("temperature_max", "greatest temperature [°C]", "temperature_max_degC")
+    for name in run.probes:
+        yield CurveQuantity(f"probe_{name}", f"probe {name} [°C]", f"probe_{name}_degC", 1.0, name)
+    yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
+    yield CurveQuantity("step", "step", "step")
+    yield CurveQuantity("mean_opening", "mean opening of contacts damaged in tension [µm]", "mean_opening_m", 1e6)
+    yield CurveQuantity("unbalanced", "unbalanced ratio [–]", "unbalanced_ratio")
+    yield CurveQuantity("kinetic", "kinetic over strain energy [–]", "kinetic_over_strain")
+    yield CurveQuantity("cycles", "cycles after the exchange", "cycles")
+
+
+def _drawn(run: Results) -> tuple[str, list[str]]:
+    """Ids of what the first curve is drawn over, and of what."""
+    if not run.moves:
+        return "minutes", ["temperature", "temperature_min", "temperature_max",
+                           *(f"probe_{name}" for name in run.probes)]
+    if not run.has_platens:
+        records = records_of(run)
+        over, _, _ = abscissa(run, records)
+        about = leading(records)
+        return f"record_{over.name}" if over else "time", [f"record_{about.name}"] if about else ["kinetic"]
+    if run.exchanged.any() and run.ends_heated:
+        return "minutes" if run.timed else "temperature", ["stress" if run.restrained else "total_strain"]
+    return "strain", ["stress"]
+
+
+@dataclass(frozen=True)
+class PackedCourse:
+    about: dict[str, Any]  #: for JSON
+    array: dict[str, Any]  #: (rows, columns)
+    parent: dict[str, Any] | None  #: the same of the run that this one is a fork of
+    marks: list[Mark]  #: their rows are of the whole history
+    notes: list[str]
+
+
+def course_of(run: Results) -> PackedCourse:
+    """Packs the history: where it is long, the rows that a curve needs, marks and ends of stages."""
+    history = run.history
+    there = quantities(run)
+    by_id = {one.id: one for one in there}
+    over, drawn = _drawn(run)
+    over = over if over in by_id else next(iter(by_id), "")
+    drawn = [name for name in drawn if name in by_id]
+    first = history[by_id[drawn[0]].column] * by_id[drawn[0]].factor if drawn else None
+    found = marks(run, first)
+    stage = history["stage"]
+    frames = rows_of_frames(run)
+    needed = {mark.row for mark in found} | set(frames) | {0, history.rows - 1}
+    needed |= set((np.flatnonzero(np.diff(stage)) + 1).tolist())
+    rows = _kept(run, [by_id[name].column for name in [over, *drawn] if name], sorted(needed))
+    place = {row: i for i, row in enumerate(rows.tolist())}
+    modes = run.crack_modes if run.moves else {}
+    about = {
+        "columns": history.names,
+        "quantities": [asdict(one) for one in there],
+        "over": over, "drawn": drawn,
+        "marks": [{**asdict(mark), "row": place[mark.row]} for mark in found],
+        "frames": [place[row] for row in frames],
+        "stages": _stages(run, stage[rows]),
+        "modes": {mode: interfaces for mode, interfaces in modes.items()},
+        "energy_in": [name for name in ENERGY_IN if name in history.names],
+        "energy_out": [{"column": name, "label": label, "colour": colour}
+                       for name, label, colour, _ in ENERGY_OUT if name in history.names],
+        "references": list(_references(run)),
+        "extent": "area_m2" if any(name.endswith("_area_m2") for name in history.names) else "length_m",
+    }
+    notes = [] if len(rows) == history.rows else \
+        [f"the page keeps {len(rows)} of {history.rows} rows of history.csv"]
+    values = np.column_stack([history[name][rows] for name in history.names])
+    return PackedCourse(about, packed_floats(values), _parent(run, there), found, notes)
+
+
+def rows_of_frames(run: Results) -> list[int]:
+    """Row of the history of each frame."""
+    if run.moves:
+        rows = np.searchsorted(run.history["step"], [frame.step for frame in run.frames])
+    else:
+        rows = np.searchsorted(run.history["heating_time_s"], [frame.time * (1.0 - 1e-9) for frame in run.frames])
+    return np.minimum(rows, run.history.rows - 1).tolist()
+
+
+def _kept(run: Results, columns: list[str], needed: list[int]) -> np.ndarray:
+    history = run.history
+    most = max(200, _MOST_CELLS // len(history.names))
+    kept = style.kept(np.arange(history.rows), *(history[name] for name in columns), most=most)
+    kept[needed] = True
+    return np.flatnonzero(kept)
+
+
+def _stages(run: Results, stage: np.ndarray) -> list[dict[str, Any]]:
+    """Kind, and first and last of the kept rows, of each stage that has rows."""
+    kinds = [str(one.get("kind", "")) for one in run.deck_stages]
+    found = []
+    for number in np.unique(stage[np.isfinite(stage)]).astype(int).tolist():
+        rows = np.flatnonzero(stage == number)
+        found.append({"number": number, "kind": kinds[number] if number < len(kinds) else "",
+                      "first": int(rows[0]), "last": int(rows[-1])})
+    return found
+
+
+def _references(run: Results) -> Iterator[dict[str, Any]]:
+    for table in run.references.tables:
+        yield {"name": table.name, "of": table.of, "over": table.over, "x": table.x.tolist(),
+               "low": table.low.tolist(), "high": table.high.tolist()}
+    if TRANSIENT_STRAIN in run.references.builtin and run.moves and run.has_platens and not run.timed:
+        if band := strain_band(run.load_level):
+            yield {"name": "range of models calibrated on tests", "of": "total_strain", "over": "temperature",
+                   "x": band.temperature.tolist(), "low": band.low.tolist(), "high": band.high.tolist()}
+
+
+def _parent(run: Results, there: list[CurveQuantity]) -> dict[str, Any] | None:
+    parent = run.parent
+    if parent is None:
+        return None
+    columns = [one.column for one in there if one.column in parent.history.names]
+    rows = style.kept(np.arange(parent.history.rows), most=_MOST_ROWS_OF_PARENT)
+    values = np.column_stack([parent.history[name][rows] for name in columns])
+    return {"columns": columns, "name": parent.folder.name, "rows": packed_floats(values)}

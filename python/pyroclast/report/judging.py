@@ -1,0 +1,155 @@
+"""Whether the results of a run may be believed, and why: as its summary judges outcomes, stages and ledgers.
+
+The program judges (`is_good`, warnings, `quasi_static`); here its judgement is put in order for a reader.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from ..results import Results
+
+GOOD, DOUBT, BAD = "good", "doubt", "bad"
+_LEVELS = (GOOD, DOUBT, BAD)  # from good to bad
+_MOST_CARDS = 8
+
+
+class Reason(NamedTuple):
+    level: str  #: GOOD, DOUBT or BAD
+    text: str
+
+
+class _Headline(NamedTuple):
+    """A result that a reader looks for first."""
+
+    result: str
+    label: str
+    unit: str
+    factor: float
+    digits: int
+    mark: str = ""  # of the curve, see `marks`
+    platen: str = ""  # how the platen is held where the result says something; "": anyhow
+
+
+_HEADLINES = (
+    _Headline("E_GPa", "E", "GPa", 1.0, 1),
+    _Headline("f_c_MPa", "f_c", "MPa", 1.0, 1, "peak"),
+    _Headline("strain_at_peak", "strain at the peak", "10⁻³", 1e3, 2, "peak"),
+    _Headline("strain_ic", "ε_ic", "10⁻³", 1e3, 2),
+    _Headline("load_level", "load level", "of f_c", 1.0, 2),
+    _Headline("load_stress_MPa", "stress while heated", "MPa", 1.0, 1, platen="force"),
+    _Headline("critical_temperature_degC", "critical temperature", "°C", 1.0, 0, "end"),
+    _Headline("highest_temperature_degC", "highest temperature", "°C", 1.0, 0),
+    _Headline("largest_thrust_MPa", "largest thrust", "MPa", 1.0, 1, "peak", "fixed"),
+)
+_MINOR = ("steps", "unbalanced_ratio", "exchanges", "cycles")
+_UNITS = {"_K_s": "K/s", "_N_m": "N/m", "_J_m2": "J/m²", "_GPa": "GPa", "_MPa": "MPa", "_Pa": "Pa", "_N": "N",
+          "_J": "J", "_m2": "m²", "_m": "m", "_s": "s", "_degC": "°C", "_K": "K"}
+"""By the ends of names, longer ones first."""
+
+
+@dataclass(frozen=True)
+class Card:
+    """A number at the head of a page, with the reason to believe it or not."""
+
+    label: str
+    value: str  #: "–" where there is none
+    unit: str
+    level: str
+    reason: str
+    mark: str = ""  #: id of the place on the curve that it belongs to
+
+
+def worst(reasons: list[Reason]) -> str:
+    return max((reason.level for reason in reasons), key=_LEVELS.index, default=GOOD)
+
+
+def verdict(run: Results) -> list[Reason]:
+    """Of the run as a whole, worst first."""
+    if "outcome_id" not in run.summary:
+        said = {"running": "the run still goes on: its numbers are those of now",
+                "killed": "the run was killed before it could sum up"}.get(run.outcome, "the run broke off")
+        return [Reason(DOUBT if run.outcome == "running" else BAD, said)]
+    reasons = [Reason(DOUBT, text) for text in run.warnings]
+    stages = run.stages
+    if not run.summary.get("is_good"):
+        reasons.insert(0, Reason(BAD, f"the program does not count this run as good: {run.outcome}"))
+    for number, stage in enumerate(stages, 1):
+        of = f"stage {number}, {stage.get('kind')}"
+        reasons += [Reason(reason.level, f"{of}: {reason.text}") for reason in stage_verdict(stage)]
+    for ledger, name in (("energy_J", "error_over_turnover"), ("heat_J", "error_over_largest")):
+        error = run.summary.get(ledger, {}).get(name)
+        if isinstance(error, (int, float)):
+            of = "energy turned over" if ledger == "energy_J" else "largest term"
+            within = f"{100.0 * abs(error):.2g} % of the {of}"
+            reasons.append(Reason(GOOD, f"the {ledger[:-2]} ledger closes within {within}"))
+    return sorted(dict.fromkeys(reasons), key=lambda reason: -_LEVELS.index(reason.level))
+
+
+def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
+    """Of one stage of the summary."""
+    results = stage.get("results", {})
+    reasons = []
+    if not stage.get("is_good", True):
+        reasons.append(Reason(BAD, str(stage.get("outcome"))))
+    static = results.get("quasi_static")
+    if static is not None:
+        kinetic = results.get("kinetic_over_elastic_to_peak")
+        beside = f": kinetic over elastic energy {kinetic:.2g}" if isinstance(kinetic, float) else ""
+        reasons.append(Reason(GOOD, f"quasi-static up to the peak{beside}") if static else
+                       Reason(BAD, f"not quasi-static{beside}"))
+    if missed := results.get("exchanges_not_converged"):
+        reasons.append(Reason(DOUBT, f"{missed} of {results.get('exchanges')} exchanges did not come to rest"))
+    elif results.get("exchanges"):
+        reasons.append(Reason(GOOD, f"all {results['exchanges']} exchanges came to rest"))
+    reasons += [Reason(DOUBT, str(text)) for text in stage.get("warnings", [])]
+    return reasons
+
+
+def cards(run: Results) -> list[Card]:
+    """The headlines of a run: of each result the last stage that has it."""
+    whole = [reason for reason in verdict(run) if not reason.text.startswith("stage ")]
+    found = {}
+    for stage in run.stages:
+        reasons = stage_verdict(stage)
+        for card in _of_stage(stage, reasons, whole):
+            found.pop(card.label, None)  # the later one stands later
+            found[card.label] = card
+    order = {headline.label: i for i, headline in enumerate(_HEADLINES)}
+    return sorted(found.values(), key=lambda card: order.get(card.label, len(order)))[:_MOST_CARDS]
+
+
+def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> Iterator[Card]:
+    results = stage.get("results", {})
+    known = {headline.result: headline for headline in _HEADLINES
+             if headline.platen in ("", results.get("platen", headline.platen))}
+    leads = any(name in known for name in results)
+    for name, value in results.items():
+        headline = known.get(name) or (None if leads else _own_headline(name, value))
+        if headline is None:
+            continue
+        because = results.get(f"{name.rpartition('_')[0] or name}_none_because") or results.get(f"{name}_none_because")
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            if because:
+                yield Card(headline.label, "–", "", BAD, str(because))
+            continue
+        reasons = own + whole
+        level = worst(reasons)
+        said = next((reason.text for reason in reasons if reason.level == level), "the stage came to its end")
+        yield Card(headline.label, _number(headline.factor * value, headline.digits), headline.unit, level, said,
+                   headline.mark)
+
+
+def _own_headline(name: str, value: object) -> _Headline | None:
+    """Of a result that a deck asked for by a name of its own."""
+    if name in _MINOR or isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    ending = next((end for end in _UNITS if name.endswith(end)), "")
+    label = name.removesuffix(ending)
+    return _Headline(name, label.replace("_", " "), _UNITS.get(ending, ""), 1.0, -1)
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.4g}" if digits < 0 else f"{value:.{digits}f}"

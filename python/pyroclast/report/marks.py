@@ -1,0 +1,81 @@
+"""Places on the curve of a run that a reader looks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..results import Results
+
+_CRACK_LENGTH = 1.0  # m
+_CRACK_SHARE = 0.01  # of the area of all contacts of a solid
+_HIGHER = 1e-3  # of the peak: what counts as higher
+_STRETCH = 0.01  # of the rows of the test, over which a drop is measured
+
+
+@dataclass(frozen=True)
+class Mark:
+    id: str
+    label: str
+    row: int  #: of the history
+
+
+def marks(run: Results, leading: np.ndarray | None) -> list[Mark]:
+    """In the order of the run. leading: (rows,) of what the curve is about, such as the stress; None without one."""
+    found = []
+    history = run.history
+    broken = _sum(run, "_broken")
+    if broken is not None and (broken > 0).any():
+        found.append(Mark("first", "first contact broken", int((broken > 0).argmax())))
+    for ending, least, label in _extents(run):
+        extent = _sum(run, ending)
+        if extent is not None and (extent >= least).any():
+            found.append(Mark("extent", label, int((extent >= least).argmax())))
+    if leading is not None and np.isfinite(leading).any() and _has_peak(run):
+        largest = int(np.nanargmax(leading))
+        peak = _peak_row(run, largest)
+        if leading[largest] > 0.0:
+            found.append(Mark("peak", "peak", peak))
+            if leading[largest] > leading[peak] * (1.0 + _HIGHER):
+                found.append(Mark("largest", "higher again", largest))
+            if (drop := _largest_drop(leading)) is not None:
+                found.append(Mark("drop", "largest drop", drop))
+    if run.critical_temperature is not None:
+        found.append(Mark("end", "failure", history.rows - 1))
+    return sorted(found, key=lambda mark: mark.row)
+
+
+def _has_peak(run: Results) -> bool:
+    return run.moves and (not run.has_platens or not run.ends_heated or run.restrained)
+
+
+def _peak_row(run: Results, largest: int) -> int:
+    """Where f_c is, as the summary has it; without one the row of the largest value."""
+    if not run.has_platens or run.ends_heated or not run.has_peak:
+        return largest
+    rows = np.flatnonzero(run.loaded)
+    return int(rows[np.nanargmin(np.abs(run.loaded_strain - run.peak[0]))])
+
+
+def _extents(run: Results) -> list[tuple[str, float, str]]:
+    if any(name.endswith("_length_m") for name in run.history.names):
+        return [("_length_m", _CRACK_LENGTH, "1 m of cracks")]
+    if run.has_fields and any(name.endswith("_area_m2") for name in run.history.names):
+        whole = float(run.mesh.contacts.extent.sum())
+        return [("_area_m2", _CRACK_SHARE * whole, "cracks on 1 % of the contact area")]
+    return []
+
+
+def _sum(run: Results, ending: str) -> np.ndarray | None:
+    """(rows,) over all modes and interfaces; None where the history has no such column."""
+    columns = [run.history[f"{mode}_{interface}{ending}"] for mode, interfaces in run.crack_modes.items()
+               for interface in interfaces if f"{mode}_{interface}{ending}" in run.history.names]
+    return np.nansum(columns, axis=0) if columns else None
+
+
+def _largest_drop(values: np.ndarray) -> int | None:
+    """The row at which the largest fall within a short stretch is over; None where nothing falls."""
+    stretch = max(1, int(_STRETCH * len(values)))
+    fall = np.nan_to_num(values[:-stretch] - values[stretch:]) if len(values) > stretch else np.zeros(0)
+    return int(fall.argmax()) + stretch if len(fall) and fall.max() > 0.0 else None

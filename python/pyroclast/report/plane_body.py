@@ -1,0 +1,264 @@
+"""A body of the plane with the fields of its frames, packed for a page.
+
+A page draws blocks as polygons and contacts as lines. Blocks keep the corners of their outlines; contacts point at four
+of them. Stresses are means over blocks. Every kept number differs from that of the fields by half of its step at most;
+`body_of` tells the steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..errors import Error
+from ..files import open_hdf
+from ..mesh import Mesh
+from ..results import Frame, Results
+from .packing import packed_floats, packed_steps, packed_whole
+
+_MEET = 1e-9  # of the size of a body: points so near to each other are one
+_FINE = 1e-6  # of the size of a body: the step of places and displacements
+STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "energy": 1e-5}
+"""Wanted steps: MPa, K, m, 1, J."""
+_BROKEN = 127  # a damage of 1; everything below is at most 126
+
+
+class NotFinite(Exception):
+    """A frame holds numbers that are not finite."""
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Corners of all blocks, block after block."""
+
+    gridpoint: np.ndarray  #: (n,)
+    first: np.ndarray  #: (B + 1,) where the corners of each block begin
+    material: np.ndarray  #: (B,)
+    bearing: np.ndarray  #: (B,) bool
+    side: np.ndarray  #: (C, 4): of each contact its corner on one block, the other end of that edge; on the other block
+
+    @property
+    def owner(self) -> np.ndarray:
+        """(n,) block of each corner."""
+        return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+
+def outline_of(mesh: Mesh) -> Outline:
+    """Raises Error where a contact does not lie between two edges of blocks."""
+    blocks = mesh.blocks
+    loops, material = blocks.outlines
+    gridpoint = np.concatenate(loops)
+    first = np.r_[0, np.cumsum([len(loop) for loop in loops])]
+    following = np.arange(1, len(gridpoint) + 1)
+    following[first[1:] - 1] = first[:-1]
+    return Outline(gridpoint, first, material, np.isin(material, blocks.bearing_materials),
+                   _sides(mesh, blocks.points[gridpoint], following))
+
+
+def _sides(mesh: Mesh, corner: np.ndarray, following: np.ndarray) -> np.ndarray:
+    lines = mesh.contacts.points[mesh.contacts.cells]
+    if not len(lines):
+        return np.zeros((0, 4), int)
+    middle = 0.5 * (corner + corner[following])
+    tolerance = _MEET * float(np.ptp(corner, axis=0).max())
+    place = _places(np.concatenate([middle, lines[:, 1]]), tolerance)
+    of_edge, of_contact = place[:len(middle)], place[len(middle):]
+    order = np.argsort(of_edge, kind="stable")
+    start = np.searchsorted(of_edge[order], of_contact)
+    if not (np.searchsorted(of_edge[order], of_contact, "right") - start == 2).all():
+        raise Error(f"{mesh.blocks.path}: a contact does not lie between the edges of two blocks")
+    ends = []
+    for edge in (order[start], order[start + 1]):
+        near, far = (np.linalg.norm(corner[end] - lines[:, 0], axis=1) for end in (edge, following[edge]))
+        ends += [np.where(near < far, edge, following[edge]), np.where(near < far, following[edge], edge)]
+    return np.column_stack(ends)
+
+
+def _places(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """(n,) whole numbers, the same for points that meet."""
+    place = np.zeros(len(points), np.int64)
+    for values in points.T:
+        order = np.argsort(values, kind="stable")
+        rank = np.empty(len(values), np.int64)
+        rank[order] = np.r_[0, np.cumsum(np.diff(values[order]) > tolerance)]
+        place = place * (len(points) + 1) + rank
+    return place
+
+
+@dataclass
+class PackedBody:
+    """What a page needs of a body and its frames."""
+
+    about: dict[str, Any]  #: names and numbers, for JSON
+    arrays: dict[str, dict[str, Any]]  #: as `packing` makes them
+    frames: list[Frame]  #: that are kept
+    notes: list[str] = field(default_factory=list)  #: what was left out
+
+    @property
+    def size(self) -> int:
+        """Characters."""
+        return sum(len(array["data"]) for array in self.arrays.values())
+
+
+def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> PackedBody:
+    """Packs a body of the plane with some of its frames.
+
+    rigid: keep one motion for each block (two displacements and a turn) in the place of displacements of its corners.
+    """
+    mesh = run.mesh
+    outline = outline_of(mesh)
+    shown = _Reader(run, outline)
+    taken, values, broken = [], [], 0
+    for frame in frames:
+        try:
+            values.append(shown.read(frame))
+            taken.append(frame)
+        except NotFinite:
+            broken += 1
+    notes = [f"{broken} frames hold numbers that are not finite and are left out"] if broken else []
+    corner = mesh.blocks.points[outline.gridpoint]
+    fine = _FINE * float(np.ptp(corner, axis=0).max())
+    arrays = {"corner": packed_steps(corner, fine, 4), "first": packed_whole(outline.first, 4),
+              "material": packed_whole(outline.material, 1), "side": packed_whole(outline.side, 4),
+              "interface": packed_whole(mesh.contacts.interface, 1), "extent": packed_floats(mesh.contacts.extent)}
+    columns = {name: np.array([value[name] for value in values]) for name in (values[0] if values else {})}
+    if "displacement" in columns:
+        moves = columns.pop("displacement")
+        if rigid:
+            notes.append("blocks move as rigid bodies: the page keeps no displacements of their corners")
+            shift, turn = rigid_motions(corner, outline, moves)
+            arrays["shift_x"], arrays["shift_y"] = (packed_steps(shift[..., i], fine) for i in range(2))
+            arrays["turn"] = packed_steps(turn, fine / _block_size(corner, outline))
+        else:
+            arrays["move_x"], arrays["move_y"] = (packed_steps(moves[..., i], fine) for i in range(2))
+    for name, column in columns.items():
+        if name.startswith("damage_"):
+            arrays[name] = {**packed_whole(_whole_damage(column), 1), "step": 1.0 / _BROKEN}
+        elif name.startswith("broke_at_"):
+            arrays[name] = packed_whole(column, 4)
+        else:
+            arrays[name] = packed_steps(column, STEPS[name.split("_")[0]])
+    modes = run.crack_modes if run.moves else {}
+    breakable = {name for names in modes.values() for name in names}
+    about = {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
+                           for i, name in enumerate(mesh.blocks.materials)],
+             "interfaces": [_said(name) for name in mesh.contacts.interfaces],
+             "breakable": [name in breakable for name in mesh.contacts.interfaces],
+             "modes": list(modes),
+             "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
+    return PackedBody(about, arrays, taken, notes)
+
+
+def _said(interface: str) -> str:
+    return interface.replace("_", "–")
+
+
+def _whole_damage(damage: np.ndarray) -> np.ndarray:
+    """Of each damage a whole number of steps; only a broken contact has the last."""
+    return np.where(damage >= 1.0, _BROKEN, np.minimum(np.rint(_BROKEN * damage), _BROKEN - 1))
+
+
+def _block_size(corner: np.ndarray, outline: Outline) -> float:
+    low = np.minimum.reduceat(corner, outline.first[:-1])
+    high = np.maximum.reduceat(corner, outline.first[:-1])
+    return float(np.median(high - low))
+
+
+def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians: the least squares over corners."""
+    first, count = outline.first[:-1], np.diff(outline.first)
+    middle = np.add.reduceat(corner, first) / count[:, None]
+    arm = corner - middle[outline.owner]
+    shift = np.add.reduceat(moves, first, axis=1) / count[None, :, None]
+    there = arm + moves - shift[:, outline.owner]
+    across = np.add.reduceat(arm[:, 0] * there[..., 1] - arm[:, 1] * there[..., 0], first, axis=1)
+    along = np.add.reduceat((arm * there).sum(axis=-1), first, axis=1)
+    return shift, np.arctan2(across, along)
+
+
+class _Reader:
+    """Reads what a page keeps of a frame."""
+
+    def __init__(self, run: Results, outline: Outline):
+        self._folder = run.folder / "fields"
+        self._run, self._outline = run, outline
+        blocks = run.mesh.blocks
+        self._block = np.unique(blocks.block, return_inverse=True)[1].ravel()
+        self._share = blocks.sizes / np.bincount(self._block, blocks.sizes)[self._block]
+        self._heated = not run.uniform or not run.moves
+
+    def read(self, frame: Frame) -> dict[str, np.ndarray]:
+        found = {name: values.astype(float) for name, values in self._fields(frame)}
+        if not all(np.isfinite(values).all() for values in found.values()):
+            raise NotFinite
+        return found
+
+    def _fields(self, frame: Frame) -> Iterator[tuple[str, np.ndarray]]:
+        run, outline = self._run, self._outline
+        if self._heated:
+            yield "temperature", run.gridpoint_temperature(frame)[outline.gridpoint]
+        if not run.moves:
+            return
+        yield "displacement", run.gridpoint_displacement(frame)[outline.gridpoint]
+        with open_hdf(self._folder / f"blocks_{frame.number:04d}.hdf") as file:
+            yield from self._of_zones(file)
+        damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
+        for mode, damage in damages.items():
+            yield f"damage_{mode}", damage
+        if damages:
+            largest = np.max(list(damages.values()), axis=0)
+            yield "opening", np.where(largest > 0.0, run.contact_field(frame, "opening [m]"), 0.0)
+
+    def _of_zones(self, file: h5py.File) -> Iterator[tuple[str, np.ndarray]]:
+        cells = file["VTKHDF/CellData"]
+        stress = cells["stress [Pa]"][()]
+        xx, yy, xy = (1e-6 * self._mean(stress[:, i]) for i in (0, 1, 3))
+        middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
+        yield "stress_y", yy
+        yield "stress_1", middle + radius
+        yield "stress_2", middle - radius
+        if "creep_strain [1]" in cells:
+            yield "creep_y", self._mean(cells["creep_strain [1]"][:, 1])
+
+    def _mean(self, of_zones: np.ndarray) -> np.ndarray:
+        """(B,) over the zones of each block, by area."""
+        return np.bincount(self._block, self._share * of_zones)
+
+
+TEXT_OF_BLOCK = {False: 22.0, True: 11.0}
+"""Characters of a page for each block and frame, at most as measured, by whether blocks are rigid."""
+
+
+def fitted(run: Results, most: int, needed: Callable[[Frame], bool]) -> PackedBody:
+    """A body in about so many characters at most: where all is too much with rigid blocks, and then with fewer frames.
+
+    needed: frames that are kept before others. Tells what was left out.
+    """
+    frames = run.frames
+    blocks = len(np.unique(run.mesh.blocks.block))
+    rigid = run.moves and blocks * len(frames) * TEXT_OF_BLOCK[False] > most
+    room = max(2, int(most / (blocks * TEXT_OF_BLOCK[rigid])))
+    while True:
+        chosen = chosen_frames(frames, room, needed)
+        body = body_of(run, chosen, rigid)
+        if len(chosen) < len(frames):
+            body.notes.append(f"the page keeps {len(chosen)} of {len(frames)} frames")
+        if body.size <= 1.05 * most or room <= 2:
+            return body
+        room = max(2, min(int(room * most / body.size), len(chosen) - 1))
+
+
+def chosen_frames(frames: Sequence[Frame], most: int, needed: Callable[[Frame], bool]) -> list[Frame]:
+    """So many of the frames at most: the first and the last, needed ones, and others evenly between them."""
+    if len(frames) <= most:
+        return list(frames)
+    ends = [0, len(frames) - 1]
+    wanted = [*ends, *(i for i, frame in enumerate(frames) if needed(frame) and i not in ends)][:most]
+    for i in np.linspace(0, len(frames) - 1, most).round().astype(int).tolist():
+        if len(wanted) < most and i not in wanted:
+            wanted.append(i)
+    return [frames[i] for i in sorted(wanted)]

@@ -1,0 +1,152 @@
+"""The page of a run: how strong, whether to believe it, when and where it cracked, and why."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import asdict
+from typing import Any, NamedTuple
+
+from .. import style
+from ..errors import Error
+from ..files import read_json
+from ..results import Results, SpecimenFolder
+from .course import course_of, rows_of_frames
+from .judging import cards, verdict, worst
+from .plane_body import fitted
+from .shell import page
+
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "downloads.js", "run.js")
+MOST_TEXT = 9_500_000  # characters of packed numbers on a page
+_MOST_FACTS = 40
+
+
+class RunData(NamedTuple):
+    """A run as the script of a page has it."""
+
+    data: dict[str, Any]
+    notes: list[str]  #: what was left out
+
+
+def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
+    """History and fields, in about so many characters at most."""
+    course = course_of(run)
+    notes = list(course.notes)
+    data: dict[str, Any] = {
+        "title": run.title, "name": run.folder.resolve().name, "moves": run.moves, "course": course.about,
+        "arrays": {"history": course.array}, "parent": None, "body": None, "frames": []}
+    if course.parent:
+        data["parent"] = {"name": course.parent["name"], "columns": course.parent["columns"]}
+        data["arrays"]["parent"] = course.parent["rows"]
+    if not run.has_fields or not run.frames:
+        notes.append("the run keeps no fields, so there is no specimen to look at")
+        return RunData(data, notes)
+    if run.mesh.blocks.dimension == 3:
+        notes.append("the page does not show the fields of a solid; `pyroclast figures plane` draws planes through it")
+        return RunData(data, notes)
+    rows = rows_of_frames(run)
+    row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
+    marked = {min((row for row in rows if row >= mark.row), default=rows[-1]) for mark in course.marks}
+    body = fitted(run, most, lambda frame: row_of[frame.number] in marked)
+    place = dict(zip((frame.number for frame in run.frames), course.about["frames"]))
+    data["frames"] = [{**asdict(frame), "row": place[frame.number]} for frame in body.frames]
+    data["body"] = body.about
+    data["arrays"].update(body.arrays)
+    return RunData(data, notes + body.notes)
+
+
+def run_page(run: Results) -> str:
+    """All of the page."""
+    data, notes = run_data(run)
+    reasons = verdict(run)
+    facts = [_without_formulas(fact) for fact in style.facts_of(run)]
+    return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
+                cards=cards(run), reasons=reasons, notes=notes, stages=_stages(run),
+                has_body=data["body"] is not None, steps=_steps(data["body"]), specimen=_specimen(run),
+                gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
+                can_crack=bool(run.moves and run.crack_modes))
+
+
+def _without_formulas(fact: str) -> str:
+    return fact.replace("$", "").replace("\\sigma", "σ")
+
+
+def _stages(run: Results) -> list[dict[str, Any]]:
+    """What the summary says of each stage, with its numbers in short."""
+    said = []
+    for number, stage in enumerate(run.stages, 1):
+        results = {name: _shown(value) for name, value in stage.get("results", {}).items() if value is not None}
+        said.append({"number": number, "kind": str(stage.get("kind", "")), "outcome": str(stage.get("outcome", "")),
+                     "is_good": bool(stage.get("is_good", True)), "results": results})
+    return said
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _steps(body: dict[str, Any] | None) -> list[tuple[str, str]]:
+    """Of what the page rounds, and to which step."""
+    if body is None:
+        return []
+    names = {"corner": ("places", 1e6, "µm"), "move_x": ("displacements", 1e6, "µm"),
+             "shift_x": ("displacements of blocks", 1e6, "µm"), "temperature": ("temperatures", 1.0, "K"),
+             "stress_y": ("stresses", 1.0, "MPa"), "opening": ("openings", 1e6, "µm"),
+             "creep_y": ("creep strains", 1.0, "")}
+    found = [(label, f"{factor * body['steps'][name]:.3g} {unit}".strip())
+             for name, (label, factor, unit) in names.items() if name in body["steps"]]
+    return [*found, ("damages", "1/127")] if body["modes"] else found
+
+
+def _specimen(run: Results) -> list[tuple[str, str]]:
+    facts = run.summary.get("specimen", {})
+    shown = []
+    for name, value in facts.items() if isinstance(facts, dict) else []:
+        parts = value.items() if isinstance(value, dict) else [("", value)]
+        shown += [(f"{name} {part}".replace("_", " ").strip(), _shown(inner)) for part, inner in parts]
+    for name in ("estimated_E_GPa", "t_b_m", "time_step_s", "mass_over_real_mass", "steps"):
+        if run.summary.get(name) is not None:
+            shown.append((name.replace("_", " "), _shown(run.summary[name])))
+    return shown[:_MOST_FACTS]
+
+
+def _gradation(run: Results) -> list[tuple[str, str, str]]:
+    """Diameter, mm, and the percentages that were asked and placed below it."""
+    try:
+        table = SpecimenFolder(run.folder).gradation
+        return [(f"{1e3 * d:.3g}", f"{asked:.1f}", f"{placed:.1f}") for d, asked, placed
+                in zip(table["d_m"], table["asked_percent"], table["placed_percent"])][:_MOST_FACTS]
+    except Error:
+        return []  # a specimen without circles has none
+
+
+def _manifest(run: Results) -> dict[str, Any]:
+    path = run.folder / "manifest.json"
+    return read_json(path) if path.exists() else {}
+
+
+def _changes(run: Results) -> list[str]:
+    """What `--set` and `--seed` of the command changed of the deck."""
+    try:
+        words = shlex.split(str(_manifest(run).get("command", "")))
+    except ValueError:
+        return []
+    found = []
+    for i, word in enumerate(words):
+        for option in ("--set", "--seed"):
+            if word == option and i + 1 < len(words):
+                found.append(words[i + 1] if option == "--set" else f"seed = {words[i + 1]}")
+            elif word.startswith(f"{option}="):
+                found.append(word[len(option) + 1:] if option == "--set" else f"seed = {word[len(option) + 1:]}")
+    return found
+
+
+def _made(run: Results) -> list[tuple[str, str]]:
+    shown = []
+    for name, value in _manifest(run).items():
+        if isinstance(value, (str, int, float)) and value != "":
+            shown.append((name.replace("_", " "), str(value)))
+    if isinstance(run.summary.get("wall_time_s"), (int, float)):
+        shown.append(("wall time", f"{run.summary['wall_time_s']:.1f} s"))
+    return shown[:_MOST_FACTS]

@@ -1,0 +1,64 @@
+"""Numbers as a page keeps them come back within half a step; what a page cannot show is left out and told."""
+
+import unittest
+
+import numpy as np
+
+from pyroclast.report.packing import packed_floats, packed_steps, packed_whole, unpacked
+from pyroclast.report.plane_body import chosen_frames
+from pyroclast.report.shell import page
+from pyroclast.results import Frame
+
+
+class Packing(unittest.TestCase):
+    def setUp(self):
+        self.random = np.random.default_rng(7)
+
+    def test_steps_come_back_within_half_a_step(self):
+        values = np.cumsum(self.random.normal(scale=1e-5, size=(30, 400)), axis=0)
+        for size in (1, 2, 4):
+            with self.subTest(size=size):
+                packed = packed_steps(values, 1e-7, size)
+                # beside half a step, rounding of the largest number in steps
+                self.assertLessEqual(np.abs(unpacked(packed) - values).max(), packed["step"] * (0.5 + 1e-9))
+
+    def test_the_step_grows_where_so_few_bytes_hold_no_more(self):
+        values = np.array([[0.0, 1.0], [2.0, -3.0]])
+        self.assertEqual(packed_steps(values, 0.5, 1)["step"], 0.5)
+        packed = packed_steps(values, 1e-3, 1)
+        self.assertGreater(packed["step"], 3.0 / 127.0)
+        self.assertLessEqual(np.abs(unpacked(packed) - values).max(), 0.5 * packed["step"] * (1.0 + 1e-9))
+
+    def test_differences_wrap_around(self):
+        values = np.array([[-32768, 32767], [32767, -32768], [0, 1]])
+        self.assertEqual(unpacked(packed_whole(values, 2)).tolist(), values.tolist())
+
+    def test_numbers_in_single_precision_keep_gaps(self):
+        values = np.array([[1.5, np.nan], [-2e-30, 4e10]], dtype=np.float32)
+        np.testing.assert_array_equal(unpacked(packed_floats(values)), values)
+
+
+class Frames(unittest.TestCase):
+    def test_needed_frames_stay_when_there_is_no_room_for_all(self):
+        frames = [Frame(i, 0, 10 * i, 0.1 * i, 1e-4 * i, 1.0) for i in range(100)]
+        chosen = [frame.number for frame in chosen_frames(frames, 8, lambda frame: frame.number in (41, 43))]
+        self.assertEqual(len(chosen), 8)
+        self.assertTrue({0, 41, 43, 99} <= set(chosen))
+        self.assertEqual(chosen, sorted(chosen))
+
+
+class Shell(unittest.TestCase):
+    def test_texts_are_escaped_and_unseen_characters_written_out(self):
+        made = page("index.html", title="<b>\x1b[31m</b>", head=[], rows=[], left=[])
+        self.assertIn("&lt;b&gt;\\x1b[31m&lt;/b&gt;", made)
+        self.assertNotIn("\x1b", made)
+
+    def test_data_end_no_script_and_gaps_are_null(self):
+        made = page("run.html", ("packing.js",), {"a": "</script><script>", "b": float("nan")}, title="t", outcome="",
+                    facts=[], level="good", cards=[], reasons=[], notes=[], stages=[], has_body=False, steps=[],
+                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False)
+        self.assertIn('{"a":"\\u003c/script>\\u003cscript>","b":null}', made)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,321 @@
+"""The page of a run in Debian's Chromium: its numbers are the run's, and it answers to mouse and keys.
+
+SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+from browser import IS_THERE, Browser
+from matplotlib.path import Path
+
+import pyroclast
+from pyroclast.report import write_page
+from pyroclast.report.plane_body import outline_of
+
+RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+browser: Browser
+
+
+def setUpModule():
+    if not IS_THERE:
+        raise unittest.SkipTest("chromium, chromium-driver or python3-selenium is not installed")
+    global browser
+    browser = Browser()
+    unittest.addModuleCleanup(browser.close)
+
+
+class PageTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        browser.console()
+
+    def page_of(self, *folders: pathlib.Path) -> pathlib.Path:
+        return write_page(folders, self.folder / "page.html")
+
+    def assert_silent(self):
+        self.assertEqual(browser.console(), [])
+
+    def picture(self) -> str:
+        return browser.run("return document.getElementById('body').toDataURL()")
+
+
+class EveryCase(PageTest):
+    def test_opens_without_a_word_and_shows_its_last_frame(self):
+        for run in sorted(RUNS.iterdir()):
+            with self.subTest(run.name):
+                browser.open(self.page_of(run))
+                browser.run("document.querySelectorAll('#tabs button').forEach((b) => b.click())")
+                results = pyroclast.read(run)
+                self.assertEqual(browser.run("return document.querySelector('h1').textContent"), results.title)
+                if results.has_fields and results.mesh.blocks.dimension == 2:
+                    self.assertEqual(browser.run("return pyroclast.frames.length"), len(results.frames))
+                    self.assertIn(f"frame {len(results.frames) - 1} of",
+                                  browser.run("return document.getElementById('now').textContent"))
+                self.assert_silent()
+
+
+class OneRun(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.run_ = pyroclast.read(RUNS / "compression")
+        cls.page = write_page([cls.run_.folder], folder / "page.html")
+
+    def setUp(self):
+        super().setUp()
+        browser.open(self.page)
+
+    def kept(self, name: str, frame: int) -> np.ndarray:
+        """Numbers of a frame as the page's script has them."""
+        return np.array(browser.run(
+            "const a = pyroclast.arrays[arguments[0]], from = a.row(arguments[1]); "
+            "return Array.from(a.values.subarray(from, from + a.width), (v) => v * a.step)", name, frame))
+
+    def step(self, name: str) -> float:
+        return browser.run("return pyroclast.arrays[arguments[0]].step", name)
+
+    def assert_within_step(self, name: str, frame: int, values: np.ndarray):
+        # half a step, and single precision of the fields
+        self.assertLessEqual(np.abs(self.kept(name, frame) - values).max(),
+                             0.5 * self.step(name) * (1.0 + 1e-6) + 1e-6 * np.abs(values).max(), name)
+
+    def test_numbers_are_those_of_the_fields_within_their_step(self):
+        blocks = self.run_.mesh.blocks
+        outline = outline_of(self.run_.mesh)
+        for k in (1, 30, len(self.run_.frames) - 1):
+            frame = self.run_.frames[k]
+            moves = self.run_.gridpoint_displacement(frame)[outline.gridpoint]
+            self.assert_within_step("move_x", k, moves[:, 0])
+            self.assert_within_step("move_y", k, moves[:, 1])
+            with h5py.File(self.run_.folder / "fields" / f"blocks_{frame.number:04d}.hdf") as file:
+                stress = 1e-6 * file["VTKHDF/CellData/stress [Pa]"][:, 1].astype(float)
+            block = np.unique(blocks.block, return_inverse=True)[1].ravel()
+            mean = np.bincount(block, blocks.sizes * stress) / np.bincount(block, blocks.sizes)
+            self.assert_within_step("stress_y", k, mean)
+            damages = {mode: self.run_.contact_field(frame, f"{mode}_damage [1]") for mode in self.run_.crack_modes}
+            for mode, damage in damages.items():
+                kept = self.kept(f"damage_{mode}", k)
+                # the last step is kept for broken contacts, so one that is nearly so may be a whole step away
+                self.assertLessEqual(np.abs(kept - damage).max(), 1.0 / 127.0)
+                self.assertEqual((kept >= 1.0).tolist(), (damage >= 1.0).tolist())
+            opening = np.where(np.max(list(damages.values()), axis=0) > 0.0, self.run_.contact_field(frame, "opening [m]"), 0.0)
+            self.assert_within_step("opening", k, opening)
+        corner = blocks.points[outline.gridpoint]
+        kept = np.array(browser.run("const a = pyroclast.arrays.corner; return Array.from(a.values, (v) => v * a.step)"))
+        self.assertLessEqual(np.abs(kept - corner.ravel()).max(), 0.5001 * self.step("corner"))
+
+    def test_pixels_know_their_blocks(self):
+        frame = browser.run("return pyroclast.frame")
+        outline = outline_of(self.run_.mesh)
+        magnification = browser.run("return pyroclast.specimen.magnification")
+        moves = self.run_.gridpoint_displacement(self.run_.frames[frame])[outline.gridpoint]
+        corner = self.run_.mesh.blocks.points[outline.gridpoint] + magnification * moves
+        shown = browser.run("const s = pyroclast.specimen, b = s.body, {x0, x1, y0, y1} = b.box; return [s.W, s.H, b.scale, x0, x1, y0, y1]")
+        W, H, scale, x0, x1, y0, y1 = shown
+        ids = browser.run("return Array.from(pyroclast.body.ids)")
+        tried = 0
+        for share_x, share_y in ((0.5, 0.5), (0.3, 0.25), (0.7, 0.3), (0.35, 0.8), (0.62, 0.66), (0.5, 0.04)):
+            px, py = int(share_x * W), int(share_y * H)
+            x = x0 + (px + 0.5 - (W - scale * (x1 - x0)) / 2) / scale
+            y = y0 + ((H + scale * (y1 - y0)) / 2 - py - 0.5) / scale
+            inside = [b for b in range(len(outline.first) - 1)
+                      if Path(corner[outline.first[b]:outline.first[b + 1]]).contains_point((x, y))]
+            if len(inside) == 1:
+                tried += 1
+                self.assertEqual(ids[py * int(W) + px], inside[0])
+        self.assertGreaterEqual(tried, 5)
+
+    def test_scrubbing_keys_and_marks_change_the_picture(self):
+        last = self.picture()
+        browser.press("Home")
+        first = self.picture()
+        self.assertNotEqual(first, last)
+        browser.press("ArrowRight")
+        self.assertIn("frame 1 of", browser.run("return document.getElementById('now').textContent"))
+        browser.run("const at = document.getElementById('at'); at.value = at.max; at.dispatchEvent(new Event('input'))")
+        self.assertEqual(self.picture(), last)
+        browser.run("document.querySelector('#marks [data-mark=peak]').click()")
+        frame = browser.run("return pyroclast.frame")
+        self.assertGreaterEqual(self.run_.frames[frame].strain, self.run_.peak[0] - 1e-9)
+        self.assertLess(self.run_.frames[frame - 1].strain, self.run_.peak[0])
+        self.assert_silent()
+
+    def test_a_mark_lights_the_contacts_that_are_new_in_its_frame(self):
+        browser.run("document.querySelector('#marks [data-mark=drop]').click()")
+        frame, lit = browser.run("return [pyroclast.frame, [...pyroclast.specimen.lit]]")
+
+        def beyond(k):
+            return np.max([self.run_.contact_field(self.run_.frames[k], f"{mode}_damage [1]")
+                           for mode in self.run_.crack_modes], axis=0) > 0.5
+
+        new = np.flatnonzero(beyond(frame) & ~beyond(frame - 1))
+        self.assertTrue(len(new))
+        # a damage within half a step of a half may count either way
+        self.assertLessEqual(len(set(new.tolist()) ^ set(lit)), 0.1 * len(new))
+
+    def test_a_brushed_piece_tells_what_broke_in_it(self):
+        box = browser.place("#curve svg")
+        y = box["y"] + 0.4 * box["height"]
+        browser.mouse("mousePressed", box["x"] + 0.5 * box["width"], y)
+        browser.mouse("mouseMoved", box["x"] + 0.6 * box["width"], y)
+        browser.mouse("mouseReleased", box["x"] + 0.8 * box["width"], y)
+        a, b = browser.run("return pyroclast.piece")
+        self.assertLess(a, b)
+        steps = browser.run("const s = pyroclast.course.column('step'); return [s[arguments[0]], s[arguments[1]]]", a, b)
+        rows = np.searchsorted(self.run_.history["step"], steps)
+        told = {tuple(row[:2]): row[2:] for row in browser.run(
+            "return [...document.querySelectorAll('#piece table')[0].tBodies[0].rows].map((r) => [...r.cells].map((c) => c.textContent))")}
+        for mode, interfaces in self.run_.crack_modes.items():
+            for name in interfaces:
+                broken = np.diff(self.run_.history[f"{mode}_{name}_broken"][rows])[0]
+                self.assertEqual(float(told[mode, name.replace("_", "–")][1]), broken)
+        energies = dict(browser.run(
+            "return [...document.querySelectorAll('#piece table')[1].tBodies[0].rows].map((r) => [...r.cells].map((c) => c.textContent))"))
+        lost = np.diff(self.run_.history["dissipated_tension_J"][rows])[0]
+        self.assertAlmostEqual(float(energies["tension softening"]), lost, delta=0.006 * lost)  # three digits
+        browser.press("Escape")
+        self.assertTrue(browser.run("return document.getElementById('piece').hidden"))
+        self.assert_silent()
+
+    def test_pointing_tells_a_block_and_a_click_pins_it(self):
+        box = browser.place("#body")
+        x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+        browser.press("Home")  # no cracks yet
+        browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", "x": x, "y": y})
+        told = browser.run("return document.getElementById('tip').textContent")
+        block = browser.run("const s = pyroclast.specimen; return pyroclast.body.at(s.W / 2, s.H / 2, s.W, s.H, 0, 0).block")
+        self.assertTrue(told.startswith(f"block {block}, "), told)
+        browser.mouse("mousePressed", x, y)
+        browser.mouse("mouseReleased", x, y)
+        self.assertIn(f"block {block}", browser.run("return document.getElementById('pinned_rows').textContent"))
+
+    def test_all_of_it_goes_without_a_mouse(self):
+        browser.press("Home")
+        for _ in range(3):
+            browser.press("ArrowDown", shiftKey=True)
+        self.assertIn("block", browser.run("return document.getElementById('tip').textContent"))
+        browser.press("p")
+        self.assertEqual(browser.run("return document.getElementById('pinned_rows').rows.length"), 1)
+        browser.press("[")
+        browser.press("End")
+        browser.press("]")
+        self.assertFalse(browser.run("return document.getElementById('piece').hidden"))
+        browser.press("Escape")
+        browser.press("l")
+        self.assertFalse(browser.run("return document.getElementById('along').hidden"))
+        browser.press("Home")
+        browser.press(" ")
+        browser.wait("return pyroclast.frame > 0")
+        browser.press(" ")
+        self.assert_silent()
+
+    def test_colours_cracks_and_magnification_change_the_picture(self):
+        seen = {self.picture()}
+        for id_, value in (("colour", "stress_y"), ("colour", "displacement"), ("cracks", "opening"), ("cracks", "age"),
+                           ("cracks", "none"), ("magnification", "1")):
+            browser.run("const s = document.getElementById(arguments[0]); s.value = arguments[1]; s.onchange()", id_, value)
+            seen.add(self.picture())
+        self.assertEqual(len(seen), 7)
+        self.assert_silent()
+
+    def test_dark_and_narrow(self):
+        light = self.picture()
+        browser.open(self.page, scheme="dark")
+        self.assertNotEqual(self.picture(), light)
+        self.assertEqual(browser.run("return getComputedStyle(document.body).backgroundColor"), "rgb(23, 24, 26)")
+        browser.open(self.page, width=420, height=800)
+        self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), 420)
+        self.assert_silent()
+
+    def test_print_gives_four_frames_and_all_tabs(self):
+        browser.run("dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(browser.run("return document.querySelectorAll('#four canvas').length"), 4)
+        browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        self.addCleanup(browser.driver.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"media": ""})
+        self.assertEqual(browser.run("return [...document.querySelectorAll('.tab')].filter((t) => t.id !== 'tab_download')"
+                                     ".every((t) => getComputedStyle(t).display === 'block')"), True)
+
+    def test_downloads_hold_the_run(self):
+        saved = browser.run("""
+            const saved = {};
+            URL.createObjectURL = (blob) => { saved.blob = blob; return 'blob:none'; };
+            HTMLAnchorElement.prototype.click = function () { saved[this.download] = saved.blob; };
+            for (const id of ['history', 'frames', 'deck', 'svg']) document.getElementById(`save_${id}`).onclick();
+            window.saved = saved;
+            return Object.keys(saved).filter((name) => name !== 'blob')""")
+        self.assertEqual(len(saved), 4)
+        texts = browser.driver.execute_async_script("""
+            const done = arguments[0], names = Object.keys(saved).filter((n) => n !== 'blob');
+            Promise.all(names.map((n) => saved[n].text())).then((t) => done(Object.fromEntries(names.map((n, i) => [n, t[i]]))))""")
+        deck = next(text for name, text in texts.items() if name.endswith(".toml"))
+        self.assertEqual(deck, self.run_.deck_text)
+        history = next(text for name, text in texts.items() if name.endswith("history.csv"))
+        self.assertEqual(history.split("\n")[0].split(","), self.run_.history.names)
+        picture = next(text for name, text in texts.items() if name.endswith(".svg"))
+        self.assertEqual(picture.count("<polygon"), len(outline_of(self.run_.mesh).first) - 1)
+
+
+class OtherRuns(PageTest):
+    def copy(self, case: str, *without: str) -> pathlib.Path:
+        return pathlib.Path(shutil.copytree(RUNS / case, self.folder / "copy",
+                                            ignore=shutil.ignore_patterns(*without, "checkpoints")))
+
+    def test_hostile_titles_and_names_stay_text(self):
+        run = self.copy("compression")
+        bad = "</script><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>\x1b[31m"
+        for file in ("summary.json", "manifest.json"):
+            known = json.loads((run / file).read_text())
+            (run / file).write_text(json.dumps(known | {"title": bad, "warnings": [bad], "command": f"pyroclast --set '{bad}'"}))
+        (run / "deck.toml").write_text((run / "deck.toml").read_text() + f"# {bad[:-6]}\n")
+        browser.open(self.page_of(run))
+        self.assertIsNone(browser.run("return window.hacked || null"))
+        self.assertEqual(browser.run("return document.querySelector('h1').textContent"), bad.replace("\x1b", "\\x1b"))
+        self.assert_silent()
+
+    def test_the_policy_lets_nothing_else_in(self):
+        browser.open(self.page_of(RUNS / "compression"))
+        browser.run("const s = document.createElement('script'); s.textContent = 'window.hacked = 1'; document.body.append(s); "
+                    "const i = new Image(); i.src = 'http://127.0.0.1:9/x.png'; document.body.append(i)")
+        self.assertIsNone(browser.run("return window.hacked || null"))
+        browser.wait("return true")
+        said = browser.console()
+        self.assertTrue(any("Content Security Policy" in text or "Content-Security-Policy" in text for text in said), said)
+
+    def test_a_run_without_fields_has_its_curve_and_cards(self):
+        browser.open(self.page_of(self.copy("compression", "fields")))
+        self.assertTrue(browser.run("return document.querySelector('#curve path').getAttribute('d').length > 100"))
+        self.assertTrue(browser.run("return document.querySelectorAll('.card').length >= 3"))
+        self.assertIn("keeps no fields", browser.run("return document.querySelector('footer').textContent"))
+        self.assert_silent()
+
+    def test_a_run_that_broke_off_says_so(self):
+        browser.open(self.page_of(self.copy("compression", "summary.json")))
+        self.assertIn("broke off", browser.run("return document.querySelector('.reasons').textContent"))
+        self.assertEqual(browser.run("return document.querySelectorAll('.card').length"), 0)
+        self.assert_silent()
+
+    def test_heat_has_isotherms_and_a_line_across(self):
+        run = pyroclast.read(RUNS / "thermal_wall")
+        browser.open(self.page_of(run.folder))
+        levels = browser.run("return pyroclast.specimen.levels")
+        field = run.gridpoint_temperature(run.frames[-1])
+        self.assertTrue(levels)
+        self.assertTrue(all(field.min() < level < field.max() for level in levels))
+        browser.press("l")
+        values = browser.run("const s = pyroclast.specimen; return s.valuesAt(s.samples(), 'temperature', pyroclast.frame)")
+        self.assertGreater(len(values), 50)
+        self.assertTrue(all(later <= before + 0.5 for before, later in zip(values, values[1:])), "falls from the hot face")
+        self.assert_silent()
+
+
+if __name__ == "__main__":
+    unittest.main()
