@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import pathlib
 import shutil
+import tempfile
 import time
+import unittest
+
+from pyroclast.report import write_page
 
 try:
     from selenium import webdriver
@@ -12,14 +16,17 @@ try:
 except ImportError:
     webdriver = None
 
-IS_THERE = webdriver is not None and all(shutil.which(name) for name in ("chromium", "chromedriver"))
+_IS_THERE = webdriver is not None and all(shutil.which(name) for name in ("chromium", "chromedriver"))
 _PATIENCE = 20.0  # s, for a page to be ready
 
 
-class Browser:
+class _Browser:
     """One window; `open` loads a page and waits until its script is ready."""
 
     def __init__(self):
+        self.driver = None
+
+    def start(self):
         options = webdriver.ChromeOptions()
         options.binary_location = shutil.which("chromium")
         # root, as in containers, has no sandbox
@@ -68,3 +75,34 @@ class Browser:
 
     def close(self) -> None:
         self.driver.quit()
+
+
+browser = _Browser()
+
+
+def begin() -> None:
+    """Starts the browser for a module of tests."""
+    if not _IS_THERE:
+        raise unittest.SkipTest("chromium, chromium-driver or python3-selenium is not installed")
+    browser.start()
+    unittest.addModuleCleanup(browser.close)
+
+
+class PageTest(unittest.TestCase):
+    """Has a folder of its own for pages and copies of runs."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        browser.console()
+
+    def page_of(self, *folders: pathlib.Path) -> pathlib.Path:
+        return write_page(folders, self.folder / "page.html")
+
+    def copy(self, run: pathlib.Path, *without: str, name: str = "copy") -> pathlib.Path:
+        """Of a run, without files of these names."""
+        return pathlib.Path(shutil.copytree(run, self.folder / name,
+                                            ignore=shutil.ignore_patterns(*without, "checkpoints")))
+
+    def assert_silent(self):
+        self.assertEqual(browser.console(), [])

@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
-from browser import IS_THERE, Browser
+from browser import PageTest, begin, browser
 from matplotlib.path import Path
 
 import pyroclast
@@ -20,34 +20,18 @@ from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
 
 RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
-browser: Browser
 
 
 def setUpModule():
-    if not IS_THERE:
-        raise unittest.SkipTest("chromium, chromium-driver or python3-selenium is not installed")
-    global browser
-    browser = Browser()
-    unittest.addModuleCleanup(browser.close)
+    begin()
 
 
-class PageTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        browser.console()
-
-    def page_of(self, *folders: pathlib.Path) -> pathlib.Path:
-        return write_page(folders, self.folder / "page.html")
-
-    def assert_silent(self):
-        self.assertEqual(browser.console(), [])
-
+class PageOfRun(PageTest):
     def picture(self) -> str:
         return browser.run("return document.getElementById('body').toDataURL()")
 
 
-class EveryCase(PageTest):
+class EveryCase(PageOfRun):
     def test_opens_without_a_word_and_shows_its_last_frame(self):
         for run in sorted(RUNS.iterdir()):
             with self.subTest(run.name):
@@ -62,7 +46,7 @@ class EveryCase(PageTest):
                 self.assert_silent()
 
 
-class OneRun(PageTest):
+class OneRun(PageOfRun):
     @classmethod
     def setUpClass(cls):
         folder = pathlib.Path(tempfile.mkdtemp())
@@ -264,13 +248,9 @@ class OneRun(PageTest):
         self.assertEqual(picture.count("<polygon"), len(outline_of(self.run_.mesh).first) - 1)
 
 
-class OtherRuns(PageTest):
-    def copy(self, case: str, *without: str) -> pathlib.Path:
-        return pathlib.Path(shutil.copytree(RUNS / case, self.folder / "copy",
-                                            ignore=shutil.ignore_patterns(*without, "checkpoints")))
-
+class OtherRuns(PageOfRun):
     def test_hostile_titles_and_names_stay_text(self):
-        run = self.copy("compression")
+        run = self.copy(RUNS / "compression")
         bad = "</script><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>\x1b[31m"
         for file in ("summary.json", "manifest.json"):
             known = json.loads((run / file).read_text())
@@ -291,14 +271,14 @@ class OtherRuns(PageTest):
         self.assertTrue(any("Content Security Policy" in text or "Content-Security-Policy" in text for text in said), said)
 
     def test_a_run_without_fields_has_its_curve_and_cards(self):
-        browser.open(self.page_of(self.copy("compression", "fields")))
+        browser.open(self.page_of(self.copy(RUNS / "compression", "fields")))
         self.assertTrue(browser.run("return document.querySelector('#curve path').getAttribute('d').length > 100"))
         self.assertTrue(browser.run("return document.querySelectorAll('.card').length >= 3"))
         self.assertIn("keeps no fields", browser.run("return document.querySelector('footer').textContent"))
         self.assert_silent()
 
     def test_a_run_that_broke_off_says_so(self):
-        browser.open(self.page_of(self.copy("compression", "summary.json")))
+        browser.open(self.page_of(self.copy(RUNS / "compression", "summary.json")))
         self.assertIn("broke off", browser.run("return document.querySelector('.reasons').textContent"))
         self.assertEqual(browser.run("return document.querySelectorAll('.card').length"), 0)
         self.assert_silent()

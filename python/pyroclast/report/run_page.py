@@ -15,7 +15,7 @@ from .judging import cards, verdict, worst
 from .plane_body import fitted
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "downloads.js", "run.js")
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "downloads.js", "common.js", "run.js")
 MOST_TEXT = 9_500_000  # characters of packed numbers on a page
 _MOST_FACTS = 40
 
@@ -28,7 +28,7 @@ class RunData(NamedTuple):
 
 
 def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
-    """History and fields, in about so many characters at most."""
+    """History and fields, the fields in about so many characters at most; none of them where that is 0."""
     course = course_of(run)
     notes = list(course.notes)
     data: dict[str, Any] = {
@@ -37,6 +37,8 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     if course.parent:
         data["parent"] = {"name": course.parent["name"], "columns": course.parent["columns"]}
         data["arrays"]["parent"] = course.parent["rows"]
+    if not most:
+        return RunData(data, notes)
     if not run.has_fields or not run.frames:
         notes.append("the run keeps no fields, so there is no specimen to look at")
         return RunData(data, notes)

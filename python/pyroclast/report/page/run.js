@@ -1,55 +1,5 @@
 // The page of a run: specimen and curve, which move together, and the tabs below.
 
-const $ = (id) => document.getElementById(id);
-const made = (name, text, parent, className) => {
-  const one = document.createElement(name);
-  if (text !== undefined && text !== null) one.textContent = text;
-  if (className) one.className = className;
-  if (parent) parent.append(one);
-  return one;
-};
-const number = (v, digits = 3) => (isFinite(v) ? String(+v.toPrecision(digits)).replace("-", "−") : "–");
-const ENERGY_COLOURS = {"#000000": "var(--ink)", "#10245e": "var(--shear)", "#d55e00": "var(--tension)"};
-const DASHES = ["", "7 3", "2 2", "7 3 2 3"];
-
-document.documentElement.classList.add("script");
-const page = JSON.parse($("data").textContent);
-
-// The history: columns by name, quantities by id.
-class Course {
-  constructor(about, numbers, columns = about.columns) {
-    Object.assign(this, {about, rows: numbers.shape[0]});
-    this.columns = {};
-    columns.forEach((name, k) => {
-      this.columns[name] = Float64Array.from({length: this.rows}, (_, i) => numbers.at(i, k));
-    });
-  }
-  has(name) { return name in this.columns; }
-  column(name) { return this.columns[name] || new Float64Array(this.rows).fill(NaN); }
-  quantity(id) { return this.about.quantities.find((q) => q.id === id); }
-  of(id) {
-    const q = this.quantity(id);
-    return this.column(q.column).map((v) => v * q.factor);
-  }
-  sum(ending) {
-    const total = new Float64Array(this.rows);
-    for (const mode in this.about.modes)
-      for (const interface_ of this.about.modes[mode]) {
-        const values = this.column(`${mode}_${interface_}${ending}`);
-        for (let i = 0; i < this.rows; i++) total[i] += values[i] || 0;
-      }
-    return total;
-  }
-  // Change of a column over a piece of rows; a cell that is empty counts as the nearest one that is not.
-  change(name, [a, b]) {
-    const values = this.column(name);
-    let from = a, to = b;
-    while (from < b && !isFinite(values[from])) from++;
-    while (to > a && !isFinite(values[to])) to--;
-    return isFinite(values[to] - values[from]) ? values[to] - values[from] : 0;
-  }
-}
-
 class RunPage {
   constructor(arrays) {
     this.course = new Course(page.course, arrays.history);
@@ -148,7 +98,7 @@ class RunPage {
   makeMarks() {
     for (const mark of page.course.marks) {
       const x = this.course.quantity(page.course.over), value = this.course.of(page.course.over)[mark.row];
-      const button = made("button", `${mark.label}${isFinite(value) ? ` (${number(value)}${x.label.match(/\[(.*)\]/) ? ` ${RegExp.$1}` : ""})` : ""}`, $("marks"));
+      const button = made("button", `${mark.label}${isFinite(value) ? ` (${number(value)} ${unitOf(x.label)})` : ""}`, $("marks"));
       button.type = "button";
       button.dataset.mark = mark.id;
     }
@@ -292,7 +242,7 @@ class RunPage {
     if (isFinite(f.strain) && f.strain !== null) said.push(`strain ${number(1e3 * f.strain, 3)}·10⁻³`);
     if (f.stress_MPa !== null && isFinite(f.stress_MPa)) said.push(`stress ${number(f.stress_MPa, 3)} MPa`);
     const y = this.course.quantity(page.course.drawn[0]);
-    if (f.strain === null && y) said.push(`${y.label.replace(/ \[.*/, "")} ${number(this.course.of(y.id)[f.row])} ${(y.label.match(/\[(.*)\]/) || ["", ""])[1]}`);
+    if (f.strain === null && y) said.push(`${y.label.replace(/ \[.*/, "")} ${number(this.course.of(y.id)[f.row])} ${unitOf(y.label)}`);
     if (f.temperature > 25 && !(f.strain === null && page.course.drawn[0] === "temperature")) said.push(`${number(f.temperature, 3)} °C`);
     if (f.heating_time > 0) said.push(`${number(f.heating_time / 60, 3)} min`);
     return `frame ${frame} of ${this.frames.length - 1}: ${said.join(", ")}`;
@@ -318,7 +268,7 @@ class RunPage {
       const scale = made("span", null, key, "scale");
       scale.append(number(low));
       made("i", null, scale).style.background = `linear-gradient(90deg, ${stops.map(css).join(", ")})`;
-      scale.append(`${number(high)} ${(this.body.fields.find((f) => f[0] === s.colour)[1].match(/\[(.*)\]/) || ["", ""])[1]}`);
+      scale.append(`${number(high)} ${unitOf(this.body.fields.find((f) => f[0] === s.colour)[1])}`);
       if (s.colour.startsWith("stress")) key.append("tension positive");
     }
     if (!this.body.modes.length || s.cracks === "none") return;
@@ -679,16 +629,6 @@ class RunPage {
 }
 
 const canvasWidth = (tip) => tip.offsetWidth || 180;
-
-function table(host, head, rows) {
-  const scroll = made("div", null, host, "scroll"), one = made("table", null, scroll), line = made("tr", null, made("thead", null, one));
-  for (const text of head) made("th", text, line);
-  const below = made("tbody", null, one);
-  for (const cells of rows) {
-    const row = made("tr", null, below);
-    for (const text of cells) made("td", text, row, typeof text === "number" ? "number" : "");
-  }
-}
 
 const born = performance.now();
 unpackedAll(page.arrays).then((arrays) => {

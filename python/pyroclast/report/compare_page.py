@@ -1,0 +1,93 @@
+"""The page of several runs: their curves together, their specimens at the same strain or temperature, and what of their
+decks differs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from ..curves import names_apart
+from ..errors import Error
+from ..files import read_json
+from ..results import Results
+from .judging import cards, verdict, worst
+from .run_page import MOST_TEXT, run_data
+from .shell import page
+
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "common.js", "compare.js")
+_MOST_BODIES = 6
+"""Specimens that a page shows; of further runs it shows the curves."""
+
+
+def compare_page(runs: Sequence[Results]) -> str:
+    """All of the page. Raises Error where the runs have nothing in common to be drawn over."""
+    whole = [run_data(run, MOST_TEXT // min(len(runs), _MOST_BODIES) if i < _MOST_BODIES else 0)
+             for i, run in enumerate(runs)]
+    names = names_apart(runs)
+    notes = [f"{name}: {note}" for name, data in zip(names, whole) for note in data.notes]
+    if len(runs) > _MOST_BODIES:
+        notes.append(f"specimens are those of the first {_MOST_BODIES} runs")
+    differences = deck_differences(runs)
+    data = {"runs": [{**one.data, "name": name} for name, one in zip(names, whole)],
+            "over": _common([one.data for one in whole], "over"), "of": _common([one.data for one in whole], "of"),
+            "seeds": len(runs) > 2 and all(key == "seed" for key, *_ in differences),
+            "same": [list(pair) for pair in combinations(range(min(len(runs), _MOST_BODIES)), 2)
+                     if _is_same_specimen(runs[pair[0]], runs[pair[1]])]}
+    return page("compare.html", _SCRIPTS, data, title=f"{len(runs)} runs compared", names=names,
+                levels=[worst(verdict(run)) for run in runs], results=_results(runs), differences=differences,
+                notes=notes, outcomes=[run.outcome for run in runs], has_body=any(one.data["body"] for one in whole))
+
+
+def _common(runs: list[dict[str, Any]], what: str) -> str:
+    """Of what the runs' own curves are drawn over, or of, the first that all runs have."""
+    there = set.intersection(*({one["id"] for one in run["course"]["quantities"]} for run in runs))
+    asked = [name for run in runs for name in ([run["course"]["over"]] if what == "over" else run["course"]["drawn"])]
+    found = next((name for name in asked if name in there), None)
+    if found is None:
+        raise Error("report: the runs have nothing in common that a curve could be drawn "
+                    f"{'over' if what == 'over' else 'of'}: {', '.join(dict.fromkeys(asked))}")
+    return found
+
+
+def _results(runs: Sequence[Results]) -> list[tuple[str, list[Any]]]:
+    """A row for each headline: label with unit, and a card for each run, None where it has none."""
+    found = [{(card.label, card.unit): card for card in cards(run)} for run in runs]
+    labels = dict.fromkeys((label, unit) for one in found for label, unit in one if unit or one[label, unit].value != "–")
+    units = {label for label, unit in labels if unit}
+    shown = [key for key in labels if key[1] or key[0] not in units]
+    return [(f"{label} [{unit}]" if unit else label,
+             [one.get((label, unit)) or one.get((label, "")) for one in found]) for label, unit in shown]
+
+
+def deck_differences(runs: Sequence[Results]) -> list[tuple[str, list[str]]]:
+    """Keys of the decks whose values are not all the same, and these; "–" where a deck does not have the key."""
+    flat = [_flat(run.deck) for run in runs]
+    for run, keys in zip(runs, flat):
+        path = run.folder / "manifest.json"
+        if path.exists() and "seed" in (known := read_json(path)):
+            keys["seed"] = str(known["seed"])
+            keys.pop("specimen.seed", None)
+    names = dict.fromkeys(name for keys in flat for name in keys)
+    rows = [(name, [keys.get(name, "–") for keys in flat]) for name in names]
+    return [(name, values) for name, values in rows if len(set(values)) > 1]
+
+
+def _flat(table: Any, path: str = "") -> dict[str, str]:
+    if isinstance(table, dict):
+        inner = [(f"{path}.{key}" if path else str(key), value) for key, value in table.items()]
+    elif isinstance(table, list) and any(isinstance(entry, dict) for entry in table):
+        inner = [(f"{path}[{i}]", value) for i, value in enumerate(table)]
+    else:
+        return {path: str(table)}
+    return {name: text for key, value in inner for name, text in _flat(value, key).items()}
+
+
+def _is_same_specimen(one: Results, other: Results) -> bool:
+    if not (one.has_fields and other.has_fields and one.frames and other.frames):
+        return False
+    return all(np.array_equal(a, b) for a, b in ((one.mesh.blocks.points, other.mesh.blocks.points),
+                                                 (one.mesh.contacts.points, other.mesh.contacts.points),
+                                                 (one.mesh.contacts.interface, other.mesh.contacts.interface)))

@@ -1,0 +1,63 @@
+// What pages of runs and comparisons share: elements, tables, and the history of a run.
+
+document.documentElement.classList.add("script");
+const $ = (id) => document.getElementById(id);
+const made = (name, text, parent, className) => {
+  const one = document.createElement(name);
+  if (text !== undefined && text !== null) one.textContent = text;
+  if (className) one.className = className;
+  if (parent) parent.append(one);
+  return one;
+};
+const number = (v, digits = 3) => (isFinite(v) ? String(+v.toPrecision(digits)).replace("-", "−") : "–");
+const ENERGY_COLOURS = {"#000000": "var(--ink)", "#10245e": "var(--shear)", "#d55e00": "var(--tension)"};
+const DASHES = ["", "7 3", "2 2", "7 3 2 3"];
+
+// The history: columns by name, quantities by id.
+class Course {
+  constructor(about, numbers, columns = about.columns) {
+    Object.assign(this, {about, rows: numbers.shape[0]});
+    this.columns = {};
+    columns.forEach((name, k) => {
+      this.columns[name] = Float64Array.from({length: this.rows}, (_, i) => numbers.at(i, k));
+    });
+  }
+  has(name) { return name in this.columns; }
+  column(name) { return this.columns[name] || new Float64Array(this.rows).fill(NaN); }
+  quantity(id) { return this.about.quantities.find((q) => q.id === id); }
+  of(id) {
+    const q = this.quantity(id);
+    return this.column(q.column).map((v) => v * q.factor);
+  }
+  sum(ending) {
+    const total = new Float64Array(this.rows);
+    for (const mode in this.about.modes)
+      for (const interface_ of this.about.modes[mode]) {
+        const values = this.column(`${mode}_${interface_}${ending}`);
+        for (let i = 0; i < this.rows; i++) total[i] += values[i] || 0;
+      }
+    return total;
+  }
+  // Change of a column over a piece of rows; a cell that is empty counts as the nearest one that is not.
+  change(name, [a, b]) {
+    const values = this.column(name);
+    let from = a, to = b;
+    while (from < b && !isFinite(values[from])) from++;
+    while (to > a && !isFinite(values[to])) to--;
+    return isFinite(values[to] - values[from]) ? values[to] - values[from] : 0;
+  }
+}
+
+function table(host, head, rows) {
+  const scroll = made("div", null, host, "scroll"), one = made("table", null, scroll), line = made("tr", null, made("thead", null, one));
+  for (const text of head) made("th", text, line);
+  const below = made("tbody", null, one);
+  for (const cells of rows) {
+    const row = made("tr", null, below);
+    for (const text of cells) made("td", text, row, typeof text === "number" ? "number" : "");
+  }
+}
+
+// The unit in the brackets of a label.
+const unitOf = (label) => (label.match(/\[(.*)\]/) || ["", ""])[1];
+const page = JSON.parse($("data").textContent);

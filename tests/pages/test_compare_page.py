@@ -1,0 +1,77 @@
+"""The page of several runs in Debian's Chromium.
+
+SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+"""
+
+import json
+import os
+import pathlib
+import unittest
+
+import h5py
+from browser import PageTest, begin, browser
+
+import pyroclast
+from pyroclast.errors import Error
+from pyroclast.report import write_page
+from pyroclast.report.compare_page import deck_differences
+
+RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+
+
+def setUpModule():
+    begin()
+
+
+class Compared(PageTest):
+    def test_cracks_of_one_alone_and_of_both_are_told_apart(self):
+        other = self.copy(RUNS / "compression")
+        run = pyroclast.read(RUNS / "compression")
+        last = run.frames[-1]
+        damages = [f"{mode}_damage [1]" for mode in run.crack_modes]
+        broken = [c for c in range(len(run.mesh.contacts.cells))
+                  if max(run.contact_field(last, name)[c] for name in damages) > 0.55]
+        healed = broken[:7]
+        for frame in run.frames:
+            with h5py.File(other / "fields" / f"contacts_{frame.number:04d}.hdf", "r+") as file:
+                for name in damages:
+                    values = file[f"VTKHDF/CellData/{name}"][()]
+                    values[healed] = 0.0
+                    file[f"VTKHDF/CellData/{name}"][...] = values
+        browser.open(self.page_of(run.folder, other))
+        only_first, only_other, both = browser.run("return pyroclast.counts")
+        self.assertEqual((only_first, only_other), (7, 0))
+        self.assertGreaterEqual(both, len(broken) - 7)
+        self.assert_silent()
+
+    def test_specimens_stand_at_the_same_strain(self):
+        browser.open(self.page_of(RUNS / "compression", RUNS / "starter"))
+        browser.run("const at = document.getElementById('at'); at.value = 100; at.oninput()")
+        strains = browser.run("return pyroclast.shown.map((r) => r.frames[r.frame].strain)")
+        place = 1e-3 * float(browser.run("return document.getElementById('now').textContent").split(": ")[-1])
+        for run, strain in zip((RUNS / "compression", RUNS / "starter"), strains):
+            nearest = min((frame.strain for frame in pyroclast.read(run).frames), key=lambda own: abs(own - place))
+            self.assertAlmostEqual(strain, nearest, delta=1e-9)
+        self.assert_silent()
+
+    def test_seeds_get_a_band(self):
+        runs = []
+        for seed in (1, 2, 3):
+            run = self.copy(RUNS / "starter", "fields", name=f"seed_{seed}")
+            manifest = json.loads((run / "manifest.json").read_text())
+            (run / "manifest.json").write_text(json.dumps(manifest | {"seed": seed}))
+            runs.append(run)
+        self.assertEqual(deck_differences([pyroclast.read(run) for run in runs]), [("seed", ["1", "2", "3"])])
+        browser.open(self.page_of(*runs))
+        self.assertIn("3 seeds: least to greatest", browser.run("return document.querySelector('#curve .key').textContent"))
+        self.assert_silent()
+
+    def test_runs_with_nothing_in_common_are_refused(self):
+        with self.assertRaisesRegex(Error, "nothing in common"):
+            write_page([RUNS / "compression", RUNS / "brazilian"], self.folder / "page.html")
+        with self.assertRaisesRegex(Error, "needs --out FILE"):
+            write_page([RUNS / "compression", RUNS / "starter"])
+
+
+if __name__ == "__main__":
+    unittest.main()
