@@ -54,7 +54,7 @@ def read(folder: str | Path) -> Results:
     Raises Error where the folder holds no run, and says what it holds.
     """
     place = Path(folder)
-    if _is_of_run(place):
+    if is_of_run(place):
         return Results(place)
     if not place.is_dir():
         raise Error(f"{place}: is not a folder")
@@ -67,7 +67,8 @@ def read(folder: str | Path) -> Results:
     raise Error(f"{place}: holds no run: there is neither history.csv nor summary.json")
 
 
-def _is_of_run(folder: Path) -> bool:
+def is_of_run(folder: Path) -> bool:
+    """Whether a folder is that of a run."""
     return any((folder / name).exists() for name in ("history.csv", "summary.json"))
 
 

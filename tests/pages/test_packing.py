@@ -49,7 +49,7 @@ class Frames(unittest.TestCase):
 
 class Shell(unittest.TestCase):
     def test_texts_are_escaped_and_unseen_characters_written_out(self):
-        made = page("index.html", title="<b>\x1b[31m</b>", head=[], rows=[], left=[])
+        made = page("index.html", title="<b>\x1b[31m</b>", entries=[])
         self.assertIn("&lt;b&gt;\\x1b[31m&lt;/b&gt;", made)
         self.assertNotIn("\x1b", made)
 

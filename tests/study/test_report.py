@@ -32,7 +32,7 @@ def model(seed, x=0.5, y=0.5, dull=0.5, kind="a"):
     return {"f_c": 20.0 + 4.0 * x + 2.0 * y + 0.3 * luck + 0.1 * seed, "E": 30.0 + 3.0 * y * y + x}
 '''
 X = '[parameters.x]\nuniform = ["0 MPa", "0.9 MPa"]\nlevels = 4\n'
-XY = f"{X}[parameters.y]\nlog_uniform = [0.1, 1]\nlevels = 3\n"
+XY = f"{X}[parameters.y]\nlog_uniform = [0.1, 1]\nlevels = 4\n"
 DULL = "[parameters.dull]\nuniform = [0, 1]\n"
 KIND = '[parameters.kind]\nchoice = ["a", "<i>b</i>"]\n[parameters.dull]\ninteger = [1, 3]\n'
 FAILING = "[parameters.x]\nuniform = [0, 1.8]\n"
@@ -186,7 +186,7 @@ class Standing(ReportTest):
         self.assertTrue((page.parent / "f_c-curves.png").exists())
         self.assertFalse(study.run(First(18)))
         page = write_report(study)
-        self.assertIn("This study is not complete: 27 of 36 runs are done.", page.read_text())
+        self.assertIn("This study is not complete: 27 of 48 runs are done.", page.read_text())
         self.assertTrue((page.parent / "f_c-curves.png").exists())
 
     def test_an_earlier_report_leaves_nothing_behind(self) -> None:

@@ -15,7 +15,7 @@ class Markup(str):
 
 def element(name: str, *inside: str, **attributes: str) -> Markup:
     """An element; texts inside and attributes are escaped. `class_` is `class`."""
-    said = "".join(f' {key.rstrip("_")}="{html.escape(value)}"' for key, value in attributes.items())
+    said = "".join(f' {key.rstrip("_").replace("_", "-")}="{html.escape(value)}"' for key, value in attributes.items())
     return Markup(f"<{name}{said}>{together(*inside)}</{name}>")
 
 
@@ -29,7 +29,8 @@ def seen(text: str) -> str:
     return "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode() for c in text)
 
 
-def picture(png: bytes, alt: str) -> Markup:
-    """An image within the page."""
+def picture(png: bytes, alt: str, width: int | None = None) -> Markup:
+    """An image within the page; width: in its pixels, the picture's own where it is not said."""
     data = base64.b64encode(png).decode("ascii")
-    return Markup(f'<img alt="{html.escape(alt)}" src="data:image/png;base64,{data}">')
+    wide = f' width="{width}"' if width else ""
+    return Markup(f'<img alt="{html.escape(seen(alt))}"{wide} src="data:image/png;base64,{data}">')

@@ -14,59 +14,63 @@ from ..driver import duration
 from ..store import DONE
 from .drawing import parameter_label, value_text
 from ...report.markup import Markup, element, picture, together
-from .section import PageTable, Section, Shown
+from ...report.shell import page
+from .section import HOW_TO_READ, PageTable, Section, Shown
 from .seen import Seen, number
 
 _MOST_REASONS = 20
-_STYLE = """
-:root { color-scheme: light dark; --ink: #1c1c1c; --faint: #6b6b6b; --ground: #ffffff; --line: #d9d9d9; --box: #f5f5f3;
-  --warn: #fdf0d5; --warn-line: #e69f00; --link: #0072b2; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e8e6e3; --faint: #a0a0a0; --ground: #17181a; --line: #3a3c40;
-  --box: #212327; --warn: #3a2f14; --link: #56b4e9; } }
-body { margin: 0 auto; max-width: 60rem; padding: 1.5rem 1rem 4rem; background: var(--ground); color: var(--ink);
-  font: 16px/1.5 system-ui, sans-serif; }
-h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .25rem; } h2 { font-size: 1.25rem; margin: 2.5rem 0 .5rem;
-  border-bottom: 1px solid var(--line); padding-bottom: .2rem; } h3 { font-size: 1.05rem; margin: 1.75rem 0 .4rem; }
-p { margin: .5rem 0; max-width: 46rem; } .faint, figcaption, .note { color: var(--faint); }
-.warn { background: var(--warn); border-left: 4px solid var(--warn-line); padding: .6rem .9rem; white-space: pre-line; }
-figure { margin: 1.25rem 0; break-inside: avoid; } figure img { display: block; max-width: 100%; background: #ffffff;
-  padding: .5rem; box-sizing: border-box; border: 1px solid var(--line); border-radius: 3px; }
-figcaption, .note { font-size: .875rem; max-width: 46rem; margin-top: .35rem; } a { color: var(--link); }
-.scroll { overflow-x: auto; margin: .75rem 0; } table { border-collapse: collapse; font-size: .9rem;
-  font-variant-numeric: tabular-nums; } th, td { text-align: left; padding: .25rem .9rem .25rem 0; vertical-align: top;
-  border-bottom: 1px solid var(--line); } th { font-weight: 600; } tr.faint td { color: var(--faint); }
-pre { background: var(--box); border: 1px solid var(--line); border-radius: 3px; padding: .7rem .9rem;
-  font-size: .82rem; line-height: 1.4; white-space: pre-wrap; overflow-wrap: anywhere; }
-@media print { :root { color-scheme: light; --ink: #000; --faint: #444; --ground: #fff; --line: #bbb; --box: #fff;
-  --warn: #fff; --link: #000; } body { max-width: none; padding: 0; font-size: 10pt; } h2, h3 { break-after: avoid; }
-  tr { break-inside: avoid; } .scroll { overflow: visible; } @page { margin: 18mm 16mm; } }
-"""
-
-
+_PIXELS = 133  # of a page, for an inch of a figure
 def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes]) -> str:
     """All of the page. pictures: PNG files by the names of figures."""
-    body = together(_head(seen), _warnings(seen),
-                    element("h2", "What was found") if sections else Markup(),
-                    *(_section(section, pictures) for section in sections),
-                    element("h2", "What was run"), _run_table(seen), _varied(seen), _failures(seen),
-                    element("h2", "One run again"), _again(seen),
-                    element("h2", "The study file"), element("p", str(seen.setup.file.name), class_="faint"),
+    body = together(_warnings(seen), _in_short(sections), _contents(sections),
+                    _heading("What was found", "found") if sections else Markup(),
+                    *(_section(section, pictures, _place(i)) for i, section in enumerate(sections)),
+                    _heading("What was run", "run"), _run_table(seen), _varied(seen), _failures(seen),
+                    _heading("One run again", "again"), _again(seen),
+                    _heading("The study file", "file"), element("p", str(seen.setup.file.name), class_="faint"),
                     element("pre", _text(seen.setup.file)), _deck(seen))
-    head = element("head", Markup('<meta charset="utf-8"><meta name="viewport" content="width=device-width">'),
-                   element("title", seen.setup.title), Markup(f"<style>{_STYLE}</style>"))
-    return f'<!DOCTYPE html>\n<html lang="en">{head}{element("body", body)}</html>\n'
+    return page("study.html", title=seen.setup.title, subtitle=_subtitle(seen), body=body)
 
 
-def _head(seen: Seen) -> Markup:
+def _heading(title: str, place: str) -> Markup:
+    return element("h2", title, id=place)
+
+
+def _place(section: int) -> str:
+    return f"found-{section}"
+
+
+def _in_short(sections: Sequence[Section]) -> Markup:
+    """How each section begins that tells a finding."""
+    found = [(i, section) for i, section in enumerate(sections)
+             if section.texts and section.title != HOW_TO_READ]
+    if not found:
+        return Markup()
+    lines = [element("li", element("a", section.title, href=f"#{_place(i)}"), ": ", _beginning(section.texts[0]))
+             for i, section in found]
+    return element("ul", *lines, class_="headline")
+
+
+def _beginning(text: str) -> str:
+    """Its first two sentences."""
+    return ". ".join(text.split(". ")[:2]).rstrip(".") + "."
+
+
+def _contents(sections: Sequence[Section]) -> Markup:
+    places = [*((section.title, _place(i)) for i, section in enumerate(sections)), ("What was run", "run"),
+              ("One run again", "again"), ("The study file", "file")]
+    links = [element("li", element("a", title, href=f"#{place}")) for title, place in places]
+    return element("nav", element("ul", *links, class_="contents"), aria_label="Contents")
+
+
+def _subtitle(seen: Seen) -> str:
     meaning = {"ensemble": "One point with many seeds", "grid": "Grid of parameters", "lhs": "Latin hypercube",
                "morris": "Elementary effects (Morris)", "sobol": "Shares of the variance (Sobol')",
                "chaos": "Shares of the variance by polynomial chaos", "calibrate": "Calibration (CMA-ES)",
                "secant": "Calibration (secant)",
                "posterior": "Posterior by MCMC on surrogates"}[seen.method]
     seeds = len({row["seed"] for row in seen.rows})
-    return together(element("h1", seen.setup.title),
-                    element("p", f"{meaning}: {_counted(seen.forecast.points, 'point')}, "
-                                 f"{_counted(seeds, 'seed')} each", class_="faint"))
+    return f"{meaning}: {_counted(seen.forecast.points, 'point')}, {_counted(seeds, 'seed')} each"
 
 
 def _counted(number_of: int, what: str) -> str:
@@ -90,16 +94,15 @@ def _warnings(seen: Seen) -> Markup:
     return together(*(element("p", text, class_="warn") for text in said))
 
 
-def _section(section: Section, pictures: dict[str, bytes]) -> Markup:
-    return together(element("h3", section.title), *(element("p", text) for text in section.texts if text),
+def _section(section: Section, pictures: dict[str, bytes], place: str) -> Markup:
+    return together(element("h3", section.title, id=place), *(element("p", text) for text in section.texts if text),
                     *(_figure(shown, pictures[shown.name]) for shown in section.figures),
                     *(_table(table) for table in section.tables))
 
 
 def _figure(shown: Shown, png: bytes) -> Markup:
     pdf, png_file = (element("a", ending.upper(), href=f"{shown.name}.{ending}") for ending in ("pdf", "png"))
-    width = shown.figure.get_figwidth()
-    image = element("div", picture(png, shown.caption), style=f"max-width: {8.3 * width:.1f}rem")
+    image = picture(png, shown.caption, width=round(_PIXELS * shown.figure.get_figwidth()))
     return element("figure", image, element("figcaption", shown.caption, " ", pdf, " ", png_file))
 
 

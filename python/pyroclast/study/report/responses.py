@@ -30,6 +30,7 @@ _EFFECTS = ("Rank effects with 95 % intervals (bootstrap over the points). Grey:
 _CURVES = ("Means over seeds of all points (grey dots), and their mean by classes of one parameter with its 95 % "
            "interval (Student's t over the points, all other parameters vary).")
 _CONTOURS = "Mean over seeds between the points of the grid (dots); crosses: no value."
+_LEAST_LEVELS = 4  # of each parameter: contours between fewer show the drawing and not the answer
 _LEAST_R2 = 0.7  # of a rank regression that describes the output
 
 
@@ -52,7 +53,7 @@ def sections(seen: Seen) -> list[Section]:
 
 
 def _makes_a_plane(parameters: Sequence[Parameter]) -> bool:
-    return len(parameters) == 2 and all(p.levels > 1 and p.distribution.kind != "choice" for p in parameters)
+    return len(parameters) == 2 and all(p.levels >= _LEAST_LEVELS and p.distribution.kind != "choice" for p in parameters)
 
 
 def _sentence(parameters: Sequence[Parameter], effects: dict[str, Any]) -> str:

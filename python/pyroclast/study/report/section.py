@@ -17,6 +17,10 @@ class Shown:
     caption: str
 
 
+HOW_TO_READ = "How to read it"
+"""Title of a section that tells no finding."""
+
+
 @dataclass(frozen=True)
 class PageTable:
     """Texts in rows under a head. faint: rows that stand back, by their numbers."""
@@ -44,4 +48,4 @@ def nothing(title: str, why: str) -> Section:
 
 def how_to_read(meaning: str) -> Section:
     """What the numbers of a method mean, once for all outputs."""
-    return Section("How to read it", [meaning])
+    return Section(HOW_TO_READ, [meaning])

@@ -1,0 +1,54 @@
+"""The index of a folder of runs in Debian's Chromium.
+
+SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+"""
+
+import os
+import pathlib
+import unittest
+
+from browser import PageTest, begin, browser
+
+import pyroclast
+from pyroclast.report import write_page
+
+RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+
+
+def setUpModule():
+    begin()
+
+
+class Index(PageTest):
+    def test_runs_are_listed_found_sorted_and_linked(self):
+        folder = self.folder / "runs & <b>more</b>"
+        folder.mkdir()
+        for name in ("compression", "starter", "thermal_wall", "starter_3d"):
+            self.copy(RUNS / name, name=f"{folder.name}/{name}")
+        (folder / "broken").mkdir()
+        (folder / "broken" / "history.csv").write_text("stage,step\n0,x\n")
+        (folder / "notes").mkdir()
+        write_page([folder / "starter"])
+        browser.open(write_page([folder]))
+
+        def names():
+            return browser.run("return [...document.querySelectorAll('.run')].filter((r) => !r.hidden).map((r) => r.dataset.name)")
+
+        self.assertEqual(names(), ["broken", "compression", "starter", "starter_3d", "thermal_wall"])
+        self.assertEqual(browser.run("return document.querySelectorAll('.run img').length"), 3)
+        self.assertEqual(browser.run("return [...document.querySelectorAll('.run a')].map((a) => a.getAttribute('href'))"),
+                         ["starter/report.html"])
+        browser.run("const s = document.getElementById('sort'); s.value = 'f_c'; s.onchange()")
+        strengths = {name: pyroclast.read(folder / name).results["f_c_MPa"] for name in ("compression", "starter", "starter_3d")}
+        self.assertEqual(names()[:3], sorted(strengths, key=lambda name: -strengths[name]))
+        browser.run("const f = document.getElementById('find'); f.value = 'SLAB fire'; f.oninput()")
+        self.assertEqual(names(), ["thermal_wall"])
+        browser.run("const f = document.getElementById('find'); f.value = ''; const l = document.getElementById('level'); "
+                    "l.value = 'bad'; l.onchange()")
+        self.assertIn("broken", names())
+        self.assertNotIn("thermal_wall", names())
+        self.assert_silent()
+
+
+if __name__ == "__main__":
+    unittest.main()
