@@ -21,7 +21,7 @@ def setUpModule():
 
 class Index(PageTest):
     def test_runs_are_listed_found_sorted_and_linked(self):
-        folder = self.folder / "runs & <b>more</b>"
+        folder = self.folder / "runs & <b>more"
         folder.mkdir()
         for name in ("compression", "starter", "thermal_wall", "starter_3d"):
             self.copy(RUNS / name, name=f"{folder.name}/{name}")
