@@ -70,7 +70,7 @@ class _Browser:
     def place(self, selector: str) -> dict[str, float]:
         """Where an element lies in the window, once it is scrolled into view."""
         return self.run("const e = document.querySelector(arguments[0]); e.scrollIntoView({block: 'center'}); "
-                        "const r = e.getBoundingClientRect(); return {x: r.x, y: r.y, width: r.width, height: r.height}",
+                        "const {x, y, width, height} = e.getBoundingClientRect(); return {x, y, width, height}",
                         selector)
 
     def close(self) -> None:

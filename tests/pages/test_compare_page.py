@@ -63,7 +63,8 @@ class Compared(PageTest):
             runs.append(run)
         self.assertEqual(deck_differences([pyroclast.read(run) for run in runs]), [("seed", ["1", "2", "3"])])
         browser.open(self.page_of(*runs))
-        self.assertIn("3 seeds: least to greatest", browser.run("return document.querySelector('#curve .key').textContent"))
+        key = browser.run("return document.querySelector('#curve .key').textContent")
+        self.assertIn("3 seeds: least to greatest", key)
         self.assert_silent()
 
     def test_runs_with_nothing_in_common_are_refused(self):

@@ -24,7 +24,7 @@ class Index(PageTest):
         folder = self.folder / "runs & <b>more"
         folder.mkdir()
         for name in ("compression", "starter", "thermal_wall", "starter_3d"):
-            self.copy(RUNS / name, name=f"{folder.name}/{name}")
+            self.copy(RUNS / name, "report.html", name=f"{folder.name}/{name}")
         (folder / "broken").mkdir()
         (folder / "broken" / "history.csv").write_text("stage,step\n0,x\n")
         (folder / "notes").mkdir()
@@ -32,19 +32,23 @@ class Index(PageTest):
         browser.open(write_page([folder]))
 
         def names():
-            return browser.run("return [...document.querySelectorAll('.run')].filter((r) => !r.hidden).map((r) => r.dataset.name)")
+            return browser.run("return [...document.querySelectorAll('.run')].filter((r) => !r.hidden)"
+                               ".map((r) => r.dataset.name)")
 
         self.assertEqual(names(), ["broken", "compression", "starter", "starter_3d", "thermal_wall"])
         self.assertEqual(browser.run("return document.querySelectorAll('.run img').length"), 3)
-        self.assertEqual(browser.run("return [...document.querySelectorAll('.run a')].map((a) => a.getAttribute('href'))"),
-                         ["starter/report.html"])
+        links = browser.run("return [...document.querySelectorAll('.run a')].map((a) => a.getAttribute('href'))")
+        self.assertEqual(links, ["starter/report.html"])
         browser.run("const s = document.getElementById('sort'); s.value = 'f_c'; s.onchange()")
-        strengths = {name: pyroclast.read(folder / name).results["f_c_MPa"] for name in ("compression", "starter", "starter_3d")}
-        self.assertEqual(names()[:3], sorted(strengths, key=lambda name: -strengths[name]))
+        strengths = {name: pyroclast.read(folder / name).results["f_c_MPa"]
+                     for name in ("compression", "starter", "starter_3d")}
+        known = [name for name, strength in strengths.items() if strength is not None]
+        self.assertTrue(known)
+        self.assertEqual(names()[:len(known)], sorted(known, key=lambda name: -strengths[name]))
         browser.run("const f = document.getElementById('find'); f.value = 'SLAB fire'; f.oninput()")
         self.assertEqual(names(), ["thermal_wall"])
-        browser.run("const f = document.getElementById('find'); f.value = ''; const l = document.getElementById('level'); "
-                    "l.value = 'bad'; l.onchange()")
+        browser.run("document.getElementById('find').value = ''; "
+                    "const l = document.getElementById('level'); l.value = 'bad'; l.onchange()")
         self.assertIn("broken", names())
         self.assertNotIn("thermal_wall", names())
         self.assert_silent()

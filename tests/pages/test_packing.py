@@ -4,8 +4,8 @@ import unittest
 
 import numpy as np
 
+from pyroclast.report.bodies import chosen_frames
 from pyroclast.report.packing import packed_floats, packed_steps, packed_whole, unpacked
-from pyroclast.report.plane_body import chosen_frames
 from pyroclast.report.shell import page
 from pyroclast.results import Frame
 
@@ -56,7 +56,7 @@ class Shell(unittest.TestCase):
     def test_data_end_no_script_and_gaps_are_null(self):
         made = page("run.html", ("packing.js",), {"a": "</script><script>", "b": float("nan")}, title="t", outcome="",
                     facts=[], level="good", cards=[], reasons=[], notes=[], stages=[], has_body=False, steps=[],
-                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False)
+                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False, is_solid=False)
         self.assertIn('{"a":"\\u003c/script>\\u003cscript>","b":null}', made)
 
 

@@ -17,7 +17,7 @@ from .judging import cards, verdict, worst
 from .run_page import MOST_TEXT, run_data
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "common.js", "compare.js")
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "specimen.js", "common.js", "compare.js")
 _MOST_BODIES = 6
 """Specimens that a page shows; of further runs it shows the curves."""
 
@@ -55,7 +55,7 @@ def _common(runs: list[dict[str, Any]], what: str) -> str:
 def _results(runs: Sequence[Results]) -> list[tuple[str, list[Any]]]:
     """A row for each headline: label with unit, and a card for each run, None where it has none."""
     found = [{(card.label, card.unit): card for card in cards(run)} for run in runs]
-    labels = dict.fromkeys((label, unit) for one in found for label, unit in one if unit or one[label, unit].value != "–")
+    labels = dict.fromkeys(key for one in found for key, card in one.items() if card.unit or card.value != "–")
     units = {label for label, unit in labels if unit}
     shown = [key for key in labels if key[1] or key[0] not in units]
     return [(f"{label} [{unit}]" if unit else label,

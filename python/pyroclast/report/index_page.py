@@ -38,7 +38,7 @@ def index_page(folder: Path, page_name: str, relative: Callable[[Path], str]) ->
     """All of the page. page_name: of the page of a run in its folder, which is linked where there is one. relative:
     the path from the index to a file."""
     entries = [_entry(run, page_name, relative) for run in runs_in(folder)]
-    return page("index.html", _SCRIPTS, {}, title=f"Runs in {folder.resolve().name}", entries=entries)
+    return page("index.html", _SCRIPTS, title=f"Runs in {folder.resolve().name}", entries=entries)
 
 
 def _entry(folder: Path, page_name: str, relative: Callable[[Path], str]) -> _Entry:

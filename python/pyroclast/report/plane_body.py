@@ -7,7 +7,8 @@ of them. Stresses are means over blocks. Every kept number differs from that of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,9 +22,11 @@ from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
 
 _MEET = 1e-9  # of the size of a body: points so near to each other are one
-_FINE = 1e-6  # of the size of a body: the step of places and displacements
-STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "energy": 1e-5}
-"""Wanted steps: MPa, K, m, 1, J."""
+FINE = 1e-6  # of the size of a body: the step of places and displacements
+STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5}
+"""Wanted steps: MPa, K, m, 1."""
+_LOST_SHARE = 1e-5  # of all energy that contacts lost: the step of what one of them lost
+_LOST = re.compile(r"lost_(\w+) \[J m-2\]")
 _BROKEN = 127  # a damage of 1; everything below is at most 126
 
 
@@ -121,7 +124,7 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
             broken += 1
     notes = [f"{broken} frames hold numbers that are not finite and are left out"] if broken else []
     corner = mesh.blocks.points[outline.gridpoint]
-    fine = _FINE * float(np.ptp(corner, axis=0).max())
+    fine = FINE * float(np.ptp(corner, axis=0).max())
     arrays = {"corner": packed_steps(corner, fine, 4), "first": packed_whole(outline.first, 4),
               "material": packed_whole(outline.material, 1), "side": packed_whole(outline.side, 4),
               "interface": packed_whole(mesh.contacts.interface, 1), "extent": packed_floats(mesh.contacts.extent)}
@@ -137,29 +140,47 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
             arrays["move_x"], arrays["move_y"] = (packed_steps(moves[..., i], fine) for i in range(2))
     for name, column in columns.items():
         if name.startswith("damage_"):
-            arrays[name] = {**packed_whole(_whole_damage(column), 1), "step": 1.0 / _BROKEN}
-        elif name.startswith("broke_at_"):
-            arrays[name] = packed_whole(column, 4)
-        else:
+            arrays[name] = packed_damage(column)
+        elif not name.startswith("lost_"):
             arrays[name] = packed_steps(column, STEPS[name.split("_")[0]])
-    modes = run.crack_modes if run.moves else {}
-    breakable = {name for names in modes.values() for name in names}
-    about = {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
-                           for i, name in enumerate(mesh.blocks.materials)],
-             "interfaces": [_said(name) for name in mesh.contacts.interfaces],
-             "breakable": [name in breakable for name in mesh.contacts.interfaces],
-             "modes": list(modes),
+    lost = {name: column * mesh.contacts.extent for name, column in columns.items() if name.startswith("lost_")}
+    arrays.update(_packed_losses(run, taken, lost))
+    about = {**about_body(run), "solid": False,
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
     return PackedBody(about, arrays, taken, notes)
+
+
+def about_body(run: Results) -> dict[str, Any]:
+    """Names of materials, interfaces and modes of cracks."""
+    mesh = run.mesh
+    modes = run.crack_modes if run.moves else {}
+    breakable = {name for names in modes.values() for name in names}
+    return {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
+                          for i, name in enumerate(mesh.blocks.materials)],
+            "interfaces": [_said(name) for name in mesh.contacts.interfaces],
+            "breakable": [name in breakable for name in mesh.contacts.interfaces],
+            "modes": list(modes)}
+
+
+def _packed_losses(run: Results, frames: list[Frame], lost: dict[str, np.ndarray]) -> dict[str, dict[str, Any]]:
+    """J, of energies (frames, contacts) over the thickness of the body, J/m; the history tells that thickness."""
+    there = [name for name in lost if f"dissipated_{name.removeprefix('lost_')}_J" in run.history.names]
+    of_unit = sum(float(lost[name][-1].sum()) for name in there)
+    if not of_unit > 0.0:
+        return {}
+    row = np.minimum(np.searchsorted(run.history["step"], frames[-1].step), run.history.rows - 1)
+    whole = sum(float(run.history[f"dissipated_{name.removeprefix('lost_')}_J"][row]) for name in there)
+    return {name: packed_steps(whole / of_unit * lost[name], _LOST_SHARE * whole) for name in there}
 
 
 def _said(interface: str) -> str:
     return interface.replace("_", "–")
 
 
-def _whole_damage(damage: np.ndarray) -> np.ndarray:
-    """Of each damage a whole number of steps; only a broken contact has the last."""
-    return np.where(damage >= 1.0, _BROKEN, np.minimum(np.rint(_BROKEN * damage), _BROKEN - 1))
+def packed_damage(damage: np.ndarray) -> dict[str, Any]:
+    """Damages in a byte each; only a broken contact has the last step."""
+    steps = np.where(damage >= 1.0, _BROKEN, np.minimum(np.rint(_BROKEN * damage), _BROKEN - 1))
+    return {**packed_whole(steps, 1), "step": 1.0 / _BROKEN}
 
 
 def _block_size(corner: np.ndarray, outline: Outline) -> float:
@@ -169,7 +190,7 @@ def _block_size(corner: np.ndarray, outline: Outline) -> float:
 
 
 def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians: the least squares over corners."""
+    """(frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians, by least squares over corners."""
     first, count = outline.first[:-1], np.diff(outline.first)
     middle = np.add.reduceat(corner, first) / count[:, None]
     arm = corner - middle[outline.owner]
@@ -212,6 +233,10 @@ class _Reader:
         if damages:
             largest = np.max(list(damages.values()), axis=0)
             yield "opening", np.where(largest > 0.0, run.contact_field(frame, "opening [m]"), 0.0)
+        with open_hdf(self._folder / f"contacts_{frame.number:04d}.hdf") as file:
+            for name in file["VTKHDF/CellData"]:
+                if match := _LOST.fullmatch(name):
+                    yield f"lost_{match[1]}", file[f"VTKHDF/CellData/{name}"][()]
 
     def _of_zones(self, file: h5py.File) -> Iterator[tuple[str, np.ndarray]]:
         cells = file["VTKHDF/CellData"]
@@ -227,38 +252,3 @@ class _Reader:
     def _mean(self, of_zones: np.ndarray) -> np.ndarray:
         """(B,) over the zones of each block, by area."""
         return np.bincount(self._block, self._share * of_zones)
-
-
-TEXT_OF_BLOCK = {False: 22.0, True: 11.0}
-"""Characters of a page for each block and frame, at most as measured, by whether blocks are rigid."""
-
-
-def fitted(run: Results, most: int, needed: Callable[[Frame], bool]) -> PackedBody:
-    """A body in about so many characters at most: where all is too much with rigid blocks, and then with fewer frames.
-
-    needed: frames that are kept before others. Tells what was left out.
-    """
-    frames = run.frames
-    blocks = len(np.unique(run.mesh.blocks.block))
-    rigid = run.moves and blocks * len(frames) * TEXT_OF_BLOCK[False] > most
-    room = max(2, int(most / (blocks * TEXT_OF_BLOCK[rigid])))
-    while True:
-        chosen = chosen_frames(frames, room, needed)
-        body = body_of(run, chosen, rigid)
-        if len(chosen) < len(frames):
-            body.notes.append(f"the page keeps {len(chosen)} of {len(frames)} frames")
-        if body.size <= 1.05 * most or room <= 2:
-            return body
-        room = max(2, min(int(room * most / body.size), len(chosen) - 1))
-
-
-def chosen_frames(frames: Sequence[Frame], most: int, needed: Callable[[Frame], bool]) -> list[Frame]:
-    """So many of the frames at most: the first and the last, needed ones, and others evenly between them."""
-    if len(frames) <= most:
-        return list(frames)
-    ends = [0, len(frames) - 1]
-    wanted = [*ends, *(i for i, frame in enumerate(frames) if needed(frame) and i not in ends)][:most]
-    for i in np.linspace(0, len(frames) - 1, most).round().astype(int).tolist():
-        if len(wanted) < most and i not in wanted:
-            wanted.append(i)
-    return [frames[i] for i in sorted(wanted)]

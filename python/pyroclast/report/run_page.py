@@ -12,10 +12,10 @@ from ..files import read_json
 from ..results import Results, SpecimenFolder
 from .course import course_of, rows_of_frames
 from .judging import cards, verdict, worst
-from .plane_body import fitted
+from .bodies import fitted
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "specimen.js", "downloads.js", "common.js", "run.js")
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "specimen.js", "downloads.js", "common.js", "run.js")
 MOST_TEXT = 9_500_000  # characters of packed numbers on a page
 _MOST_FACTS = 40
 
@@ -42,9 +42,6 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     if not run.has_fields or not run.frames:
         notes.append("the run keeps no fields, so there is no specimen to look at")
         return RunData(data, notes)
-    if run.mesh.blocks.dimension == 3:
-        notes.append("the page does not show the fields of a solid; `pyroclast figures plane` draws planes through it")
-        return RunData(data, notes)
     rows = rows_of_frames(run)
     row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
     marked = {min((row for row in rows if row >= mark.row), default=rows[-1]) for mark in course.marks}
@@ -61,9 +58,10 @@ def run_page(run: Results) -> str:
     data, notes = run_data(run)
     reasons = verdict(run)
     facts = [_without_formulas(fact) for fact in style.facts_of(run)]
+    body = data["body"]
     return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
-                cards=cards(run), reasons=reasons, notes=notes, stages=_stages(run),
-                has_body=data["body"] is not None, steps=_steps(data["body"]), specimen=_specimen(run),
+                cards=cards(run), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
+                is_solid=bool(body and body["solid"]), steps=_steps(body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
                 can_crack=bool(run.moves and run.crack_modes))
 
@@ -92,12 +90,14 @@ def _steps(body: dict[str, Any] | None) -> list[tuple[str, str]]:
     """Of what the page rounds, and to which step."""
     if body is None:
         return []
-    names = {"corner": ("places", 1e6, "µm"), "move_x": ("displacements", 1e6, "µm"),
+    names = {"corner": ("places", 1e6, "µm"), "point": ("places", 1e6, "µm"), "move_x": ("displacements", 1e6, "µm"),
              "shift_x": ("displacements of blocks", 1e6, "µm"), "temperature": ("temperatures", 1.0, "K"),
              "stress_y": ("stresses", 1.0, "MPa"), "opening": ("openings", 1e6, "µm"),
              "creep_y": ("creep strains", 1.0, "")}
     found = [(label, f"{factor * body['steps'][name]:.3g} {unit}".strip())
              for name, (label, factor, unit) in names.items() if name in body["steps"]]
+    found += [(f"energies that contacts lost by {name.removeprefix('lost_')}", f"{step:.3g} J")
+              for name, step in body["steps"].items() if name.startswith("lost_")]
     return [*found, ("damages", "1/127")] if body["modes"] else found
 
 

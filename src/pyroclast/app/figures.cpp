@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kFigures = "pyroclast.figures";
 constexpr const char* kReport = "pyroclast.report";
 
-/// Runs a module of the package; returns its exit code, -1 if it was ended, or none where Python cannot be run.
+/// Runs a module of the package; returns its exit code, -1 if it was ended, or none where Python cannot be
+/// run.
 std::optional<int> draw(
     const char* module, const std::vector<std::string>& words, Speech speech = Speech::usual,
     const std::function<bool()>& skip = [] { return false; }) {

@@ -29,8 +29,8 @@ constexpr const char* kManifest = "manifest.json";
 constexpr const char* kReferences = "references.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// Files that a run, `specimen`, `figures`, `report` and `watch` write into the folder of a run, as patterns of
-/// fnmatch(3), besides the manifest and the figures. Other files outlive `--overwrite`.
+/// Files that a run, `specimen`, `figures`, `report` and `watch` write into the folder of a run, as patterns
+/// of fnmatch(3), besides the manifest and the figures. Other files outlive `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,

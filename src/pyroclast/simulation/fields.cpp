@@ -196,7 +196,7 @@ void add_losses(const LawTable& law, int /*dimension*/, std::vector<FieldInfo>& 
     if (const auto name = fmt::format("lost_{}", info.name);
         std::ranges::find(all, name, &FieldInfo::name) == all.end())
       all.push_back({name, info.unit, Item::contact, ValueKind::number,
-                     fmt::format("since the start: {}", info.meaning), false});
+                     fmt::format("since the start: {}", info.meaning), info.is_energy()});
 }
 
 template <class Laws>

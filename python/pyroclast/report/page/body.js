@@ -1,25 +1,29 @@
 // A body of the plane: its blocks painted line by line into pixels, each pixel with the block that it shows, and its
 // cracks as lines. Blocks are convex; the same frame gives the same pixels on every machine.
 
-const HALF = 0.5;  // damage from which a crack is drawn
+const HALF = 0.5; // damage from which a crack is drawn
 
 class Body {
   constructor(about, arrays, frames) {
-    Object.assign(this, {about, arrays, frames});
+    Object.assign(this, {about, arrays, frames, ranges: {}, kept: {}, owner: null});
+    this.prepare();
+  }
+
+  // Takes what never changes from the arrays.
+  prepare() {
+    const {about, arrays} = this;
     this.corners = arrays.corner.shape[0];
     this.blocks = arrays.material.shape[0];
     this.contacts = arrays.side.shape[0];
     this.first = arrays.first.values;
     this.side = arrays.side.values;
-    this.x = new Float64Array(this.corners);  // m, of the frame that is placed
+    this.x = new Float64Array(this.corners); // m, of the frame that is placed
     this.y = new Float64Array(this.corners);
-    this.px = new Float64Array(this.corners);  // the same in pixels
+    this.px = new Float64Array(this.corners); // the same in pixels
     this.py = new Float64Array(this.corners);
     this.bearing = Uint8Array.from(arrays.material.values, (m) => about.materials[m].bearing);
     this.middle();
     this.box = this.bounds();
-    this.ranges = {};
-    this.kept = {};
   }
 
   // Middles of the corners of each block, m, where they were made.
@@ -28,7 +32,8 @@ class Body {
     this.middleX = new Float64Array(this.blocks);
     this.middleY = new Float64Array(this.blocks);
     for (let b = 0; b < this.blocks; b++) {
-      const from = this.first[b], to = this.first[b + 1];
+      const from = this.first[b],
+        to = this.first[b + 1];
       for (let i = from; i < to; i++) {
         this.middleX[b] += corner.at(i, 0) / (to - from);
         this.middleY[b] += corner.at(i, 1) / (to - from);
@@ -40,23 +45,32 @@ class Body {
     const {corner} = this.arrays;
     const box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity};
     for (let i = 0; i < this.corners; i++) {
-      const x = corner.at(i, 0), y = corner.at(i, 1);
-      box.x0 = Math.min(box.x0, x); box.x1 = Math.max(box.x1, x);
-      box.y0 = Math.min(box.y0, y); box.y1 = Math.max(box.y1, y);
+      const x = corner.at(i, 0),
+        y = corner.at(i, 1);
+      box.x0 = Math.min(box.x0, x);
+      box.x1 = Math.max(box.x1, x);
+      box.y0 = Math.min(box.y0, y);
+      box.y1 = Math.max(box.y1, y);
     }
     const air = 0.07 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
     return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.4 * air, y1: box.y1 + 0.4 * air};
   }
 
-  get moves() { return "move_x" in this.arrays || "shift_x" in this.arrays; }
-  get modes() { return this.about.modes; }
+  get moves() {
+    return "move_x" in this.arrays || "shift_x" in this.arrays;
+  }
+  get modes() {
+    return this.about.modes;
+  }
 
   // Displacement of the middle of a block, m.
   displacement(frame, block) {
     const a = this.arrays;
     if (a.shift_x) return [a.shift_x.at(frame, block), a.shift_y.at(frame, block)];
-    let u = 0, v = 0;
-    const from = this.first[block], to = this.first[block + 1];
+    let u = 0,
+      v = 0;
+    const from = this.first[block],
+      to = this.first[block + 1];
     for (let i = from; i < to; i++) {
       u += a.move_x.at(frame, i) / (to - from);
       v += a.move_y.at(frame, i) / (to - from);
@@ -66,24 +80,33 @@ class Body {
 
   // Puts all corners where they are in a frame, with displacements magnified.
   place(frame, magnification) {
-    const a = this.arrays, {x, y, corners} = this, {values: rest, step} = a.corner;
+    const a = this.arrays,
+      {x, y, corners} = this,
+      {values: rest, step} = a.corner;
     for (let i = 0; i < corners; i++) {
       x[i] = step * rest[2 * i];
       y[i] = step * rest[2 * i + 1];
     }
     if (a.move_x) {
-      const u = a.move_x.values, v = a.move_y.values, row = a.move_x.row(frame);
-      const kx = magnification * a.move_x.step, ky = magnification * a.move_y.step;
+      const u = a.move_x.values,
+        v = a.move_y.values,
+        row = a.move_x.row(frame);
+      const kx = magnification * a.move_x.step,
+        ky = magnification * a.move_y.step;
       for (let i = 0; i < corners; i++) {
         x[i] += kx * u[row + i];
         y[i] += ky * v[row + i];
       }
     } else if (a.shift_x) {
       for (let b = 0; b < this.blocks; b++) {
-        const turn = a.turn.at(frame, b), c = Math.cos(turn) - 1, s = Math.sin(turn);
-        const u = a.shift_x.at(frame, b), v = a.shift_y.at(frame, b);
+        const turn = a.turn.at(frame, b),
+          c = Math.cos(turn) - 1,
+          s = Math.sin(turn);
+        const u = a.shift_x.at(frame, b),
+          v = a.shift_y.at(frame, b);
         for (let i = this.first[b]; i < this.first[b + 1]; i++) {
-          const dx = x[i] - this.middleX[b], dy = y[i] - this.middleY[b];
+          const dx = x[i] - this.middleX[b],
+            dy = y[i] - this.middleY[b];
           x[i] += magnification * (u + c * dx - s * dy);
           y[i] += magnification * (v + s * dx + c * dy);
         }
@@ -93,10 +116,15 @@ class Body {
 
   // Fields that blocks can be coloured by: id and label.
   get fields() {
-    const a = this.arrays, all = [["material", "material"]];
+    const a = this.arrays,
+      all = [["material", "material"]];
     if (a.temperature) all.push(["temperature", "temperature [°C]"]);
-    if (a.stress_y) all.push(["stress_y", "vertical stress [MPa]"], ["stress_1", "largest principal stress [MPa]"],
-      ["stress_2", "least principal stress [MPa]"]);
+    if (a.stress_y)
+      all.push(
+        ["stress_y", "vertical stress [MPa]"],
+        ["stress_1", "largest principal stress [MPa]"],
+        ["stress_2", "least principal stress [MPa]"],
+      );
     if (this.moves) all.push(["displacement", "displacement [mm]"]);
     if (a.creep_y) all.push(["creep_y", "vertical creep strain [10⁻³]"]);
     return all;
@@ -106,10 +134,13 @@ class Body {
   values(field, frame) {
     const key = `${field} ${frame}`;
     if (this.kept.key === key) return this.kept.values;
-    const values = new Float32Array(this.blocks), a = this.arrays;
+    const values = new Float32Array(this.blocks),
+      a = this.arrays;
     for (let b = 0; b < this.blocks; b++) {
-      const from = this.first[b], to = this.first[b + 1];
-      if (field === "temperature") {
+      const from = this.first[b],
+        to = this.first[b + 1]; // of a plane body
+      if (field === "temperature" && a.temperature.width === this.blocks) values[b] = a.temperature.at(frame, b);
+      else if (field === "temperature") {
         let sum = 0;
         for (let i = from; i < to; i++) sum += a.temperature.at(frame, i);
         values[b] = sum / (to - from);
@@ -134,28 +165,33 @@ class Body {
     const at = (share) => all[Math.min(all.length - 1, Math.floor(share * all.length))];
     if (field.startsWith("stress") || field.startsWith("creep")) {
       const most = Math.max(-at(0.004), at(0.996), 1e-9);
-      return this.ranges[field] = {low: -most, high: most, isTwoSided: true};
+      return (this.ranges[field] = {low: -most, high: most, isTwoSided: true});
     }
-    const low = field === "temperature" ? all[0] : 0, high = field === "temperature" ? all[all.length - 1] : at(0.99);
-    return this.ranges[field] = {low, high: high > low ? high : low + 1, isTwoSided: false};
+    const low = field === "temperature" ? all[0] : 0,
+      high = field === "temperature" ? all[all.length - 1] : at(0.99);
+    return (this.ranges[field] = {low, high: high > low ? high : low + 1, isTwoSided: false});
   }
 
   // Of each contact the first frame in which its damage by any mode is above a half; -1 where it never is.
   get brokeIn() {
     if (this.first_) return this.first_;
-    const first = new Int32Array(this.contacts).fill(-1), {interface: kind} = this.arrays;
+    const first = new Int32Array(this.contacts).fill(-1),
+      {interface: kind} = this.arrays;
     for (let f = this.frames.length - 1; f >= 0; f--)
       for (const mode of this.modes) {
-        const damage = this.arrays[`damage_${mode}`], row = damage.row(f), least = HALF / damage.step;
+        const damage = this.arrays[`damage_${mode}`],
+          row = damage.row(f),
+          least = HALF / damage.step;
         for (let c = 0; c < this.contacts; c++)
           if (damage.values[row + c] > least && this.about.breakable[kind.values[c]]) first[c] = f;
       }
-    return this.first_ = first;
+    return (this.first_ = first);
   }
 
   // The mode with the largest damage of a contact, and that damage.
   worst(frame, contact) {
-    let mode = null, most = 0;
+    let mode = null,
+      most = 0;
     for (const name of this.modes) {
       const damage = this.arrays[`damage_${name}`].at(frame, contact);
       if (damage > most) [mode, most] = [name, damage];
@@ -165,26 +201,56 @@ class Body {
 
   // Contacts that a frame shows as cracks.
   cracks(frame) {
-    const found = [], first = this.modes.length ? this.brokeIn : [];
+    const found = [],
+      first = this.modes.length ? this.brokeIn : [];
     for (let c = 0; c < this.contacts; c++) if (first[c] >= 0 && first[c] <= frame) found.push(c);
     return found;
   }
 
   // Ends of the line that a contact is drawn as, pixels.
   line(contact) {
-    const [a, b, c, d] = this.side.subarray(4 * contact, 4 * contact + 4), {px, py} = this;
-    return [(px[a] + px[c]) / 2, (py[a] + py[c]) / 2,
-      (px[a] + px[b] + px[c] + px[d]) / 4, (py[a] + py[b] + py[c] + py[d]) / 4];
+    const [a, b, c, d] = this.side.subarray(4 * contact, 4 * contact + 4),
+      {px, py} = this;
+    return [
+      (px[a] + px[c]) / 2,
+      (py[a] + py[c]) / 2,
+      (px[a] + px[b] + px[c] + px[d]) / 4,
+      (py[a] + py[b] + py[c] + py[d]) / 4,
+    ];
+  }
+
+  // Where a block's middle and a contact's corner were made, m.
+  whereBlock(b) {
+    return [this.middleX[b], this.middleY[b]];
+  }
+  whereContact(c) {
+    return [0, 1].map((k) => this.arrays.corner.at(this.side[4 * c], k));
+  }
+  contactNumber(c) {
+    return c;
+  }
+  get hasIsotherms() {
+    return "temperature" in this.arrays;
+  }
+
+  // Angle of a contact's line from the horizontal, radians.
+  steepness(c) {
+    const {corner} = this.arrays,
+      [a, b] = [this.side[4 * c], this.side[4 * c + 1]];
+    return Math.atan2(corner.at(b, 1) - corner.at(a, 1), corner.at(b, 0) - corner.at(a, 0));
   }
 
   // Height over width of a picture.
-  get shape() { return (this.box.y1 - this.box.y0) / (this.box.x1 - this.box.x0); }
+  get shape() {
+    return (this.box.y1 - this.box.y0) / (this.box.x1 - this.box.x0);
+  }
 
   // Places of the corners in a picture of W x H pixels.
   project(W, H) {
     const {x0, x1, y0, y1} = this.box;
     const scale = Math.min(W / (x1 - x0), H / (y1 - y0));
-    const left = (W - scale * (x1 - x0)) / 2, low = (H + scale * (y1 - y0)) / 2;
+    const left = (W - scale * (x1 - x0)) / 2,
+      low = (H + scale * (y1 - y0)) / 2;
     for (let i = 0; i < this.corners; i++) {
       this.px[i] = left + (this.x[i] - x0) * scale;
       this.py[i] = low - (this.y[i] - y0) * scale;
@@ -192,28 +258,38 @@ class Body {
     this.scale = scale;
   }
 
-  // Paints all blocks into pixels (0xAABBGGRR). `colour(b)` is that of a block. Returns the block of each pixel, -1 for none.
+  // Paints all blocks into pixels (0xAABBGGRR). `colour(b)` is that of a block. Returns the block of each pixel, -1 for
+  // none.
   paint(pixels, W, H, colour) {
     if (!this.ids || this.ids.length !== W * H) this.ids = new Int32Array(W * H);
-    const ids = this.ids.fill(-1), {px, py, first} = this;
+    const ids = this.ids.fill(-1),
+      {px, py, first} = this;
     pixels.fill(0);
-    const from = new Float64Array(H), to = new Float64Array(H);
-    for (let b = 0; b < this.blocks; b++) {
-      let top = Infinity, low = -Infinity;
-      for (let i = first[b]; i < first[b + 1]; i++) {
+    const from = new Float64Array(H),
+      to = new Float64Array(H);
+    for (let p = 0; p + 1 < first.length; p++) {
+      let top = Infinity,
+        low = -Infinity;
+      for (let i = first[p]; i < first[p + 1]; i++) {
         top = Math.min(top, py[i]);
         low = Math.max(low, py[i]);
       }
-      const start = Math.max(0, Math.ceil(top - 0.5)), end = Math.min(H - 1, Math.floor(low - 0.5));
+      const start = Math.max(0, Math.ceil(top - 0.5)),
+        end = Math.min(H - 1, Math.floor(low - 0.5));
       if (end < start) continue;
       from.fill(Infinity, start, end + 1);
       to.fill(-Infinity, start, end + 1);
-      for (let i = first[b], before = first[b + 1] - 1; i < first[b + 1]; before = i++)
+      for (let i = first[p], before = first[p + 1] - 1; i < first[p + 1]; before = i++)
         this.edge(before, i, start, end, from, to);
-      const ink = colour(b);
+      const b = this.owner ? this.owner[p] : p,
+        ink = colour(b);
       for (let y = start; y <= end; y++) {
-        const a = y * W + Math.max(0, Math.ceil(from[y] - 0.5)), z = y * W + Math.min(W, Math.ceil(to[y] - 0.5));
-        if (z > a) { pixels.fill(ink, a, z); ids.fill(b, a, z); }
+        const a = y * W + Math.max(0, Math.ceil(from[y] - 0.5)),
+          z = y * W + Math.min(W, Math.ceil(to[y] - 0.5));
+        if (z > a) {
+          pixels.fill(ink, a, z);
+          ids.fill(b, a, z);
+        }
       }
     }
     this.closeSeams(pixels, W, H);
@@ -239,17 +315,24 @@ class Body {
       for (let k = y * W + 1, last = y * W + W - 1; k < last; k++) {
         if (ids[k] >= 0) continue;
         const near = ids[k - 1] >= 0 && ids[k + 1] >= 0 ? k - 1 : ids[k - W] >= 0 && ids[k + W] >= 0 ? k - W : -1;
-        if (near >= 0) { ids[k] = ids[near]; pixels[k] = pixels[near]; }
+        if (near >= 0) {
+          ids[k] = ids[near];
+          pixels[k] = pixels[near];
+        }
       }
   }
 
   // The block at a pixel, or -1, and the crack nearest to it within so many pixels, or -1.
   at(x, y, W, H, frame, reach) {
     const block = x >= 0 && y >= 0 && x < W && y < H && this.ids ? this.ids[Math.floor(y) * W + Math.floor(x)] : -1;
-    let crack = -1, least = reach * reach;
+    let crack = -1,
+      least = reach * reach;
     for (const c of this.cracks(frame)) {
       const [x0, y0, x1, y1] = this.line(c);
-      const along = Math.max(0, Math.min(1, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / ((x1 - x0) ** 2 + (y1 - y0) ** 2 || 1)));
+      const along = Math.max(
+        0,
+        Math.min(1, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / ((x1 - x0) ** 2 + (y1 - y0) ** 2 || 1)),
+      );
       const distance = (x0 + along * (x1 - x0) - x) ** 2 + (y0 + along * (y1 - y0) - y) ** 2;
       if (distance < least) [crack, least] = [c, distance];
     }
@@ -258,24 +341,38 @@ class Body {
 
   // Lines of equal temperature: pieces [x0, y0, x1, y1] in pixels, by linear triangles about the middle of each block.
   isotherms(frame, level) {
-    const {temperature} = this.arrays, {px, py, first} = this, found = [];
+    const {temperature} = this.arrays,
+      {px, py, first} = this,
+      found = [];
     for (let b = 0; b < this.blocks; b++) {
       if (this.bearing[b]) continue;
-      const from = first[b], to = first[b + 1];
-      let low = Infinity, high = -Infinity, t = 0, x = 0, y = 0;
+      const from = first[b],
+        to = first[b + 1];
+      let low = Infinity,
+        high = -Infinity,
+        t = 0,
+        x = 0,
+        y = 0;
       for (let i = from; i < to; i++) {
         const at = temperature.at(frame, i);
-        low = Math.min(low, at); high = Math.max(high, at);
-        t += at / (to - from); x += px[i] / (to - from); y += py[i] / (to - from);
+        low = Math.min(low, at);
+        high = Math.max(high, at);
+        t += at / (to - from);
+        x += px[i] / (to - from);
+        y += py[i] / (to - from);
       }
       if (level < low || level > high) continue;
       for (let i = from; i < to; i++) {
         const j = i + 1 < to ? i + 1 : from;
-        const three = [[x, y, t], [px[i], py[i], temperature.at(frame, i)], [px[j], py[j], temperature.at(frame, j)]];
+        const three = [
+          [x, y, t],
+          [px[i], py[i], temperature.at(frame, i)],
+          [px[j], py[j], temperature.at(frame, j)],
+        ];
         const cut = [];
         for (let k = 0; k < 3; k++) {
           const [p, q] = [three[k], three[(k + 1) % 3]];
-          if ((p[2] < level) === (q[2] < level)) continue;
+          if (p[2] < level === q[2] < level) continue;
           const s = (level - p[2]) / (q[2] - p[2]);
           cut.push(p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1]));
         }
@@ -287,13 +384,26 @@ class Body {
 }
 
 // Colours: stops from low to high, dark and light themes alike.
-const TWO_SIDED = [[5, 68, 120], [120, 180, 220], [238, 238, 234], [240, 160, 90], [150, 55, 0]];
-const ONE_SIDED = [[255, 246, 214], [253, 186, 107], [226, 80, 50], [140, 15, 50], [50, 0, 40]];
+const TWO_SIDED = [
+  [5, 68, 120],
+  [120, 180, 220],
+  [238, 238, 234],
+  [240, 160, 90],
+  [150, 55, 0],
+];
+const ONE_SIDED = [
+  [255, 246, 214],
+  [253, 186, 107],
+  [226, 80, 50],
+  [140, 15, 50],
+  [50, 0, 40],
+];
 
 function colourAt(stops, share) {
-  const at = Math.max(0, Math.min(0.99999, share)) * (stops.length - 1), k = Math.floor(at);
+  const at = Math.max(0, Math.min(0.99999, share)) * (stops.length - 1),
+    k = Math.floor(at);
   return stops[k].map((v, i) => Math.round(v + (stops[k + 1][i] - v) * (at - k)));
 }
 
-const ink = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;
+const ink = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;

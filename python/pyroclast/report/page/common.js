@@ -22,9 +22,15 @@ class Course {
       this.columns[name] = Float64Array.from({length: this.rows}, (_, i) => numbers.at(i, k));
     });
   }
-  has(name) { return name in this.columns; }
-  column(name) { return this.columns[name] || new Float64Array(this.rows).fill(NaN); }
-  quantity(id) { return this.about.quantities.find((q) => q.id === id); }
+  has(name) {
+    return name in this.columns;
+  }
+  column(name) {
+    return this.columns[name] || new Float64Array(this.rows).fill(NaN);
+  }
+  quantity(id) {
+    return this.about.quantities.find((q) => q.id === id);
+  }
   of(id) {
     const q = this.quantity(id);
     return this.column(q.column).map((v) => v * q.factor);
@@ -41,7 +47,8 @@ class Course {
   // Change of a column over a piece of rows; a cell that is empty counts as the nearest one that is not.
   change(name, [a, b]) {
     const values = this.column(name);
-    let from = a, to = b;
+    let from = a,
+      to = b;
     while (from < b && !isFinite(values[from])) from++;
     while (to > a && !isFinite(values[to])) to--;
     return isFinite(values[to] - values[from]) ? values[to] - values[from] : 0;
@@ -49,7 +56,9 @@ class Course {
 }
 
 function table(host, head, rows) {
-  const scroll = made("div", null, host, "scroll"), one = made("table", null, scroll), line = made("tr", null, made("thead", null, one));
+  const scroll = made("div", null, host, "scroll"),
+    one = made("table", null, scroll),
+    line = made("tr", null, made("thead", null, one));
   for (const text of head) made("th", text, line);
   const below = made("tbody", null, one);
   for (const cells of rows) {
@@ -57,6 +66,9 @@ function table(host, head, rows) {
     for (const text of cells) made("td", text, row, typeof text === "number" ? "number" : "");
   }
 }
+
+// A body of the plane or a solid.
+const bodyOf = (about, arrays, frames) => new (about.solid ? SolidBody : Body)(about, arrays, frames);
 
 // The unit in the brackets of a label.
 const unitOf = (label) => (label.match(/\[(.*)\]/) || ["", ""])[1];

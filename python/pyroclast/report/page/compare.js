@@ -1,42 +1,62 @@
 // The page of several runs: curves together, specimens where they have the same strain or temperature.
 
-const RUN_COLOURS = ["var(--curve)", "var(--tension)", "var(--good)", "var(--mixed)", "var(--warn-line)", "var(--faint)"];
-const SHARES = 200;  // of the slider
+const RUN_COLOURS = [
+  "var(--curve)",
+  "var(--tension)",
+  "var(--good)",
+  "var(--mixed)",
+  "var(--warn-line)",
+  "var(--faint)",
+];
+const SHARES = 200; // of the slider
 
 // The mean of curves over a common x and their least and greatest values, as far as all go.
 function band(curves, count = 200) {
   const rising = curves.map(({x, y}) => {
     const points = [];
     for (let i = 0; i < x.length; i++)
-      if (isFinite(x[i]) && isFinite(y[i]) && (!points.length || x[i] > points[points.length - 1][0])) points.push([x[i], y[i]]);
+      if (isFinite(x[i]) && isFinite(y[i]) && (!points.length || x[i] > points[points.length - 1][0]))
+        points.push([x[i], y[i]]);
     return points;
   });
-  const from = Math.max(...rising.map((p) => p[0][0])), to = Math.min(...rising.map((p) => p[p.length - 1][0]));
-  const x = Array.from({length: count}, (_, k) => from + (to - from) * k / (count - 1));
+  const from = Math.max(...rising.map((p) => p[0][0])),
+    to = Math.min(...rising.map((p) => p[p.length - 1][0]));
+  const x = Array.from({length: count}, (_, k) => from + ((to - from) * k) / (count - 1));
   const values = rising.map((points) => {
     let k = 0;
     return x.map((v) => {
       while (k < points.length - 2 && points[k + 1][0] < v) k++;
       const [[x0, y0], [x1, y1]] = [points[k], points[k + 1]];
-      return y0 + (y1 - y0) * (v - x0) / (x1 - x0);
+      return y0 + ((y1 - y0) * (v - x0)) / (x1 - x0);
     });
   });
   const of = (f) => x.map((_, k) => f(values.map((v) => v[k])));
-  return {x, low: of((v) => Math.min(...v)), high: of((v) => Math.max(...v)), mean: of((v) => v.reduce((p, q) => p + q) / v.length)};
+  return {
+    x,
+    low: of((v) => Math.min(...v)),
+    high: of((v) => Math.max(...v)),
+    mean: of((v) => v.reduce((p, q) => p + q) / v.length),
+  };
 }
 
 class ComparePage {
   constructor(arrays) {
     this.runs = page.runs.map((run, k) => {
-      const body = run.body && new Body(run.body, arrays[k], run.frames);
+      const body = run.body && bodyOf(run.body, arrays[k], run.frames);
       return {...run, course: new Course(run.course, arrays[k].history), body, frame: run.frames.length - 1};
     });
     this.axes = {over: page.over, of: page.of};
     this.curve = new Chart($("curve"), {height: 340, name: "curves", pick: (row) => this.go(this.places(0)[row])});
-    const common = this.runs[0].course.about.quantities.filter((q) => this.runs.every((r) => r.course.quantity(q.id)));
+    const common = this.runs[0].course.about.quantities.filter((q) =>
+      this.runs.every((r) => r.course.quantity(q.id)),
+    );
     for (const id of ["over", "of"]) {
       for (const q of common) $(id).append(new Option(q.label, q.id, false, q.id === this.axes[id]));
-      $(id).onchange = () => { this.axes[id] = $(id).value; this.drawCurves(); this.scrub(); };
+      $(id).onchange = () => {
+        this.axes[id] = $(id).value;
+        this.drawCurves();
+        this.scrub();
+      };
     }
     this.shown = this.runs.filter((r) => r.body);
     if (this.shown.length) this.makeWall();
@@ -44,20 +64,43 @@ class ComparePage {
     if (this.shown.length) this.scrub();
   }
 
-  places(k) { return this.runs[k].course.of(this.axes.over); }
+  places(k) {
+    return this.runs[k].course.of(this.axes.over);
+  }
 
   drawCurves() {
-    const {over, of} = this.axes, first = this.runs[0].course;
+    const {over, of} = this.axes,
+      first = this.runs[0].course;
     const curves = this.runs.map((r) => ({x: r.course.of(over), y: r.course.of(of)}));
-    const series = curves.map((c, k) => ({name: page.seeds ? "" : this.runs[k].name, ...(k ? {x: c.x} : {}), y: c.y,
-      colour: page.seeds ? "var(--faint)" : RUN_COLOURS[k % RUN_COLOURS.length], dash: DASHES[Math.floor(k / RUN_COLOURS.length) % 4],
-      width: page.seeds ? 0.7 : 1.8}));
+    const series = curves.map((c, k) => ({
+      name: page.seeds ? "" : this.runs[k].name,
+      ...(k ? {x: c.x} : {}),
+      y: c.y,
+      colour: page.seeds ? "var(--faint)" : RUN_COLOURS[k % RUN_COLOURS.length],
+      dash: DASHES[Math.floor(k / RUN_COLOURS.length) % 4],
+      width: page.seeds ? 0.7 : 1.8,
+    }));
     if (page.seeds) {
       const b = band(curves);
-      series.push({name: `${curves.length} seeds: least to greatest`, x: b.x, y: b.high, base: b.low, colour: "var(--curve)", opacity: 0.25},
-        {name: "their mean, as far as all go", x: b.x, y: b.mean, colour: "var(--curve)", width: 2.2});
+      series.push(
+        {
+          name: `${curves.length} seeds: least to greatest`,
+          x: b.x,
+          y: b.high,
+          base: b.low,
+          colour: "var(--curve)",
+          opacity: 0.25,
+        },
+        {name: "their mean, as far as all go", x: b.x, y: b.mean, colour: "var(--curve)", width: 2.2},
+      );
     }
-    this.curve.draw({x: curves[0].x, label: first.quantity(over).label, yLabel: first.quantity(of).label, series, from0: true});
+    this.curve.draw({
+      x: curves[0].x,
+      label: first.quantity(over).label,
+      yLabel: first.quantity(of).label,
+      series,
+      from0: true,
+    });
   }
 
   // ---- specimens
@@ -67,7 +110,9 @@ class ComparePage {
     for (const run of this.shown) this.addSpecimen(wall, run, run.name);
     const pair = page.same.find((p) => p.every((k) => this.runs[k].body && this.runs[k].body.modes.length));
     if (pair) this.both = {pair, specimen: this.addSpecimen(wall, this.runs[pair[0]], "cracks of both", true)};
-    const fields = this.shown[0].body.fields.filter(([id]) => this.shown.every((r) => r.body.fields.some((f) => f[0] === id)));
+    const fields = this.shown[0].body.fields.filter(([id]) =>
+      this.shown.every((r) => r.body.fields.some((f) => f[0] === id)),
+    );
     for (const [id, label] of fields) $("colour").append(new Option(label, id));
     for (const m of [1, 2, 5, 10, 20, 50, 100]) $("magnification").append(new Option(m, m));
     $("colour").onchange = $("magnification").onchange = () => this.redraw();
@@ -88,15 +133,18 @@ class ComparePage {
   addSpecimen(wall, run, name, isOfBoth = false) {
     const host = made("div", null, wall);
     made("h3", name, host);
-    const canvas = made("canvas", null, host), specimen = new Specimen(canvas, run.body);
+    const canvas = made("canvas", null, host),
+      specimen = new Specimen(canvas, run.body);
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", name);
     const told = made("p", "", host, "note");
     if (isOfBoth) return Object.assign(specimen, {told});
-    return run.specimen = Object.assign(specimen, {told});
+    return (run.specimen = Object.assign(specimen, {told}));
   }
 
-  get specimens() { return [...this.shown.map((r) => r.specimen), ...(this.both ? [this.both.specimen] : [])]; }
+  get specimens() {
+    return [...this.shown.map((r) => r.specimen), ...(this.both ? [this.both.specimen] : [])];
+  }
 
   fit() {
     const width = this.specimens[0].canvas.parentElement.clientWidth;
@@ -115,12 +163,14 @@ class ComparePage {
   go(place) {
     if (!this.shown.length) return;
     const [low, high] = this.ends;
-    $("at").value = Math.round(SHARES * (place - low) / (high - low || 1));
+    $("at").value = Math.round((SHARES * (place - low)) / (high - low || 1));
     this.scrub();
   }
 
   scrub() {
-    const [low, high] = this.ends, place = low + (high - low) * $("at").value / SHARES, q = this.runs[0].course.quantity(this.axes.over);
+    const [low, high] = this.ends,
+      place = low + ((high - low) * $("at").value) / SHARES,
+      q = this.runs[0].course.quantity(this.axes.over);
     for (const run of this.shown) {
       const x = run.course.of(this.axes.over);
       let best = 0;
@@ -130,7 +180,8 @@ class ComparePage {
       run.frame = best;
       run.specimen.frame = best;
       run.specimen.told.textContent = `frame ${best}: ${number(x[run.frames[best].row], 4)} ${unitOf(q.label)}, ${
-        run.body.modes.length ? `${run.body.cracks(best).length} cracks` : ""}`;
+        run.body.modes.length ? `${run.body.cracks(best).length} cracks` : ""
+      }`;
     }
     $("now").textContent = `${q.label}: ${number(place, 4)}`;
     this.redraw();
@@ -152,39 +203,63 @@ class ComparePage {
     if (field === "material") return;
     for (const r of this.shown) r.body.range(field);
     const ranges = this.shown.map((r) => r.body.ranges[field]);
-    run.body.ranges[field] = {...ranges[0], low: Math.min(...ranges.map((r) => r.low)), high: Math.max(...ranges.map((r) => r.high))};
+    run.body.ranges[field] = {
+      ...ranges[0],
+      low: Math.min(...ranges.map((r) => r.low)),
+      high: Math.max(...ranges.map((r) => r.high)),
+    };
   }
 
   // Cracks that only the first run has, only the second, and both, on the specimen as it was made.
   drawBoth() {
-    const {pair, specimen} = this.both, [a, b] = pair.map((k) => this.runs[k]), {context, ratio} = specimen;
+    const {pair, specimen} = this.both,
+      [a, b] = pair.map((k) => this.runs[k]),
+      {context, ratio} = specimen;
     Object.assign(specimen, {frame: a.frame, colour: "material", cracks: "none", magnification: 0});
     specimen.draw();
-    const ofA = new Set(a.body.cracks(a.frame)), ofB = new Set(b.body.cracks(b.frame)), theme = specimen.theme();
-    const line = (c) => specimen.body.line(c), colours = this.bothColours(theme);
-    const sets = [[...ofA].filter((c) => !ofB.has(c)), [...ofB].filter((c) => !ofA.has(c)), [...ofA].filter((c) => ofB.has(c))];
+    const ofA = new Set(a.body.cracks(a.frame)),
+      ofB = new Set(b.body.cracks(b.frame)),
+      theme = specimen.theme();
+    const line = (c) => specimen.body.line(c),
+      colours = this.bothColours(theme);
+    const sets = [
+      [...ofA].filter((c) => !ofB.has(c)),
+      [...ofB].filter((c) => !ofA.has(c)),
+      [...ofA].filter((c) => ofB.has(c)),
+    ];
     sets.forEach((set, k) => specimen.stroke(colours[k], 2.2 * ratio, set.map(line)));
-    specimen.told.textContent = `only in ${a.name}: ${sets[0].length}; only in ${b.name}: ${sets[1].length}; in both: ${sets[2].length}`;
+    const [ofFirst, ofSecond, ofBoth] = sets.map((set) => set.length);
+    specimen.told.textContent =
+      `only in ${a.name}: ${ofFirst}; only in ${b.name}: ${ofSecond}; in both: ${ofBoth}`;
     this.counts = sets.map((s) => s.length);
     context.lineWidth = 1;
   }
 
-  bothColours(theme) { return ["--curve", "--tension", "--ink"].map((name) => theme.value(name)); }
+  bothColours(theme) {
+    return ["--curve", "--tension", "--ink"].map((name) => theme.value(name));
+  }
 
   tellKey() {
-    const key = $("key"), field = $("colour").value;
+    const key = $("key"),
+      field = $("colour").value;
     key.replaceChildren();
     if (field !== "material") {
-      const {low, high, isTwoSided} = this.shown[0].body.range(field), scale = made("span", null, key, "scale");
+      const {low, high, isTwoSided} = this.shown[0].body.range(field),
+        scale = made("span", null, key, "scale");
       scale.append(number(low));
-      made("i", null, scale).style.background = `linear-gradient(90deg, ${(isTwoSided ? TWO_SIDED : ONE_SIDED).map(css).join(", ")})`;
+      made("i", null, scale).style.background =
+        `linear-gradient(90deg, ${(isTwoSided ? TWO_SIDED : ONE_SIDED).map(css).join(", ")})`;
       scale.append(`${number(high)} ${unitOf(this.shown[0].body.fields.find((f) => f[0] === field)[1])}`);
     }
-    for (const mode of this.shown[0].body.modes) key.append(entry({name: `${mode}, broken`, colour: `var(--${mode})`}));
+    for (const mode of this.shown[0].body.modes)
+      key.append(entry({name: `${mode}, broken`, colour: `var(--${mode})`}));
     if (!this.both) return;
     const [a, b] = this.both.pair.map((k) => this.runs[k].name);
-    key.append(entry({name: `only in ${a}`, colour: "var(--curve)"}), entry({name: `only in ${b}`, colour: "var(--tension)"}),
-      entry({name: "in both", colour: "var(--ink)"}));
+    key.append(
+      entry({name: `only in ${a}`, colour: "var(--curve)"}),
+      entry({name: `only in ${b}`, colour: "var(--tension)"}),
+      entry({name: "in both", colour: "var(--ink)"}),
+    );
   }
 
   play() {

@@ -21,8 +21,13 @@ function ticks(low, high, about) {
   return found;
 }
 
-const shown = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(1).replace("e", "·10^")
-  : String(+v.toPrecision(5))).replace("-", "−");
+const shown = (v) =>
+  (v === 0
+    ? "0"
+    : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3
+      ? v.toExponential(1).replace("e", "·10^")
+      : String(+v.toPrecision(5))
+  ).replace("-", "−");
 
 // A chart of series over rows. `drawing`: {x, label, yLabel, series: [{name, y, base, colour, width, dash, fill, of}],
 // log, marks: [{id, label, row}], stages: [{first, last, kind}], dots: [row], from0, legend}. `of` has own x values.
@@ -46,7 +51,8 @@ class Chart {
   }
 
   redraw() {
-    const d = this.drawing, width = this.host.clientWidth;
+    const d = this.drawing,
+      width = this.host.clientWidth;
     if (!d || !width) return;
     const box = {left: 56, right: 12, top: 12, bottom: 40};
     Object.assign(this, {width, box});
@@ -55,7 +61,7 @@ class Chart {
     this.svg.setAttribute("height", this.height);
     this.scale(d);
     this.axes(d);
-    for (const s of [...d.series].sort((p, q) => Boolean(q.x) - Boolean(p.x))) this.series(s, d);  // others behind
+    for (const s of [...d.series].sort((p, q) => Boolean(q.x) - Boolean(p.x))) this.series(s, d); // others behind
     this.overlay = svg("g", {}, this.svg);
     for (const mark of d.marks || []) this.mark(mark, d);
     this.moving = svg("g", {"pointer-events": "none"}, this.svg);
@@ -64,7 +70,10 @@ class Chart {
   }
 
   scale(d) {
-    let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity;
+    let x0 = Infinity,
+      x1 = -Infinity,
+      y0 = Infinity,
+      y1 = -Infinity;
     for (const s of d.series) {
       const xs = s.x || d.x;
       for (let i = 0; i < xs.length; i++) {
@@ -91,25 +100,32 @@ class Chart {
     const [w, h] = [this.width - left - right, this.height - top - bottom];
     Object.assign(this, {
       range: {x0, x1, a, b},
-      X: (v) => left + (v - x0) / (x1 - x0) * w,
-      Y: (v) => top + h - (level(v) - a) / (b - a) * h,
+      X: (v) => left + ((v - x0) / (x1 - x0)) * w,
+      Y: (v) => top + h - ((level(v) - a) / (b - a)) * h,
     });
   }
 
   axes(d) {
-    const {left, right, top, bottom} = this.box, {x0, x1, a, b} = this.range;
+    const {left, right, top, bottom} = this.box,
+      {x0, x1, a, b} = this.range;
     const low = this.height - bottom;
     for (const stage of d.stages || []) {
       const [from, to] = [this.X(d.x[stage.first]), this.X(d.x[stage.last])].sort((p, q) => p - q);
       if (isFinite(to - from) && to - from > 2)
-        svg("rect", {x: from, y: top, width: to - from, height: low - top, class: "band"}, this.svg)
-          .append(svg("title", {}, null, `stage ${stage.number + 1}: ${stage.kind}`));
+        svg("rect", {x: from, y: top, width: to - from, height: low - top, class: "band"}, this.svg).append(
+          svg("title", {}, null, `stage ${stage.number + 1}: ${stage.kind}`),
+        );
     }
     const powers = ticks(Math.ceil(a), Math.floor(b), 5).filter(Number.isInteger);
     for (const v of d.log ? powers.map((k) => 10 ** k) : ticks(a, b, 5)) {
       const y = this.Y(v);
       svg("line", {x1: left, x2: this.width - right, y1: y, y2: y, class: "grid"}, this.svg);
-      svg("text", {x: left - 6, y: y + 4, "text-anchor": "end"}, this.svg, d.log ? `10^${Math.round(Math.log10(v))}` : shown(v));
+      svg(
+        "text",
+        {x: left - 6, y: y + 4, "text-anchor": "end"},
+        this.svg,
+        d.log ? `10^${Math.round(Math.log10(v))}` : shown(v),
+      );
     }
     for (const v of ticks(x0, x1, this.width < 420 ? 4 : 7)) {
       svg("line", {x1: this.X(v), x2: this.X(v), y1: low, y2: low + 4, class: "axis"}, this.svg);
@@ -119,7 +135,12 @@ class Chart {
     svg("text", {x: (left + this.width - right) / 2, y: this.height - 5, "text-anchor": "middle"}, this.svg, d.label);
     if (!d.yLabel) return;
     const middle = (top + low) / 2;
-    const label = svg("text", {x: 13, y: middle, "text-anchor": "middle", transform: `rotate(-90 13 ${middle})`}, this.svg, d.yLabel);
+    const label = svg(
+      "text",
+      {x: 13, y: middle, "text-anchor": "middle", transform: `rotate(-90 13 ${middle})`},
+      this.svg,
+      d.yLabel,
+    );
     const long = label.getComputedTextLength ? label.getComputedTextLength() : 0;
     if (long > low - top + 30) {
       label.setAttribute("textLength", low - top + 20);
@@ -129,11 +150,16 @@ class Chart {
 
   series(s, d) {
     const xs = s.x || d.x;
-    let path = "", isOn = false;
-    const there = (i) => isFinite(xs[i]) && isFinite(s.y[i]) && (!d.log || s.y[i] > 0) && (s.x || !d.within || d.within(i));
+    let path = "",
+      isOn = false;
+    const there = (i) =>
+      isFinite(xs[i]) && isFinite(s.y[i]) && (!d.log || s.y[i] > 0) && (s.x || !d.within || d.within(i));
     const rows = [];
     for (let i = 0; i < xs.length; i++) {
-      if (!there(i)) { isOn = false; continue; }
+      if (!there(i)) {
+        isOn = false;
+        continue;
+      }
       rows.push(i);
       path += `${isOn ? "L" : "M"}${this.X(xs[i]).toFixed(1)} ${this.Y(s.y[i]).toFixed(1)}`;
       isOn = true;
@@ -159,42 +185,59 @@ class Chart {
 
   // The row whose point of the first series is nearest to a place on the screen.
   nearest(px, py) {
-    const d = this.drawing, y = d.series[0].y;
-    let best = -1, least = Infinity;
+    const d = this.drawing,
+      y = d.series[0].y;
+    let best = -1,
+      least = Infinity;
     for (let i = 0; i < d.x.length; i++) {
       if (!isFinite(d.x[i]) || (d.within && !d.within(i))) continue;
-      const across = this.X(d.x[i]) - px, up = isFinite(y[i]) ? 0.4 * (this.Y(y[i]) - py) : 0;
+      const across = this.X(d.x[i]) - px,
+        up = isFinite(y[i]) ? 0.4 * (this.Y(y[i]) - py) : 0;
       const distance = across * across + up * up;
       if (distance < least) [best, least] = [i, distance];
     }
     return best;
   }
 
-  setCursor(row) { this.cursor = row; this.move(); }
-  setPiece(piece) { this.piece = piece; this.move(); }
+  setCursor(row) {
+    this.cursor = row;
+    this.move();
+  }
+  setPiece(piece) {
+    this.piece = piece;
+    this.move();
+  }
 
   move() {
     const d = this.drawing;
     if (!this.moving || !d) return;
     this.moving.replaceChildren();
-    const {top, bottom} = this.box, low = this.height - bottom;
+    const {top, bottom} = this.box,
+      low = this.height - bottom;
     if (this.piece) {
       const [a, b] = this.piece;
       const line = {x: d.x, y: d.series[0].y};
       const cut = svg("path", {class: "piece"}, this.moving);
       let path = "";
       for (let i = a; i <= b; i++)
-        if (isFinite(line.x[i]) && isFinite(line.y[i])) path += `${path ? "L" : "M"}${this.X(line.x[i])} ${this.Y(line.y[i])}`;
+        if (isFinite(line.x[i]) && isFinite(line.y[i]))
+          path += `${path ? "L" : "M"}${this.X(line.x[i])} ${this.Y(line.y[i])}`;
       cut.setAttribute("d", path || "M0 0");
       const [from, to] = [this.X(d.x[a]), this.X(d.x[b])].sort((p, q) => p - q);
-      if (isFinite(to - from)) svg("rect", {x: from, y: top, width: Math.max(1, to - from), height: low - top, class: "brushed"}, this.moving);
+      if (isFinite(to - from))
+        svg(
+          "rect",
+          {x: from, y: top, width: Math.max(1, to - from), height: low - top, class: "brushed"},
+          this.moving,
+        );
     }
     if (this.cursor === null || !isFinite(d.x[this.cursor])) return;
     const x = this.X(d.x[this.cursor]);
     svg("line", {x1: x, x2: x, y1: top, y2: low, class: "cursor"}, this.moving);
     for (const s of d.series) {
       const y = s.y[this.cursor];
-      if (!s.x && !s.base && isFinite(y) && (!d.log || y > 0)) svg("circle", {cx: x, cy: this.Y(y), r: 4, class: "dot"}, this.moving);
+      if (!s.x && !s.base && isFinite(y) && (!d.log || y > 0))
+        svg("circle", {cx: x, cy: this.Y(y), r: 4, class: "dot"}, this.moving);
     }
   }
 
@@ -211,7 +254,8 @@ class Chart {
     });
     this.svg.addEventListener("pointermove", (e) => {
       if (!this.drawing) return;
-      const here = at(e), row = this.nearest(...here);
+      const here = at(e),
+        row = this.nearest(...here);
       if (row < 0) return;
       if (start && this.on.brush && Math.abs(here[0] - start[0]) > 5) {
         const other = this.nearest(...start);
@@ -220,7 +264,8 @@ class Chart {
     });
     this.svg.addEventListener("pointerup", (e) => {
       if (!start) return;
-      const here = at(e), from = start;
+      const here = at(e),
+        from = start;
       start = null;
       const row = this.nearest(...here);
       if (row < 0) return;
@@ -229,14 +274,19 @@ class Chart {
         this.on.brush([Math.min(row, other), Math.max(row, other)], true);
       } else if (this.on.pick) this.on.pick(row);
     });
-    this.svg.addEventListener("pointercancel", () => { start = null; });
-    this.svg.addEventListener("pointerleave", () => { if (this.on.hover) this.on.hover(null); });
+    this.svg.addEventListener("pointercancel", () => {
+      start = null;
+    });
+    this.svg.addEventListener("pointerleave", () => {
+      if (this.on.hover) this.on.hover(null);
+    });
   }
 }
 
 // A line of a legend.
 function entry(s) {
-  const one = document.createElement("span"), sign = document.createElement("i");
+  const one = document.createElement("span"),
+    sign = document.createElement("i");
   sign.style.background = s.colour;
   if (s.dash) sign.style.background = `repeating-linear-gradient(90deg, ${s.colour} 0 .4em, transparent .4em .6em)`;
   if (s.base) sign.style.height = ".7em";

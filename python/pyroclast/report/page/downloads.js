@@ -10,34 +10,51 @@ function save(name, blob) {
 
 const saveText = (name, text, type = "text/csv") => save(name, new Blob([text], {type}));
 
-const cell = (v) => (typeof v === "number" ? (isFinite(v) ? String(v) : "") : v === null || v === undefined ? ""
-  : /[",\n]/.test(v) ? `"${String(v).replaceAll('"', '""')}"` : String(v));
+const cell = (v) =>
+  typeof v === "number"
+    ? isFinite(v)
+      ? String(v)
+      : ""
+    : v === null || v === undefined
+      ? ""
+      : /[",\n]/.test(v)
+        ? `"${String(v).replaceAll('"', '""')}"`
+        : String(v);
 
 const csv = (head, rows) => [head, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
 
 // A frame of a body as SVG: polygons in their colours and cracks as lines.
 function frameAsSvg(body, W, H, colour, strokes, title) {
-  const parts = [`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}">`,
-    `<title>${title.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"}[c]))}</title>`];
-  for (let b = 0; b < body.blocks; b++) {
+  const parts = [
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}">`,
+    `<title>${title.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"})[c])}</title>`,
+  ];
+  for (let p = 0; p + 1 < body.first.length; p++) {
     let path = "";
-    for (let i = body.first[b]; i < body.first[b + 1]; i++)
+    for (let i = body.first[p]; i < body.first[p + 1]; i++)
       path += `${path ? " " : ""}${body.px[i].toFixed(1)},${body.py[i].toFixed(1)}`;
-    const fill = css(colour(b));
+    const fill = css(colour(body.owner ? body.owner[p] : p));
     parts.push(`<polygon points="${path}" fill="${fill}" stroke="${fill}" stroke-width=".4"/>`);
   }
   for (const {colour: stroke, width, lines} of strokes)
-    parts.push(`<path fill="none" stroke-linecap="round" stroke="${stroke}" stroke-width="${width}" d="${
-      lines.map((l) => `M${l[0].toFixed(1)} ${l[1].toFixed(1)}L${l[2].toFixed(1)} ${l[3].toFixed(1)}`).join("")}"/>`);
+    parts.push(
+      `<path fill="none" stroke-linecap="round" stroke="${stroke}" stroke-width="${width}" d="${lines
+        .map((l) => `M${l[0].toFixed(1)} ${l[1].toFixed(1)}L${l[2].toFixed(1)} ${l[3].toFixed(1)}`)
+        .join("")}"/>`,
+    );
   return parts.join("\n") + "\n</svg>\n";
 }
 
 // Records a canvas while `step(k)` draws frame k of `count`.
 async function film(canvas, count, step, perSecond = 12) {
-  const stream = canvas.captureStream(0), track = stream.getVideoTracks()[0];
-  const recorder = new MediaRecorder(stream, {mimeType: "video/webm"}), pieces = [];
+  const stream = canvas.captureStream(0),
+    track = stream.getVideoTracks()[0];
+  const recorder = new MediaRecorder(stream, {mimeType: "video/webm"}),
+    pieces = [];
   recorder.ondataavailable = (e) => pieces.push(e.data);
-  const over = new Promise((done) => { recorder.onstop = done; });
+  const over = new Promise((done) => {
+    recorder.onstop = done;
+  });
   recorder.start();
   for (let k = 0; k < count; k++) {
     step(k);

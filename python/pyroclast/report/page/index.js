@@ -2,7 +2,9 @@
 
 const $ = (id) => document.getElementById(id);
 const runs = [...document.querySelectorAll(".run")];
-const results = [...new Set(runs.flatMap((run) => [...run.querySelectorAll("[data-result]")].map((cell) => cell.dataset.result)))];
+const results = [
+  ...new Set(runs.flatMap((run) => [...run.querySelectorAll("[data-result]")].map((cell) => cell.dataset.result))),
+];
 for (const name of results) $("sort").append(new Option(name, name));
 
 function valueOf(run, name) {
@@ -12,7 +14,9 @@ function valueOf(run, name) {
 }
 
 function show() {
-  const words = $("find").value.toLowerCase().split(/\s+/).filter(Boolean), level = $("level").value, sort = $("sort").value;
+  const words = $("find").value.toLowerCase().split(/\s+/).filter(Boolean),
+    level = $("level").value,
+    sort = $("sort").value;
   const shown = runs.filter((run) => {
     const text = run.textContent.toLowerCase();
     run.hidden = Boolean(level && run.dataset.level !== level) || !words.every((word) => text.includes(word));

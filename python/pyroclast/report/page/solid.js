@@ -1,0 +1,235 @@
+// A solid, shown as a plane through it or from outside, by the painter of plane bodies. A plane cuts each polyhedron,
+// which is convex, in a convex polygon; it goes with the body, so that displacements along it alone are seen.
+
+const IN_PLANE = {x: [2, 1], y: [0, 2], z: [0, 1]}; // axes that a view across x, y, z has to the right and up
+
+class SolidBody extends Body {
+  // Overrides what the constructor of a plane body asks for.
+  prepare() {
+    const a = this.arrays;
+    this.blocks = a.material.shape[0];
+    this.contacts = a.extent ? a.extent.shape[0] : 0;
+    this.points = a.point.shape[0];
+    this.bearing = Uint8Array.from(a.material.values, (m) => this.about.materials[m].bearing);
+    this.middles = new Float64Array(3 * this.blocks);
+    this.ends = [
+      [Infinity, -Infinity],
+      [Infinity, -Infinity],
+      [Infinity, -Infinity],
+    ]; // of the specimen along each axis
+    for (let b = 0; b < this.blocks; b++) {
+      const from = a.point_first.values[b],
+        to = a.point_first.values[b + 1];
+      for (let i = from; i < to; i++)
+        for (let k = 0; k < 3; k++) {
+          const v = a.point.at(i, k);
+          this.middles[3 * b + k] += v / (to - from);
+          if (!this.bearing[b]) this.ends[k] = [Math.min(this.ends[k][0], v), Math.max(this.ends[k][1], v)];
+        }
+    }
+    this.trianglesOf = Array.from({length: this.blocks}, () => []);
+    const owner = this.ownerOfPoints();
+    for (let t = 0; t < a.triangle.shape[0]; t++) this.trianglesOf[owner[a.triangle.values[3 * t]]].push(t);
+    this.look("z", 0.5);
+  }
+
+  ownerOfPoints() {
+    const owner = new Int32Array(this.points),
+      first = this.arrays.point_first.values;
+    for (let b = 0; b < this.blocks; b++) owner.fill(b, first[b], first[b + 1]);
+    return owner;
+  }
+
+  get moves() {
+    return "shift_x" in this.arrays;
+  }
+
+  // Chooses the view: a plane across an axis at a share of the specimen's size, or from outside along it (side 1, -1).
+  look(axis, share, side = 0) {
+    Object.assign(this, {axis, share, side});
+    const [right, up] = IN_PLANE[axis],
+      k = "xyz".indexOf(axis),
+      polygons = [];
+    if (side) this.facing(k, side, polygons);
+    else {
+      const at = this.ends[k][0] + share * (this.ends[k][1] - this.ends[k][0]);
+      this.offset = at;
+      for (let b = 0; b < this.blocks; b++) {
+        const corners = this.cut(b, k, at, right, up);
+        if (corners.length > 2) polygons.push([b, corners]);
+      }
+    }
+    const count = polygons.reduce((sum, [, corners]) => sum + corners.length, 0);
+    Object.assign(this, {
+      right,
+      up,
+      k,
+      corners: count,
+      first: new Int32Array(polygons.length + 1),
+      owner: new Int32Array(polygons.length),
+      rest: new Float64Array(3 * count),
+      x: new Float64Array(count),
+      y: new Float64Array(count),
+      px: new Float64Array(count),
+      py: new Float64Array(count),
+    });
+    let i = 0;
+    polygons.forEach(([b, corners], p) => {
+      this.owner[p] = b;
+      for (const corner of corners) this.rest.set(corner, 3 * i++);
+      this.first[p + 1] = i;
+    });
+    this.traces = side ? null : this.cutCracks(k);
+    this.box = this.bounds();
+  }
+
+  // Corners of the polygon in which a plane cuts a block, around its middle.
+  cut(b, k, at, right, up) {
+    const {point, triangle} = this.arrays,
+      found = [];
+    let low = Infinity,
+      high = -Infinity;
+    const from = this.arrays.point_first.values[b],
+      to = this.arrays.point_first.values[b + 1];
+    for (let i = from; i < to; i++) {
+      const v = point.at(i, k);
+      low = Math.min(low, v);
+      high = Math.max(high, v);
+    }
+    if (at <= low || at >= high) return found;
+    for (const t of this.trianglesOf[b])
+      for (let e = 0; e < 3; e++) {
+        const i = triangle.values[3 * t + e],
+          j = triangle.values[3 * t + ((e + 1) % 3)];
+        if (i > j) continue; // the other triangle of this edge has it too
+        const p = point.at(i, k),
+          q = point.at(j, k);
+        if (p > at === q > at) continue;
+        const s = (at - p) / (q - p);
+        found.push([0, 1, 2].map((c) => point.at(i, c) + s * (point.at(j, c) - point.at(i, c))));
+      }
+    const middle = [right, up].map((c) => found.reduce((sum, p) => sum + p[c], 0) / found.length);
+    return found.sort(
+      (p, q) =>
+        Math.atan2(p[up] - middle[1], p[right] - middle[0]) - Math.atan2(q[up] - middle[1], q[right] - middle[0]),
+    );
+  }
+
+  // Outer triangles that face the eye, from the farthest to the nearest.
+  facing(k, side, polygons) {
+    const {point, triangle, outer} = this.arrays,
+      all = [];
+    for (let b = 0; b < this.blocks; b++)
+      for (const t of this.trianglesOf[b]) {
+        if (!outer.values[t]) continue;
+        const [p, q, r] = [0, 1, 2].map((e) => [0, 1, 2].map((c) => point.at(triangle.values[3 * t + e], c)));
+        const [i, j] = [(k + 1) % 3, (k + 2) % 3];
+        const normal = (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
+        if (normal * side > 0) all.push([side * (p[k] + q[k] + r[k]), b, [p, q, r]]);
+      }
+    for (const [, b, corners] of all.sort((p, q) => p[0] - q[0])) polygons.push([b, corners]);
+  }
+
+  // Ends of the line in which the plane cuts each crack, three coordinates each; NaN where it does not.
+  cutCracks(k) {
+    const ends = new Float64Array(6 * this.contacts).fill(NaN),
+      {cell} = this.arrays;
+    for (let c = 0; c < this.contacts; c++) {
+      const four = [0, 3, 6, 9].map((o) => [0, 1, 2].map((i) => cell.at(c, o + i))),
+        found = [];
+      for (let e = 0; e < 4; e++) {
+        const [p, q] = [four[e], four[(e + 1) % 4]];
+        if (p[k] > this.offset === q[k] > this.offset) continue;
+        const s = (this.offset - p[k]) / (q[k] - p[k]);
+        found.push(...p.map((v, i) => v + s * (q[i] - v)));
+      }
+      if (found.length === 6) ends.set(found, 6 * c);
+    }
+    return ends;
+  }
+
+  bounds() {
+    const box = {
+      x0: this.ends[this.right][0],
+      x1: this.ends[this.right][1],
+      y0: this.ends[this.up][0],
+      y1: this.ends[this.up][1],
+    };
+    for (let i = 0; i < this.corners; i++) {
+      const x = this.rest[3 * i + this.right],
+        y = this.rest[3 * i + this.up];
+      box.x0 = Math.min(box.x0, x);
+      box.x1 = Math.max(box.x1, x);
+      box.y0 = Math.min(box.y0, y);
+      box.y1 = Math.max(box.y1, y);
+    }
+    const air = 0.09 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
+    return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.5 * air, y1: box.y1 + 0.5 * air};
+  }
+
+  // Displacement of the middle of a block, m.
+  displacement(frame, b) {
+    return ["x", "y", "z"].map((axis) => this.arrays[`shift_${axis}`].at(frame, b));
+  }
+
+  place(frame, magnification) {
+    const {rest, right, up, middles} = this;
+    this.placed = {frame, magnification};
+    for (let p = 0; p < this.owner.length; p++) {
+      const b = this.owner[p],
+        u = this.moves ? this.displacement(frame, b) : [0, 0, 0];
+      const w = this.moves ? ["x", "y", "z"].map((axis) => this.arrays[`turn_${axis}`].at(frame, b)) : [0, 0, 0];
+      for (let i = this.first[p]; i < this.first[p + 1]; i++) {
+        const d = [0, 1, 2].map((c) => rest[3 * i + c] - middles[3 * b + c]);
+        const move = [
+          u[0] + w[1] * d[2] - w[2] * d[1],
+          u[1] + w[2] * d[0] - w[0] * d[2],
+          u[2] + w[0] * d[1] - w[1] * d[0],
+        ];
+        this.x[i] = rest[3 * i + right] + magnification * move[right];
+        this.y[i] = rest[3 * i + up] + magnification * move[up];
+      }
+    }
+  }
+
+  project(W, H) {
+    super.project(W, H);
+    const {x0, x1, y0, y1} = this.box;
+    this.toPixels = (x, y) => [
+      (W - this.scale * (x1 - x0)) / 2 + (x - x0) * this.scale,
+      (H + this.scale * (y1 - y0)) / 2 - (y - y0) * this.scale,
+    ];
+  }
+
+  // Cracks that the view shows: none from outside.
+  cracks(frame) {
+    return this.traces ? super.cracks(frame).filter((c) => isFinite(this.traces[6 * c])) : [];
+  }
+
+  line(c) {
+    const {frame, magnification} = this.placed,
+      {traces, right, up, arrays} = this;
+    if (!traces || !isFinite(traces[6 * c])) return [NaN, NaN, NaN, NaN];
+    const move = [right, up].map((k) => magnification * arrays[`move_${"xyz"[k]}`].at(frame, c));
+    return [
+      ...this.toPixels(traces[6 * c + right] + move[0], traces[6 * c + up] + move[1]),
+      ...this.toPixels(traces[6 * c + 3 + right] + move[0], traces[6 * c + 3 + up] + move[1]),
+    ];
+  }
+
+  whereBlock(b) {
+    return [0, 1, 2].map((k) => this.middles[3 * b + k]);
+  }
+  whereContact(c) {
+    return [0, 1, 2].map((k) => this.arrays.cell.at(c, k));
+  }
+  contactNumber(c) {
+    return this.arrays.number.values[c];
+  }
+  steepness() {
+    return null;
+  } // the trace of a plane is not the crack's
+  get hasIsotherms() {
+    return false;
+  }
+}
