@@ -146,6 +146,13 @@ class CommandLine(unittest.TestCase):
         drawn = self.pyroclast(*drawing, "--out", "drawn", "--quiet")
         self.assertEqual(drawn.stdout, "")
         self.assertTrue((self.folder / "drawn/figures/stress_strain.png").exists())
+        self.assertTrue((self.folder / "drawn/report.html").exists())
+        for options in (["--no-report"], ["--no-figures"]):
+            self.pyroclast(*drawing, "--out", "without", "--overwrite", "--quiet", *options)
+            self.assertFalse((self.folder / "without/report.html").exists())
+        self.pyroclast("report", "drawn", "--out", "elsewhere.html")
+        self.assertIn("Content-Security-Policy", (self.folder / "elsewhere.html").read_text())
+        self.pyroclast("report", "nowhere", code=1)
         verbose = self.pyroclast(*small, "--out", "verbose", "--verbose")
         self.assertGreater(verbose.stdout.count("(compress)"), 15)  # 20 looks
         self.assertTrue((self.folder / "verbose/fields/mesh.h5").exists())
