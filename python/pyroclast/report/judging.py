@@ -45,9 +45,10 @@ _HEADLINES = (
     _Headline("largest_thrust_MPa", "largest thrust", "MPa", 1.0, 1, "peak", "fixed"),
 )
 _MINOR = ("steps", "unbalanced_ratio", "exchanges", "cycles")
-_UNITS = {"_K_s": "K/s", "_N_m": "N/m", "_J_m2": "J/m²", "_GPa": "GPa", "_MPa": "MPa", "_Pa": "Pa", "_N": "N",
-          "_J": "J", "_m2": "m²", "_m": "m", "_s": "s", "_degC": "°C", "_K": "K"}
-"""By the ends of names, longer ones first."""
+_UNITS = {"_K_s": ("K/s", 1.0), "_N_m": ("N/m", 1.0), "_J_m2": ("J/m²", 1.0), "_GPa": ("GPa", 1.0),
+          "_MPa": ("MPa", 1.0), "_Pa": ("MPa", 1e-6), "_N": ("kN", 1e-3), "_J": ("J", 1.0), "_m2": ("cm²", 1e4),
+          "_m": ("mm", 1e3), "_s": ("s", 1.0), "_degC": ("°C", 1.0), "_K": ("K", 1.0)}
+"""By the ends of names, longer ones first: how results that a deck asks for are shown, and the factor to that."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,25 @@ def cards(run: Results) -> list[Card]:
             found.pop(card.label, None)  # the later one stands later
             found[card.label] = card
     order = {headline.label: i for i, headline in enumerate(_HEADLINES)}
-    return sorted(found.values(), key=lambda card: order.get(card.label, len(order)))[:_MOST_CARDS]
+    place = {label: i for i, label in enumerate(found)}
+    asked = _asked(run)
+
+    def rank(card: Card) -> tuple[int, int]:
+        """The known ones, then the deck's own, of which the last follow from the others, then peaks of records."""
+        if card.label in order:
+            return 0, order[card.label]
+        if card.label in asked:
+            return 1, -asked.index(card.label)
+        return (2 if card.label.startswith("peak_") else 3), place[card.label]
+
+    return sorted(found.values(), key=rank)[:_MOST_CARDS]
+
+
+def _asked(run: Results) -> list[str]:
+    """Labels of the results that the deck's stages work out, in its order; not of those that it only states."""
+    asked = [result for stage in run.deck_stages if isinstance(stage.get("results"), list)
+             for result in stage["results"] if isinstance(result, dict)]
+    return [str(result.get("name")) for result in asked if result.get("kind") != "given"]
 
 
 def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> Iterator[Card]:
@@ -127,7 +146,7 @@ def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> 
              if headline.platen in ("", results.get("platen", headline.platen))}
     leads = any(name in known for name in results)
     for name, value in results.items():
-        headline = known.get(name) or (None if leads else _own_headline(name, value))
+        headline = known.get(name) or (None if leads else _own_headline(name, results))
         if headline is None:
             continue
         because = results.get(f"{name.rpartition('_')[0] or name}_none_because") or results.get(f"{name}_none_because")
@@ -142,13 +161,17 @@ def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> 
                    headline.mark)
 
 
-def _own_headline(name: str, value: object) -> _Headline | None:
-    """Of a result that a deck asked for by a name of its own."""
-    if name in _MINOR or isinstance(value, bool) or not isinstance(value, (int, float)):
+def _own_headline(name: str, results: dict[str, Any]) -> _Headline | None:
+    """Of a result that a deck asked for by a name of its own. A time goes with another result, and the largest value
+    of a record with its peak."""
+    value = results[name]
+    if name in _MINOR or name.endswith("_time_s") or isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    if name.startswith("largest_") and name.replace("largest_", "peak_", 1) in results:
         return None
     ending = next((end for end in _UNITS if name.endswith(end)), "")
-    label = name.removesuffix(ending)
-    return _Headline(name, label.replace("_", " "), _UNITS.get(ending, ""), 1.0, -1)
+    unit, factor = _UNITS.get(ending, ("", 1.0))
+    return _Headline(name, name[:len(name) - len(ending)], unit, factor, -1)
 
 
 def _number(value: float, digits: int) -> str:

@@ -1,0 +1,85 @@
+"""What a page says of a run's results is what the program judged.
+
+SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import pyroclast
+from pyroclast.report.judging import BAD, DOUBT, GOOD, cards, verdict, worst
+from pyroclast.report.marks import marks
+
+RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+
+
+class Judging(unittest.TestCase):
+    def changed(self, case: str, **changes) -> pyroclast.Results:
+        """A run whose summary says something else. results: of its last stage."""
+        folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, folder)
+        for name in ("history.csv", "deck.toml", "summary.json", "references.json"):
+            if (RUNS / case / name).exists():
+                shutil.copy(RUNS / case / name, folder)
+        summary = json.loads((folder / "summary.json").read_text())
+        summary["warnings"] = []
+        summary["stages"][-1]["warnings"] = []
+        summary["stages"][-1]["results"] |= changes.pop("results", {})
+        summary["stages"][-1] |= changes.pop("stage", {})
+        (folder / "summary.json").write_text(json.dumps(summary | changes))
+        return pyroclast.read(folder)
+
+    def card(self, run: pyroclast.Results, label: str):
+        return next(card for card in cards(run) if card.label == label)
+
+    def test_a_good_quasi_static_run_is_good(self):
+        run = self.changed("starter", results={"quasi_static": True, "f_c_MPa": 33.33})
+        self.assertEqual(worst(verdict(run)), GOOD)
+        card = self.card(run, "f_c")
+        self.assertEqual((card.value, card.unit, card.level), ("33.3", "MPa", GOOD))
+        self.assertIn("quasi-static", card.reason)
+
+    def test_warnings_make_doubt(self):
+        run = self.changed("starter", results={"quasi_static": True}, warnings=["coarse blocks"])
+        self.assertEqual((worst(verdict(run)), verdict(run)[0].text), (DOUBT, "coarse blocks"))
+        self.assertEqual((self.card(run, "E").level, self.card(run, "E").reason), (DOUBT, "coarse blocks"))
+
+    def test_what_the_program_does_not_count_as_good_is_bad(self):
+        for changes, said in (({"results": {"quasi_static": False}}, "not quasi-static"),
+                              ({"is_good": False, "outcome": "unsound"}, "unsound"),
+                              ({"stage": {"is_good": False, "outcome": "stopped"}}, "stopped")):
+            with self.subTest(said):
+                run = self.changed("starter", **{"results": {"quasi_static": True}, **changes})
+                self.assertEqual(worst(verdict(run)), BAD)
+                self.assertEqual(self.card(run, "E").level, BAD)
+                self.assertIn(said, self.card(run, "E").reason)
+
+    def test_a_result_that_is_missing_says_why(self):
+        run = self.changed("starter", results={"f_c_MPa": None, "f_c_none_because": "it ended too soon"})
+        self.assertEqual((self.card(run, "f_c").value, self.card(run, "f_c").reason), ("–", "it ended too soon"))
+
+    def test_results_of_a_deck_come_first(self):
+        found = [card.label for card in cards(pyroclast.read(RUNS / "notched_beam"))]
+        self.assertLess(found.index("G_F"), found.index("peak_load"))
+        self.assertFalse({"span", "peak_load_time"} & set(found))
+
+    def test_marks_stand_at_the_first_row_of_their_kind(self):
+        run = pyroclast.read(RUNS / "compression")
+        history = run.history
+        broken = sum(history[name] for name in history.names if name.endswith("_broken"))
+        length = sum(history[name] for name in history.names if name.endswith("_length_m"))
+        found = {mark.id: mark.row for mark in marks(run, history["stress_MPa"])}
+        self.assertGreater(broken[found["first"]], 0)
+        self.assertEqual(broken[found["first"] - 1], 0)
+        self.assertGreaterEqual(length[found["extent"]], 1.0)
+        self.assertLess(length[found["extent"] - 1], 1.0)
+        self.assertAlmostEqual(history["strain"][found["peak"]], run.peak[0], delta=2e-5)  # rows are 1e-5 apart
+        self.assertEqual(sorted(found.values()), list(found.values()))
+
+
+if __name__ == "__main__":
+    unittest.main()
