@@ -1,0 +1,186 @@
+// The specimen of a run, frame by frame.
+
+class RunSpecimen extends RunPiece {
+  makeSpecimen() {
+    const s = (this.specimen = new Specimen($("body"), this.body));
+    for (const [id, label] of this.body.fields) $("colour").append(new Option(label, id));
+    s.colour = this.body.arrays.temperature ? "temperature" : "material";
+    $("colour").value = s.colour;
+    $("colour").onchange = () => {
+      s.colour = $("colour").value;
+      this.redraw();
+    };
+    const least = this.body.moves ? [1, 2, 5, 10, 20, 50, 100] : [1];
+    s.magnification = this.body.moves ? this.fitting(least) : 1;
+    $("magnification").parentElement.hidden = !this.body.moves;
+    for (const m of least) $("magnification").append(new Option(m, m, false, m === s.magnification));
+    $("magnification").onchange = () => {
+      s.magnification = +$("magnification").value;
+      this.redraw();
+    };
+    if ($("cracks"))
+      $("cracks").onchange = () => {
+        s.cracks = $("cracks").value;
+        this.redraw();
+      };
+    if (this.body.about.solid) this.makeViews();
+    $("at").max = this.frames.length - 1;
+    $("at").oninput = () => this.show(+$("at").value);
+    $("play").onclick = () => this.play();
+    $("line").onclick = () => this.toggleLine();
+    this.pointer();
+    $("unpin").onclick = () => {
+      this.pins = [];
+      this.tellPins();
+    };
+    this.fit = () => {
+      const width = $("body").parentElement.clientWidth;
+      if (width && width !== this.width) {
+        this.width = width;
+        s.size(width, Math.max(320, 0.78 * innerHeight));
+        this.redraw();
+      }
+    };
+    new ResizeObserver(this.fit).observe($("body").parentElement);
+    s.size($("body").parentElement.clientWidth || 400, Math.max(320, 0.78 * innerHeight));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+    addEventListener("beforeprint", () => this.fourFrames());
+  }
+
+  // A solid is seen as a plane through it, or from outside.
+  makeViews() {
+    const look = () => {
+      const [axis, side] = $("view").value.split(" ");
+      this.body.look(axis, $("place").value / 100, +side);
+      $("place").disabled = side !== "0";
+      this.width = null;
+      this.fit();
+      $("place_now").textContent = side === "0" ? `${axis} = ${number(1e3 * this.body.offset)} mm` : "";
+    };
+    $("view").onchange = $("place").oninput = look;
+    $("place_now").textContent = `z = ${number(1e3 * this.body.offset)} mm`;
+  }
+
+  // The largest magnification that moves blocks by at most a tenth of the body at the end.
+  fitting(choices) {
+    const last = this.frames.length - 1,
+      values = Array.from(this.body.values("displacement", last)).sort((p, q) => p - q);
+    const most = 1e-3 * values[Math.floor(0.97 * (values.length - 1))],
+      size = this.body.box.x1 - this.body.box.x0;
+    return choices.filter((m) => m * most < 0.06 * size && m <= 20).pop() || 1;
+  }
+
+  show(frame, lit = null) {
+    this.frame = Math.max(0, Math.min(this.frames.length - 1, frame));
+    this.specimen.frame = this.frame;
+    this.specimen.lit = lit || (this.piece ? this.specimen.lit : null);
+    $("at").value = this.frame;
+    const now = this.told(this.frame);
+    $("now").textContent = lit && lit.size ? `${now}; ${lit.size} contacts stand out` : now;
+    $("body").setAttribute("aria-label", `specimen, ${now}`);
+    $("at").setAttribute("aria-valuetext", now);
+    this.hover(null);
+    this.redraw();
+  }
+
+  told(frame) {
+    const f = this.frames[frame],
+      said = [];
+    if (isFinite(f.strain) && f.strain !== null) said.push(`strain ${number(1e3 * f.strain, 3)}·10⁻³`);
+    if (f.stress_MPa !== null && isFinite(f.stress_MPa)) said.push(`stress ${number(f.stress_MPa, 3)} MPa`);
+    const y = this.course.quantity(page.course.drawn[0]);
+    if (f.strain === null && y)
+      said.push(`${y.label.replace(/ \[.*/, "")} ${number(this.course.of(y.id)[f.row])} ${unitOf(y.label)}`);
+    if (f.temperature > 25 && !(f.strain === null && page.course.drawn[0] === "temperature"))
+      said.push(`${number(f.temperature, 3)} °C`);
+    if (f.heating_time > 0) said.push(`${number(f.heating_time / 60, 3)} min`);
+    return `frame ${frame} of ${this.frames.length - 1}: ${said.join(", ")}`;
+  }
+
+  redraw() {
+    this.specimen.draw();
+    this.tellKey();
+    this.tellPins();
+    if (this.specimen.across) this.tellAcross();
+  }
+
+  tellKey() {
+    const s = this.specimen,
+      key = $("key");
+    key.replaceChildren();
+    if (s.colour === "material") {
+      const shownMaterials = new Set(this.body.arrays.material.values);
+      this.body.about.materials.forEach(({name}, k) => {
+        if (shownMaterials.has(k)) key.append(entry({name, colour: css(s.theme().phases[k]), base: true}));
+      });
+    } else {
+      const {low, high, isTwoSided} = this.body.range(s.colour),
+        stops = isTwoSided ? TWO_SIDED : ONE_SIDED;
+      const scale = made("span", null, key, "scale");
+      scale.append(number(low));
+      made("i", null, scale).style.background = `linear-gradient(90deg, ${stops.map(css).join(", ")})`;
+      scale.append(`${number(high)} ${unitOf(this.body.fields.find((f) => f[0] === s.colour)[1])}`);
+      if (s.colour.startsWith("stress")) key.append("tension positive");
+    }
+    if (!this.body.modes.length || s.cracks === "none") return;
+    if (s.cracks === "mode")
+      for (const mode of this.body.modes) {
+        key.append(entry({name: `${mode}, broken`, colour: `var(--${mode})`}));
+        key.append(entry({name: `${mode}, damaged by more than half`, colour: `var(--${mode}-tint)`}));
+      }
+    if (s.cracks === "opening")
+      [0, 15, 75].forEach((um, k) =>
+        key.append(
+          entry({name: `opening from ${um} µm`, colour: css(colourAt(ONE_SIDED, ([0, 2, 4][k] + 1.5) / 7))}),
+        ),
+      );
+    if (s.cracks === "age")
+      key.append(
+        entry({name: "oldest cracks", colour: css(colourAt(ONE_SIDED, 0.95))}),
+        entry({name: "youngest", colour: css(colourAt(ONE_SIDED, 0.15))}),
+      );
+    if (s.lit && s.lit.size)
+      key.append(
+        entry({
+          name: this.piece ? "passed a damage of a half in the piece" : "new in this frame",
+          colour: "var(--lit)",
+        }),
+      );
+  }
+
+  play() {
+    const isOn = $("play").textContent === "pause";
+    $("play").textContent = isOn ? "play" : "pause";
+    clearInterval(this.timer);
+    if (isOn) return;
+    if (this.frame === this.frames.length - 1) this.show(0);
+    this.timer = setInterval(() => {
+      if (this.frame === this.frames.length - 1) this.play();
+      else this.show(this.frame + 1);
+    }, 80);
+  }
+
+  fourFrames() {
+    const host = $("four"),
+      wanted = new Set(page.course.marks.map((m) => this.frameAt(m.row)));
+    const last = this.frames.length - 1;
+    for (const share of [1, 0.5, 0.75, 0.25, 0]) if (wanted.size < 4) wanted.add(Math.round(share * last));
+    host.replaceChildren();
+    for (const frame of [...wanted].sort((p, q) => p - q).slice(-4)) {
+      const figure = made("figure", null, host),
+        canvas = made("canvas", null, figure);
+      made("figcaption", this.told(frame), figure);
+      const one = new Specimen(canvas, this.body);
+      Object.assign(one, {
+        frame,
+        colour: this.specimen.colour,
+        cracks: this.specimen.cracks,
+        magnification: this.specimen.magnification,
+      });
+      one.size(340, 600);
+      canvas.style.height = "auto";
+      one.draw();
+    }
+    this.specimen.draw();
+  }
+}

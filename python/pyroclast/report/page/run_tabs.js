@@ -1,0 +1,232 @@
+// The tabs below specimen and curve.
+
+class RunTabs extends RunProbes {
+  tabs() {
+    const tabs = [...document.querySelectorAll(".tab")],
+      bar = $("tabs");
+    const isEmpty = {
+      heat: !this.drawsHeat(),
+      energies: !page.course.energy_out.length,
+      convergence: !this.course.has("unbalanced_ratio"),
+    };
+    const draw = {
+      energies: () => this.drawEnergies(),
+      cracks: () => this.drawCracks(),
+      heat: () => this.drawHeat(),
+      convergence: () => this.drawConvergence(),
+    };
+    const drawn = new Set();
+    const shownTabs = tabs.filter((t) => !isEmpty[t.dataset.tab] || t.remove());
+    const ensure = (name) => {
+      if (draw[name] && !drawn.has(name)) {
+        drawn.add(name);
+        draw[name]();
+      }
+    };
+    const open = (name) => {
+      for (const t of shownTabs) t.classList.toggle("open", t.dataset.tab === name);
+      for (const b of bar.children) {
+        b.setAttribute("aria-selected", String(b.dataset.tab === name));
+        b.tabIndex = b.dataset.tab === name ? 0 : -1;
+      }
+      ensure(name);
+    };
+    for (const t of shownTabs) {
+      const button = made("button", t.dataset.tab === "made" ? "how it was made" : t.dataset.tab, bar);
+      Object.assign(button, {type: "button", onclick: () => open(t.dataset.tab)});
+      button.dataset.tab = t.dataset.tab;
+      button.setAttribute("role", "tab");
+      button.setAttribute("aria-controls", t.id);
+      t.setAttribute("role", "tabpanel");
+    }
+    bar.addEventListener("keydown", (e) => {
+      const step = {ArrowRight: 1, ArrowLeft: -1}[e.key];
+      if (!step) return;
+      const all = [...bar.children],
+        next = all[(all.indexOf(document.activeElement) + step + all.length) % all.length];
+      e.stopPropagation();
+      next.focus();
+      next.click();
+    });
+    addEventListener("beforeprint", () => shownTabs.forEach((t) => ensure(t.dataset.tab)));
+    if (shownTabs.length) open(shownTabs[0].dataset.tab);
+  }
+
+  base(series, more) {
+    const over = page.course.over,
+      x = this.course.quantity(over);
+    return {x: this.course.of(over), label: x ? x.label : "", series, stages: page.course.stages, ...more};
+  }
+
+  drawEnergies() {
+    const chart = this.chart("energies", {
+      height: 320,
+      name: "energies",
+      pick: (row) => this.showRow(row),
+      brush: (p, o) => this.brush(p, o),
+    });
+    let base = new Float64Array(this.course.rows);
+    const series = [];
+    const put = new Float64Array(this.course.rows);
+    for (const name of page.course.energy_in)
+      this.course.column(name).forEach((v, i) => {
+        put[i] += v || 0;
+      });
+    for (const {column, label, colour} of page.course.energy_out) {
+      const values = this.course.column(column),
+        above = base.map((v, i) => v + (values[i] || 0));
+      if (values.some((v) => Math.abs(v) > 5e-4 * Math.max(...put.map(Math.abs))))
+        series.push({name: label, y: above, base, colour: ENERGY_COLOURS[colour] || colour});
+      base = above;
+    }
+    series.push({name: "put in", y: put, colour: "var(--ink)", width: 1.4, dash: "5 3"});
+    chart.draw(this.base(series.reverse(), {yLabel: "energy [J]", from0: true}));
+    chart.setCursor(this.row);
+  }
+
+  drawCracks() {
+    const {modes, extent} = page.course,
+      label = extent === "length_m" ? "length of cracks [m]" : "area of cracks [m²]";
+    const chart = this.chart("crack_lengths", {
+      name: label,
+      pick: (row) => this.showRow(row),
+      brush: (p, o) => this.brush(p, o),
+    });
+    const series = [];
+    for (const mode in modes)
+      modes[mode].forEach((name, k) =>
+        series.push({
+          name: `${mode}, ${name.replaceAll("_", "–")}`,
+          y: this.course.column(`${mode}_${name}_${extent}`),
+          colour: `var(--${mode})`,
+          dash: DASHES[k % 4],
+          width: 1.6,
+        }),
+      );
+    chart.draw(this.base(series, {yLabel: label, from0: true}));
+    chart.setCursor(this.row);
+    if (this.body && !this.body.about.solid) {
+      this.drawRose();
+      this.drawOpenings();
+    }
+  }
+
+  // Length of broken contacts at the end by the steepness of their lines.
+  drawRose() {
+    const host = $("rose"),
+      last = this.frames.length - 1,
+      bins = new Float64Array(18),
+      {arrays} = this.body;
+    for (const c of this.body.cracks(last)) {
+      const turn = this.body.steepness(c);
+      bins[Math.floor(((turn / Math.PI + 1) % 1) * 18) % 18] += arrays.extent.at(c, 0);
+    }
+    made("h3", "Steepness of cracks, by length, at the end", host);
+    const size = 220,
+      middle = size / 2,
+      most = Math.max(...bins, 1e-12);
+    const drawing = svg(
+      "svg",
+      {viewBox: `0 0 ${size} ${size}`, height: size, class: "chart", role: "img", "aria-label": "rose of cracks"},
+      host,
+    );
+    for (const share of [0.5, 1])
+      svg("circle", {cx: middle, cy: middle, r: share * 95, fill: "none", class: "grid"}, drawing);
+    for (let k = 0; k < 36; k++) {
+      const r = 95 * Math.sqrt(bins[k % 18] / most),
+        from = (Math.PI * k) / 18,
+        to = (Math.PI * (k + 1)) / 18;
+      const at = (t) => `${(middle + r * Math.cos(t)).toFixed(1)} ${(middle - r * Math.sin(t)).toFixed(1)}`;
+      svg("path", {d: `M${middle} ${middle}L${at(from)}L${at(to)}Z`}, drawing).style.fill = "var(--curve)";
+    }
+  }
+
+  drawOpenings() {
+    const host = $("openings"),
+      last = this.frames.length - 1,
+      bins = new Float64Array(12),
+      edges = Array.from({length: 13}, (_, k) => 2 ** k / 4);
+    for (const c of this.body.cracks(last)) {
+      const um = 1e6 * this.body.arrays.opening.at(last, c);
+      if (um > 0) bins[Math.max(0, Math.min(11, Math.floor(Math.log2(4 * um))))] += this.body.arrays.extent.at(c, 0);
+    }
+    made("h3", "Openings of cracks at the end, by length", host);
+    const rows = Array.from(bins, (length, k) => [
+      `${k ? number(edges[k], 2) : 0} to ${k < 11 ? number(edges[k + 1], 2) : "more"}`,
+      number(1e3 * length),
+    ]);
+    const most = Math.max(...bins, 1e-12),
+      drawing = svg(
+        "svg",
+        {viewBox: "0 0 360 220", height: 220, class: "chart", role: "img", "aria-label": "histogram of openings"},
+        host,
+      );
+    rows.forEach(([label, length], k) => {
+      svg("text", {x: 92, y: 15 + 16.5 * k, "text-anchor": "end"}, drawing, `${label} µm`);
+      svg(
+        "rect",
+        {x: 98, y: 5 + 16.5 * k, width: Math.max(0.5, (200 * bins[k]) / most), height: 12},
+        drawing,
+      ).style.fill = "var(--curve)";
+      svg("text", {x: 104 + (200 * bins[k]) / most, y: 15 + 16.5 * k}, drawing, `${length} mm`);
+    });
+  }
+
+  drawsHeat() {
+    const t = this.course.column("temperature_max_degC");
+    return this.course.has("heating_time_s") && Math.max(...t.filter(isFinite)) - Math.min(...t.filter(isFinite)) > 1;
+  }
+
+  drawHeat() {
+    const chart = this.chart("heat", {name: "temperatures", pick: (row) => this.showRow(row)});
+    const ids = [
+      "temperature",
+      "temperature_min",
+      "temperature_max",
+      ...page.course.quantities.map((q) => q.id).filter((id) => id.startsWith("probe_")),
+    ];
+    const colours = [
+      "var(--ink)",
+      "var(--curve)",
+      "var(--tension)",
+      "var(--good)",
+      "var(--mixed)",
+      "var(--warn-line)",
+    ];
+    const series = ids
+      .filter((id) => this.course.quantity(id))
+      .map((id, k) => ({
+        name: this.course.quantity(id).label,
+        y: this.course.of(id),
+        colour: colours[k % 6],
+        dash: DASHES[Math.floor(k / 6) % 4],
+      }));
+    chart.draw({
+      x: this.course.of("minutes"),
+      label: this.course.quantity("minutes").label,
+      yLabel: "temperature [°C]",
+      series,
+      stages: page.course.stages,
+    });
+    chart.setCursor(this.row);
+  }
+
+  drawConvergence() {
+    const chart = this.chart("convergence", {name: "unbalanced ratio", pick: (row) => this.showRow(row)});
+    const series = [
+      ["unbalanced", "var(--curve)"],
+      ["kinetic", "var(--tension)"],
+    ]
+      .filter(([id]) => this.course.quantity(id))
+      .map(([id, colour]) => ({name: this.course.quantity(id).label, y: this.course.of(id), colour, width: 1.2}));
+    chart.draw({
+      x: this.course.of("step"),
+      label: "step",
+      yLabel: "ratio [–]",
+      series,
+      log: true,
+      stages: page.course.stages,
+    });
+    chart.setCursor(this.row);
+  }
+}
