@@ -7,7 +7,9 @@ import json
 import os
 import pathlib
 import shutil
+import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -20,6 +22,7 @@ from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
 
 RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+ROOT = pathlib.Path(__file__).parents[2]
 
 
 def setUpModule():
@@ -161,7 +164,8 @@ class OneRun(PageOfRun):
         browser.mouse("mouseReleased", box["x"] + 0.8 * box["width"], y)
         a, b = browser.run("return pyroclast.piece")
         self.assertLess(a, b)
-        steps = browser.run("const s = pyroclast.course.column('step'); return Array.from(arguments, (i) => s[i])", a, b)
+        steps = browser.run("const s = pyroclast.course.column('step'); return Array.from(arguments, (i) => s[i])",
+                            a, b)
         rows = np.searchsorted(self.run_.history["step"], steps)
         told = {tuple(row[:2]): row[2:] for row in self.cells("#piece table", 0)}
         for mode, interfaces in self.run_.crack_modes.items():
@@ -287,6 +291,32 @@ class OtherRuns(PageOfRun):
         self.assertIn("keeps no fields", browser.run("return document.querySelector('footer').textContent"))
         self.assert_silent()
 
+    def test_a_fork_has_its_parent_behind(self):
+        parent, fork = self.copy(RUNS / "starter", "fields"), self.copy(RUNS / "starter", "fields", name="fork")
+        manifest = json.loads((fork / "manifest.json").read_text())
+        (fork / "manifest.json").write_text(json.dumps(manifest | {"parent": {"folder": str(parent)}}))
+        browser.open(self.page_of(fork))
+        key = browser.run("return document.querySelector('#curve .key').textContent")
+        self.assertIn("of which this run is a fork", key)
+        self.assert_silent()
+
+    def test_a_run_that_still_goes_has_a_page(self):
+        words = [os.environ["PYROCLAST"], "run", ROOT / "cases" / "starter.toml", "--out", self.folder / "live",
+                 "--quiet", "--no-figures", "--set", "blocks.count=400"]
+        with subprocess.Popen(words) as run:
+            try:
+                frames = self.folder / "live" / "fields" / "frames.csv"
+                while not frames.exists() or frames.read_text().count("\n") < 4:
+                    self.assertIsNone(run.poll())
+                    time.sleep(0.05)
+                page = self.page_of(self.folder / "live")
+            finally:
+                run.kill()
+        browser.open(page)
+        self.assertIn("the run still goes on", browser.run("return document.querySelector('.reasons').textContent"))
+        self.assertGreaterEqual(browser.run("return pyroclast.frames.length"), 3)
+        self.assert_silent()
+
     def test_a_run_that_broke_off_says_so(self):
         browser.open(self.page_of(self.copy(RUNS / "compression", "summary.json")))
         self.assertIn("broke off", browser.run("return document.querySelector('.reasons').textContent"))
@@ -325,8 +355,8 @@ class OtherRuns(PageOfRun):
         run = pyroclast.read(RUNS / "compression")
         browser.open(self.page_of(run.folder))
         for name in ("tension", "shear", "friction", "compression"):
-            sums = browser.run("const a = pyroclast.arrays[`lost_${arguments[0]}`], n = a.width; return [10, 20, 30].map("
-                               "(f) => { let s = 0; for (let c = 0; c < n; c++) s += a.at(f, c); return s; })", name)
+            sums = browser.run("const a = pyroclast.arrays[`lost_${arguments[0]}`]; return [10, 20, 30].map((f) => "
+                               "{ let s = 0; for (let c = 0; c < a.width; c++) s += a.at(f, c); return s; })", name)
             rows = np.searchsorted(run.history["step"], [run.frames[f].step for f in (10, 20, 30)])
             step = browser.run("return pyroclast.arrays[`lost_${arguments[0]}`].step", name)
             # of each contact half a step, and single precision of the fields

@@ -4,6 +4,7 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import unittest
 from collections.abc import Callable, Sequence
 from unittest import mock
@@ -105,6 +106,29 @@ E = "E"
     def figures(self, study: Study) -> dict[str, Figure]:
         found = seen(study)
         return {shown.name: shown.figure for section in _SECTIONS[found.method](found) for shown in section.figures}
+
+
+class Runs(ReportTest):
+    def test_pages_of_runs_stand_beside_that_of_the_study(self) -> None:
+        shutil.copy(pathlib.Path(__file__).parents[2] / "cases" / "starter.toml", self.folder / "deck.toml")
+        study = self.study('''
+title = "Seeds"
+[study]
+deck = "deck.toml"
+seeds = 2
+keep = "history"
+changes = { "blocks.count" = 60, "stages[1].stop_strain" = 5e-4 }
+[method]
+kind = "ensemble"
+[outputs]
+E = "E_GPa"
+''')
+        self.assertTrue(study.run(jobs=1))
+        page = write_report(study)
+        links = re.findall(r'<a href="(run-[0-9a-f]+\.html)">(least|greatest) E', page.read_text())
+        self.assertEqual([what for _, what in links], ["least", "greatest"])
+        for file, _ in links:
+            self.assertIn("Compression of a 1,000-block specimen", (page.parent / file).read_text())
 
 
 class Elsewhere(ReportTest):

@@ -11,6 +11,7 @@ from ...writing import make_folder, write_text
 from ..study import Study
 from . import calibration, ensemble, indices, posterior, responses, secant
 from .page import page_of
+from .runs import pages_of_runs
 from .section import Section
 from .seen import Seen, seen
 
@@ -44,13 +45,13 @@ def write_report(study: Study, out: Path | None = None) -> Path:
     sections = _SECTIONS[found.method](found) if found.findings is not None else []
     pictures = _save(sections, folder)
     page = folder / PAGE
-    write_text(page, page_of(found, sections, pictures))
+    write_text(page, page_of(found, sections, pictures, pages_of_runs(found, folder)))
     return page
 
 
 def _clear(folder: Path) -> None:
-    """Of figures and findings, some of which the study may have no more."""
-    for file in [*folder.glob("*.pdf"), *folder.glob("*.png"), folder / FINDINGS]:
+    """Of figures, findings and pages of runs, some of which the study may have no more."""
+    for file in [*folder.glob("*.pdf"), *folder.glob("*.png"), *folder.glob("run-*.html"), folder / FINDINGS]:
         file.unlink(missing_ok=True)
 
 

@@ -15,17 +15,19 @@ from ..store import DONE
 from .drawing import parameter_label, value_text
 from ...report.markup import Markup, element, picture, together
 from ...report.shell import page
+from .runs import RunPageLink
 from .section import HOW_TO_READ, PageTable, Section, Shown
 from .seen import Seen, number
 
 _MOST_REASONS = 20
 _PIXELS = 133  # of a page, for an inch of a figure
-def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes]) -> str:
-    """All of the page. pictures: PNG files by the names of figures."""
+def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes],
+            runs: Sequence[RunPageLink]) -> str:
+    """All of the page. pictures: PNG files by the names of figures. runs: pages beside this one."""
     body = together(_warnings(seen), _in_short(sections), _contents(sections),
                     _heading("What was found", "found") if sections else Markup(),
                     *(_section(section, pictures, _place(i)) for i, section in enumerate(sections)),
-                    _heading("What was run", "run"), _run_table(seen), _varied(seen), _failures(seen),
+                    _heading("What was run", "run"), _run_table(seen), _run_pages(runs), _varied(seen), _failures(seen),
                     _heading("One run again", "again"), _again(seen),
                     _heading("The study file", "file"), element("p", str(seen.setup.file.name), class_="faint"),
                     element("pre", _text(seen.setup.file)), _deck(seen))
@@ -145,6 +147,11 @@ def _run_table(seen: Seen) -> Markup:
         ("physics version", ", ".join(_versions(seen)) if runner.kind == "pyroclast" else ""),
         ("correlations", "; ".join(f"{a} and {b}: rank {rho:g}" for a, b, rho in setup.correlations)),
     ])
+
+
+def _run_pages(runs: Sequence[RunPageLink]) -> Markup:
+    links = [element("li", element("a", link.text, href=link.file)) for link in runs]
+    return together(element("p", "Pages of runs:"), element("ul", *links)) if links else Markup()
 
 
 def _duration(seconds: float) -> str:
