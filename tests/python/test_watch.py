@@ -475,7 +475,7 @@ class Readers(WatchTest):
         done = self.as_reader(home, "figures", "run", self.folder, "--out", home / "drawn")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(sorted(file.name for file in (home / "drawn").iterdir()),
-                         ["cracks.png", "energy.png", "fracture.png", "stress_strain.png"])
+                         ["cracks.png", "energy.png", "fracture.csv", "fracture.png", "stress_strain.png"])
         self.assertEqual(sorted(self.folder.rglob("*")), before)
 
 
