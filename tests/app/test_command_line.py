@@ -87,7 +87,7 @@ class CommandLine(unittest.TestCase):
         for what, word in (("curves", "en1992_siliceous_strength"), ("fires", "iso834"), ("units", "stress"),
                            ("keys", "specimen.width"), ("laws", "cohesive")):
             self.assertIn(word, self.pyroclast("list", what).stdout)
-        self.assertIn("cases, curves", self.error("list").replace('"', ""))
+        self.assertIn("cases, columns, curves", self.error("list").replace('"', ""))
 
     def test_new_gives_every_case_as_it_is(self):
         for case in CASES.glob("*.toml"):

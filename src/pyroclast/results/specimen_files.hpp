@@ -6,7 +6,8 @@
 
 namespace pyroclast {
 
-/// Writes `specimen.json`, `aggregates.csv` and `gradation.csv` of a specimen into a folder.
+/// Writes `specimen.json`, `aggregates.csv`, `gradation.csv` and, in the plane, `grain_fit.csv` and
+/// `outlines.csv` of a specimen into a folder.
 void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
                           const specimen::SpecimenParameters& asked);
 
