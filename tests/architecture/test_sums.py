@@ -12,7 +12,7 @@ MAY = {
     "base/team.cpp",  # counts of threads and whole nanoseconds
     "deck/toml_characters.cpp",  # levels of a text
     "mechanics/totals.cpp",  # entries of one ledger, each a chunked sum
-    "specimen/regularisation.cpp", "specimen/topology.cpp",  # geometry, before there is a body
+    "specimen/topology.cpp",  # geometry, before there is a body
     "thermal/conduction.cpp",  # parts of one node
 }
 

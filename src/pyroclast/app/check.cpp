@@ -90,6 +90,8 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
              estimate_modulus(model, simulation.materials()) * 1e-9,
              1e3 * simulation.materials().fracture_zone);
+  if (setup.moving->contacts.fracture_zone_size && !setup.specimen.blocks.finer.empty())
+    fmt::print("                of blocks of the mean size; between others t_b goes with their size\n");
   print_stated_stiffness(setup);
   const auto& whole = simulation.materials().composition;
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);

@@ -1,5 +1,6 @@
 #include "pyroclast/app/open.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -43,6 +44,11 @@ std::string describe_specimen(const specimen::Specimen& s) {
     text += fmt::format("                {}\n", skeleton);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
+  if (!s.size.empty()) {
+    const auto [smallest, largest] = std::ranges::minmax(s.size);
+    text += fmt::format("                from {:.3f} mm where they are finest to {:.3f} mm\n",
+                        kMilli * smallest, kMilli * largest);
+  }
   text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",
                       kMilli * m.shortest_edge, m.shortest_edge_cell, kMilli * m.shortest_edge_at[0],
                       kMilli * m.shortest_edge_at[1]);

@@ -19,7 +19,8 @@ constexpr auto kStudiedStrengths = std::to_array<StudiedStrength>({
 }  // namespace
 
 std::optional<StudiedStrength> studied_like(const AskedSpecimen& s) {
-  if (s.prism || s.blocks.count == 0 || s.aggregates.fraction <= 0.0) return std::nullopt;
+  if (s.prism || s.blocks.count == 0 || !s.blocks.finer.empty() || s.aggregates.fraction <= 0.0)
+    return std::nullopt;
   const double size = s.block_size() / s.aggregates.d_max;
   return *std::ranges::min_element(kStudiedStrengths, {}, [&](const StudiedStrength& studied) {
     return std::abs(std::log(size / studied.size));

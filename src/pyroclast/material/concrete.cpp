@@ -135,6 +135,13 @@ ContactMaterial ContactMaterial::times(Role role, double factor) const {
   return scaled;
 }
 
+void ContactMaterial::scale_stiffnesses(double factor, std::span<double> among) const {
+  for (std::size_t i = 0; i < among.size(); ++i)
+    if (const Role role = law->properties[i].role;
+        role == Role::normal_stiffness || role == Role::shear_stiffness)
+      among[i] *= factor;
+}
+
 ContactProperties ContactMaterial::at(double temperature, double property_temperature) const {
   std::vector<double> values(numbers.size());
   write_at(temperature, property_temperature, values);
@@ -236,6 +243,8 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
                               block_materials[a].name, block_materials[b].name));
     }
   }
+  if (p.fracture_zone_size)
+    for (ContactMaterial& contact : concrete.contacts) contact.block_size = block_size;
   if (!of_matrix)
     throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));
 
@@ -245,6 +254,7 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
         concrete.contacts.emplace_back(is_glued ? table_of<Elastic>() : table_of<Frictional>());
     concrete.interfaces.push_back(bearing.name);
     of_matrix->put_into(contact);
+    if (p.fracture_zone_size && !bearing.stiffness) contact.block_size = block_size;
     if (bearing.stiffness) {
       contact.set(Role::normal_stiffness, Curve::constant((*bearing.stiffness)[0]));
       contact.set(Role::shear_stiffness, Curve::constant((*bearing.stiffness)[1]));

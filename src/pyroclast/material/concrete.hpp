@@ -78,6 +78,8 @@ struct ContactMaterial {
   /// in the order of LawTable::properties.
   std::vector<std::optional<Curve>> residual_ratios;
   std::vector<int> choices;  ///< options chosen, in the order of LawTable::choices
+  /// Block size at which the stiffnesses hold, m; they go with its inverse. 0: they hold for any.
+  double block_size = 0.0;
 
   ContactMaterial() = default;
   /// Makes a contact whose numbers are all zero, with the first option of each choice.
@@ -101,6 +103,13 @@ struct ContactMaterial {
   ContactProperties at(double temperature, double property_temperature) const;
   /// Writes the numbers of the parameters, in the order of LawTable::properties.
   void write_at(double temperature, double property_temperature, std::span<double> to) const;
+  /// Returns the stiffness between blocks of a size over that of `numbers`.
+  /// \param size  block size, m; 0: as that of `numbers`
+  double stiffness_between(double size) const {
+    return block_size > 0.0 && size > 0.0 ? block_size / size : 1.0;
+  }
+  /// Multiplies the stiffnesses among numbers of the law by a factor.
+  void scale_stiffnesses(double factor, std::span<double> among) const;
 };
 
 /// Interface between blocks of two phases, as a deck states it.
@@ -206,7 +215,7 @@ struct ConcreteMaterials {
   std::vector<BlockMaterial> block_materials;  ///< materials by phase, then those of bearings
   std::vector<std::string> interfaces;         ///< names as in InterfaceTable, then those of bearings
   std::vector<ContactMaterial> contacts;       ///< contacts in the order of `interfaces`
-  double fracture_zone = 0.0;                  ///< t_b that results, m
+  double fracture_zone = 0.0;                  ///< t_b that results where blocks have their mean size, m
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< composition, where `follow_composition` was called
   std::optional<double> stress_free;       ///< temperature of `set_stress_free`, where it was called, °C

@@ -237,6 +237,7 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
   const auto gridpoint = [&](int cell, int vertex) {
     return model.block_gridpoints[first_cell + cell] + place_in(tessellation.cells[cell], vertex);
   };
+  const auto size_of = [&](int cell) { return specimen.size.empty() ? 0.0 : specimen.size[cell]; };
   auto& whole_outline = model.sets["outline"];
   for (const specimen::Side& side : region.sides()) model.sets[side.name];
   std::size_t on_outline = 0;
@@ -245,7 +246,8 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
     if (e.right >= 0) {
       const int first_contact = model.contact_count();
       const int interface = table.between(specimen.phase[e.left], specimen.phase[e.right]);
-      model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, interface);
+      model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, interface,
+                       0.5 * (size_of(e.left) + size_of(e.right)));
       if (const auto slit = region.slit_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1])) {
         const specimen::Notch& notch = region.notches()[*slit];
         auto& set = model.contact_sets[notch.name];
@@ -269,7 +271,7 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
         return blocks[i].inner[place_in(blocks[i].seat.vertices, vertex)];
       };
       const int first_contact = model.contact_count();
-      model.join_faces(a, {opposite(e.v0), opposite(e.v1)}, blocks[i].interface);
+      model.join_faces(a, {opposite(e.v0), opposite(e.v1)}, blocks[i].interface, size_of(e.left));
       name_contacts(model, bearings[i].name, first_contact);
     }
     whole_outline.insert(whole_outline.end(), a.begin(), a.end());

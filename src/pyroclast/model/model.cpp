@@ -83,7 +83,8 @@ ChunkList Model::chunks_of(const std::vector<int>& of_block) const {
 }
 
 template <int Dim>
-void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface) {
+void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface,
+                              double block_size) {
   const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 15;
   if (a.size() != b.size() || a.size() < fewest || a.size() > most)
     throw Error(fmt::format("faces with {} and {} corners cannot be joined: both must have {}", a.size(),
@@ -95,7 +96,8 @@ void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>&
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!(frame.area[i] > 0.0))
       throw Error(fmt::format("face at gridpoint {} has no area, so no contact can stand on it", a[0]));
-    contacts.push_back({{a[i], b[i], face, interface, frame.area[i]}, frame.normal, frame.tangents});
+    contacts.push_back(
+        {{a[i], b[i], face, interface, frame.area[i], block_size}, frame.normal, frame.tangents});
   }
   face_contacts.push_back(static_cast<int>(contacts.size()));
 }

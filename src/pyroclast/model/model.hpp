@@ -20,6 +20,8 @@ struct Joint {
   int face;       ///< shared face, see Model::face_contacts
   int interface;  ///< index into Model::interface_names
   double area;    ///< tributary area, m² (2D: half the edge times the thickness)
+  /// Size that the blocks there were to have, m, which stiffnesses follow; 0: blocks are alike.
+  double block_size = 0.0;
 };
 
 template <int Dim>
@@ -134,7 +136,9 @@ struct ModelOf final : Model {
   /// In 3D zones meet the face in the triangles of the fan from its first corner. All contact points of a
   /// face have the frame of its mean plane, with the first tangent along its first edge; each has its share
   /// of the area. Throws Error for a face without area, and for one without 2 corners in 2D or 3 to 15 in 3D.
-  void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
+  /// \param block_size  as of the joints
+  void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface,
+                  double block_size = 0.0);
 };
 
 /// Switch of dimension: calls `f` with a model as what it is, a ModelOf<2> or a ModelOf<3>.

@@ -114,6 +114,11 @@ void write_made(const std::filesystem::path& folder, const specimen::Specimen& s
   json["width_m"] = s.region.box().width();
   json["height_m"] = s.region.box().height();
   add_common(json, s, s.tessellation.cells.size(), s.aggregates.size());
+  if (!s.size.empty()) {
+    const auto [smallest, largest] = std::ranges::minmax(s.size);
+    json["smallest_block_size_m"] = smallest;
+    json["largest_block_size_m"] = largest;
+  }
   json["mean_edge_m"] = s.metrics.mean_edge;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
   json["edges_removed"] = s.metrics.edges_removed;

@@ -119,6 +119,7 @@ std::vector<std::string> unused_sets(const Setup& setup) {
   for (const RecordParameters& record : setup.records) used.insert(used.end(), {record.set, record.other});
   for (const HeatBoundaryCondition& boundary : setup.heat.boundaries) used.push_back(boundary.faces.part);
   for (const auto& set : setup.sets) used.push_back(set.within);
+  for (const specimen::FinerPart& part : setup.specimen.blocks.finer) used.push_back(part.name);
   std::vector<std::string> unused;
   for (const auto& set : setup.sets)
     if (std::ranges::find(used, set.name) == used.end()) unused.push_back(set.name);

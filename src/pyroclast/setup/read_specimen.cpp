@@ -13,6 +13,8 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/nearest.hpp"
+#include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
@@ -590,15 +592,15 @@ double angle_on(const ReadBearing& b, const Circle& circle) {
   return std::atan2(from_centre[1], from_centre[0]);
 }
 
-/// Returns the corners of a circle; the ends of bearings are among them.
-std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<const ReadBearing> bearings) {
+/// Returns the angles at which a circle must have corners, the ends of bearings, radians; one at least.
+std::vector<double> angles_of(const Circle& circle, std::span<const ReadBearing> bearings) {
   std::vector<double> angles;
   for (const ReadBearing& b : bearings)
     if (const auto half = half_angle(b, circle))
       for (const double angle : {angle_on(b, circle) - *half, angle_on(b, circle) + *half})
         angles.push_back(angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle);
   if (angles.empty()) angles.push_back(0.0);
-  return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
+  return angles;
 }
 
 /// Returns the ends of a bearing on a straight side, with the body on the left. Throws Error where the
@@ -666,10 +668,17 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
   return region.with_patches(patches);
 }
 
+/// Finer blocks as a deck asks for them: near a part that has a name, or near a place.
+struct ReadFiner {
+  Section section;
+  specimen::FinerPart part;
+};
+
 /// Blocks as a deck asks for them: by their number, or by their size.
 struct ReadBlocks {
   specimen::BlockParameters parameters;
   double size = 0.0;  ///< m; 0: their number is stated
+  std::vector<ReadFiner> finer;
 
   /// Returns the size of a block in a specimen of this area, m.
   double size_in(double area) const {
@@ -691,7 +700,9 @@ specimen::Region round_section(double diameter, double length, const ReadBlocks&
   const double area = 0.25 * std::numbers::pi * diameter * diameter;
   const double side = std::min(read.size_in_solid(area * length), std::numbers::pi * diameter / kFewestSides);
   const Circle circle{{}, diameter};
-  const auto rim = specimen::Region::polygon(corners_of(circle, side, bearings), {"rim"}, true);
+  const auto rim = specimen::Region::polygon(
+      specimen::circle_corners(circle.centre, circle.diameter, side, angles_of(circle, bearings)), {"rim"},
+      true);
   return with_seats(rim, std::array{circle}, bearings);
 }
 
@@ -737,8 +748,11 @@ solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& spa
   }
 }
 
+/// Returns the region of a deck in the plane; a square stands in for an error.
+/// \param sizes  sizes of blocks where they are finer in parts: circles have their sides about as long
 specimen::Region make_region(const Section& s, const Outline& o, const ReadBlocks& read,
-                             std::span<const ReadBearing> bearings) {
+                             std::span<const ReadBearing> bearings,
+                             const specimen::BlockSizes* sizes = nullptr) {
   const specimen::BlockParameters& blocks = read.parameters;
   const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error already
   if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
@@ -752,7 +766,10 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
     std::vector<Circle> circles;
     const auto round = [&](const Circle& circle, double size) {
       circles.push_back(circle);
-      return corners_of(circle, size, bearings);
+      const auto angles = angles_of(circle, bearings);
+      if (!sizes) return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
+      const auto side = [&](const Vec<2>& place) { return sizes->at(place); };
+      return specimen::circle_corners(circle.centre, circle.diameter, side, angles);
     };
     const double area =
         std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
@@ -775,7 +792,8 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
                           ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}, size), true}
                           : specimen::Hole{hole.name, hole.corners, false});
     std::vector<specimen::Notch> notches = o.notches;
-    for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size);
+    for (specimen::Notch& n : notches)
+      n.point = specimen::slot_point(n.length(), n.width, sizes ? sizes->at(n.tip) : size);
     region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
     if (blocks.count == 0 && read.size == 0.0 && !region.is_rectangle())
       s.error("shape",
@@ -913,6 +931,55 @@ double read_shortest_edge(const Section& s, const DeckSpace& space) {
   return 0.0;
 }
 
+/// End of the name of a notch's tip.
+constexpr const char* kTip = "_tip";
+
+/// Reads [[blocks.finer]].
+std::vector<ReadFiner> read_finer(const Section& blocks) {
+  std::vector<ReadFiner> all;
+  for (const Section& s :
+       blocks.optional_sections("finer",
+                                "parts near which blocks are finer, any number, in the plane; see "
+                                "[Finer blocks](../do/bodies.md#finer-blocks)")) {
+    ReadFiner finer{s, {}};
+    int stated = 0;
+    for (const char* const key : {"near", "box", "line", "at"}) stated += s.has(key) ? 1 : 0;
+    if (stated > 1) s.error("one of near, box, line and at; not several");
+    s.know({"box", "line", "at"});
+    const auto two = [&](const char* key, Meaning meaning) -> std::array<Vec<2>, 2> {
+      const auto places = vecs(s.places(key, unit::length, 2, meaning));
+      if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
+      if (places.size() < 2) return {};
+      return {places[0], places[1]};
+    };
+    if (s.has("box")) {
+      const auto [low, high] =
+          two("box", "lower left and upper right corner of a place near which blocks are finer");
+      if (s.ok() && (low[0] > high[0] || low[1] > high[1]))
+        s.error("box", "is inside out: the lower left corner comes first");
+      finer.part.box = {low, high};
+    } else if (s.has("line")) {
+      finer.part.pieces.push_back(two("line", "ends of a straight line near which blocks are finer"));
+    } else if (s.has("at")) {
+      const Vec<2> at = read_place(s, "at", "a point near which blocks are finer");
+      finer.part.pieces.push_back({at, at});
+    } else {
+      finer.part.name = s.text(
+          "near",
+          "part near which blocks are finer: a side, hole, notch or bearing, the tip of a notch (its name "
+          "and `_tip`), `outline`, or a set of the deck");
+    }
+    finer.part.size = s.quantity("size", unit::length, Range::positive(),
+                                 "size of blocks there, the root of their area; less than elsewhere");
+    finer.part.distance = s.quantity(
+        "distance", unit::length, Range::positive(),
+        "distance up to which blocks have this size; beyond, each is larger than the one before by "
+        "a fifth at most");
+    all.push_back(std::move(finer));
+  }
+  return all;
+}
+
 ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, const Outline& outline,
                        const DeckSpace& space, bool is_covered) {
   ReadBlocks read;
@@ -925,7 +992,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
         folder /
         s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
     s.names_file("file", file);
-    for (const char* const key : {"count", "size"})
+    for (const char* const key : {"count", "size", "finer"})
       if (s.has(key)) s.error(key, "has no meaning beside file: the tessellation is read, not made");
     const std::vector<std::string> names = s.optional_texts(
         "groups",
@@ -946,9 +1013,10 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
       s.error("count", "has no meaning beside size, from which the number of blocks follows");
     read.size = s.quantity(
         "size", unit::length, Range::positive(),
-        "mean size of a block, the root of its area, in a solid of its volume, instead of `count`");
+        "mean size of a block, the root of its area, in a solid of its volume, instead of `count`; far from "
+        "finer blocks");
   } else {
-    b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks"));
+    b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks, with the finer ones"));
     const auto calibrated =
         s.integer("calibrated_count", Range::between(0.0, 1e8), 0,
                   "number of blocks for which the strengths were calibrated, 0 where it is not "
@@ -967,16 +1035,129 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
   b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
                              "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
                              "spacing; 0 makes a Voronoi tessellation");
+  if (s.has("finer") && space.is_solid())
+    s.error("finer", "blocks of a solid cannot be finer in parts yet");
+  else
+    read.finer = read_finer(s);
   return read;
 }
 
-/// Returns the number of blocks of a size. Records an error where it is out of range.
-int count_of(const Section& blocks, const AskedSpecimen& specimen, double size) {
-  const double count = std::round(specimen.extent() / std::pow(size, specimen.dimension()));
+/// Returns a number of blocks that follows from their size. Records an error where it is out of range.
+int count_in_range(const Section& blocks, double count) {
+  count = std::round(count);
   if (kBlockCount.contains(count)) return static_cast<int>(count);
   blocks.error(
       "size", fmt::format("gives {:.6g} blocks, but their number must be {}", count, kBlockCount.describe()));
   return 0;
+}
+
+/// Returns the names of all parts near which blocks may be finer.
+std::vector<std::string> parts_of(const specimen::Region& region, std::span<const ReadBearing> bearings,
+                                  std::span<const SetParameters> sets) {
+  std::vector<std::string> names{"outline"};
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const specimen::Side& side : region.sides()) add(side.name);
+  for (const specimen::Notch& notch : region.notches()) {
+    add(notch.name);
+    add(notch.name + kTip);
+  }
+  for (const ReadBearing& b : bearings) add(b.bearing.name);
+  for (const SetParameters& set : sets) add(set.name);
+  return names;
+}
+
+/// Gives finer blocks the place of a part by its name. A set without a place has that of the set that it lies
+/// within. Records an error where there is none.
+void find_part(const specimen::Region& region, std::span<const ReadBearing> bearings,
+               std::span<const SetParameters> sets, std::string name, ReadFiner& finer) {
+  specimen::FinerPart& part = finer.part;
+  if (const auto set = std::ranges::find(sets, name, &SetParameters::name); set != sets.end()) {
+    const auto point = [](const Vec<3>& place) { return resized<2>(place); };
+    const auto before = sets.first(static_cast<std::size_t>(set - sets.begin()));
+    bool has_place = true;
+    std::visit(Overloaded{[&](const InBox& in) {
+                            part.box = {point(in.low), point(in.high)};
+                          },
+                          [&](const InBall& in) {
+                            part.pieces.push_back({point(in.centre), point(in.centre)});
+                            part.distance += in.radius;
+                          },
+                          [&](const OnLine& on) {
+                            part.pieces.push_back({point(on.from), point(on.to)});
+                          },
+                          [&](const NearestTo& to) {
+                            part.pieces.push_back({point(to.point), point(to.point)});
+                          },
+                          [&](const Everywhere&) { has_place = false; }},
+               set->place);
+    if (!has_place) find_part(region, bearings, before, set->within, finer);
+    return;
+  }
+  if (const auto b = std::ranges::find(bearings, name, [](const ReadBearing& r) { return r.bearing.name; });
+      b != bearings.end())
+    name = b->bearing.side;
+  const auto& sides = region.sides();
+  for (const specimen::Piece& piece : region.pieces())
+    for (int side = piece.side; side >= 0; side = sides[side].part_of)
+      if (name == "outline" || sides[side].name == name) {
+        part.pieces.push_back({piece.from, piece.to});
+        break;
+      }
+  for (const specimen::Notch& notch : region.notches()) {
+    if (notch.name == name) part.pieces.push_back({notch.mouth, notch.tip});
+    if (notch.name + kTip == name) part.pieces.push_back({notch.tip, notch.tip});
+  }
+  if (!part.pieces.empty()) return;
+  const std::vector<std::string> names = parts_of(region, bearings, sets);
+  finer.section.error("near", fmt::format("must be one of {}; got \"{}\"{}", quoted_list(names), part.name,
+                                          did_you_mean(part.name, names, "; ")));
+}
+
+/// Makes blocks finer in parts: finds the places of these, and the number of all blocks, or the size of those
+/// far from them. Records an error where blocks do not become finer, or are too few.
+void make_finer(const Section& s, const Section& blocks, const Outline& outline, ReadBlocks& read,
+                std::span<const ReadBearing> bearings, std::span<const SetParameters> sets,
+                AskedSpecimen& p) {
+  if (!s.ok() || !blocks.ok()) return;
+  specimen::BlockParameters& b = read.parameters;
+  for (ReadFiner& finer : read.finer) {
+    if (!finer.part.name.empty()) find_part(p.region, bearings, sets, finer.part.name, finer);
+    b.finer.push_back(finer.part);
+  }
+  const auto all_ok = [&] {
+    return std::ranges::all_of(read.finer, [](const ReadFiner& finer) { return finer.section.ok(); });
+  };
+  if (!all_ok()) return b.finer.clear();
+  const specimen::SizedArea area(p.region, b.finer);
+  if (read.size > 0.0) {
+    b.largest_size = read.size;
+    b.count = count_in_range(blocks, area.blocks(read.size));
+  } else {
+    const auto largest = area.largest_for(b.count);
+    if (!largest)
+      blocks.error("count",
+                   fmt::format("the finer blocks, and those that grow from them by a fifth from block to "
+                               "block, are {:.0f} already: take more, or a smaller distance",
+                               area.blocks(std::numeric_limits<double>::infinity())));
+    b.largest_size = largest.value_or(0.0);
+  }
+  for (const ReadFiner& finer : read.finer)
+    if (blocks.ok() && finer.part.size >= b.largest_size)
+      finer.section.error(
+          "size",
+          fmt::format("must be less than the size of the other blocks, {:.4g} mm{}; got {:.4g} mm",
+                      1e3 * b.largest_size, read.size > 0.0 ? "" : ", which follows from blocks.count",
+                      1e3 * finer.part.size));
+  if (!all_ok() || !blocks.ok()) return b.finer.clear();
+  const specimen::BlockSizes sizes(std::sqrt(p.region.area() / b.count), b.largest_size, b.finer);
+  p.region = make_region(s, outline, read, bearings, &sizes);
+}
+
+/// Returns the number of blocks of a size. Records an error where it is out of range.
+int count_of(const Section& blocks, const AskedSpecimen& specimen, double size) {
+  return count_in_range(blocks, specimen.extent() / std::pow(size, specimen.dimension()));
 }
 
 /// Reads [superposition] where nothing is superposed. Tells whether the deck has this table.
@@ -1070,7 +1251,7 @@ std::string first_phase(const specimen::Inclusions& inclusions) {
 }  // namespace
 
 AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& folder, const DeckSpace& space,
-                            std::span<const ReadBearing> bearings) {
+                            std::span<const SetParameters> sets, std::span<const ReadBearing> bearings) {
   AskedSpecimen p;
   const Section s = root.section("specimen");
   Outline outline = read_outline(s, folder, space);
@@ -1096,8 +1277,10 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
     p.prism = make_prism(s, outline, space, read, bearings);
   else
     p.region = make_region(s, outline, read, bearings);
+  if (!read.finer.empty()) make_finer(s, blocks, outline, read, bearings, sets, p);
   p.blocks = std::move(read.parameters);
-  if (read.size > 0.0 && s.ok() && blocks.ok()) p.blocks.count = count_of(blocks, p, read.size);
+  if (read.size > 0.0 && p.blocks.count == 0 && s.ok() && blocks.ok())
+    p.blocks.count = count_of(blocks, p, read.size);
   check_outline(s, outline, p);
   set_fraction(p.extent(), p.aggregates);
   for (specimen::Inclusions& kind : p.inclusions)

@@ -148,7 +148,7 @@ void check_heated_sides(const Section& root, const Setup& setup) {
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const AskedSpecimen& s = setup.specimen;
   if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.moving) return;
-  const double size = s.block_size(), share = size / s.aggregates.d_max;
+  const double size = s.largest_block_size(), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
   const bool is_heated_under_load =
       any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
@@ -348,8 +348,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   if (root.ok()) check_flow(root, setup);
   setup.temperatures = run_temperatures(root, setup.heat, read.stress_free, setup.stages);
   const auto bearings = read.any_moves ? read_bearings(root, space) : std::vector<ReadBearing>();
-  setup.specimen = read_specimen(root, folder, space, bearings);
   setup.sets = read_sets(root, space);
+  setup.specimen = read_specimen(root, folder, space, setup.sets, bearings);
   if (root.ok()) check_heated_sides(root, setup);
   setup.thickness = read_thickness(root.section("specimen"), space);
   if (setup.heat.uniform)

@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/coupling.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace pyroclast {
@@ -50,6 +51,38 @@ void find_creep_increments(const std::vector<int>& zone_materials, const Concret
   }
 }
 
+bool blocks_are_alike(const Model& model) {
+  for (int c = 0; c < model.contact_count(); ++c)
+    if (model.joint(c).block_size > 0.0) return false;
+  return true;
+}
+
+/// Returns properties of a body whose contacts differ by interface, and in their stiffness by the size of the
+/// blocks: one set of parameters for each that occurs.
+/// \param interfaces  contact properties of each interface where blocks have their mean size
+BodyProperties by_block_size(const Model& model, std::vector<ZoneProperties> zones,
+                             const ConcreteMaterials& materials,
+                             const std::vector<ContactProperties>& interfaces) {
+  std::map<std::pair<int, double>, int> set_of;
+  BodyProperties p;
+  p.zones = std::move(zones);
+  for (const ContactProperties& of_mean : interfaces) p.contacts.know(*of_mean.law, of_mean.choices);
+  p.of_contact.reserve(model.contact_count());
+  for (int c = 0; c < model.contact_count(); ++c) {
+    const Joint& joint = model.joint(c);
+    const ContactMaterial& contact = materials.contacts[joint.interface];
+    const double factor = contact.stiffness_between(joint.block_size);
+    const auto [set, is_new] = set_of.try_emplace({joint.interface, factor}, p.contacts.size());
+    p.of_contact.push_back(set->second);
+    if (!is_new) continue;
+    ContactProperties scaled = interfaces[joint.interface];
+    contact.scale_stiffnesses(factor, scaled.numbers);
+    validate(scaled, model.interface_names[joint.interface]);
+    p.contacts.add(scaled);
+  }
+  return p;
+}
+
 /// Returns properties at one temperature: one set of parameters a material and an interface. Bearings keep
 /// the reference temperature.
 BodyProperties properties_at_one_temperature(const Model& model, const std::vector<int>& zone_materials,
@@ -71,7 +104,8 @@ BodyProperties properties_at_one_temperature(const Model& model, const std::vect
         materials.contacts[i].at(temperature, materials.property_temperature(temperature, hottest)));
     validate(interfaces.back(), model.interface_names[i]);
   }
-  return by_interface(model, std::move(zones), interfaces);
+  return blocks_are_alike(model) ? by_interface(model, std::move(zones), interfaces)
+                                 : by_block_size(model, std::move(zones), materials, interfaces);
 }
 
 }  // namespace
@@ -165,8 +199,10 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
     p.of_contact.push_back(c);
     const double now = field.contacts()[c];
     const ContactMaterial& contact = materials.contacts[interface];
-    contact.write_at(now, materials.property_temperature(now, before.of_contact(c, now)),
-                     p.contacts.add(*contact.law, contact.choices));
+    const auto to = p.contacts.add(*contact.law, contact.choices);
+    contact.write_at(now, materials.property_temperature(now, before.of_contact(c, now)), to);
+    if (const double size = model.joint(c).block_size; size > 0.0)
+      contact.scale_stiffnesses(contact.stiffness_between(size), to);
     p.contacts.validate(c, model.interface_names[interface]);
   }
   return p;

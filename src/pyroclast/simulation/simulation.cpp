@@ -216,7 +216,11 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);
     if (model.is_of_bearing(c)) continue;
-    const auto k = materials.contacts[c.interface].at(temperature).stiffness();
+    const ContactMaterial& contact = materials.contacts[c.interface];
+    auto k = contact.at(temperature).stiffness();
+    const double factor = contact.stiffness_between(c.block_size);
+    k.normal *= factor;
+    k.shear *= factor;
     const Vec<3> n = model.normal(i);
     const double normal = n[axis] * n[axis];  // traction over stress, along the normal
     double tangential = 0.0;                  // and along the face, squared

@@ -98,6 +98,10 @@ double AskedSpecimen::block_size() const {
   return prism ? std::cbrt(extent() / blocks.count) : std::sqrt(extent() / blocks.count);
 }
 
+double AskedSpecimen::largest_block_size() const {
+  return blocks.finer.empty() ? block_size() : blocks.largest_size;
+}
+
 const std::vector<std::string>& phases(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) -> const std::vector<std::string>& { return s.phases; }, specimen);
 }

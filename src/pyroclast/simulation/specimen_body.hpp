@@ -35,6 +35,8 @@ struct AskedSpecimen : specimen::SpecimenParameters {
   /// Returns the size of a block as foreseen, m: the root of the mean area, of a solid of the mean volume. 0
   /// where the number of blocks is not known.
   double block_size() const;
+  /// Returns the size of blocks far from finer ones, m; as above where blocks are alike.
+  double largest_block_size() const;
 };
 
 /// Specimen that was made, in the plane or in space.

@@ -14,6 +14,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/block_order.hpp"
+#include "pyroclast/specimen/block_sizes.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_seeds.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
@@ -58,6 +59,12 @@ struct BlocksOfGrain {
   double area = 0.0;  ///< m²
 };
 
+BlockSizes sizes_of(const BlockParameters& parameters, const Region& region) {
+  const double mean = std::sqrt(region.area() / parameters.count);
+  if (parameters.finer.empty()) return BlockSizes(mean);
+  return {mean, parameters.largest_size, parameters.finer};
+}
+
 /// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
 /// then the free ones.
 class SeedDraw {
@@ -68,8 +75,9 @@ class SeedDraw {
         region_(region),
         grains_(grains),
         random_(random),
-        spacing_(std::sqrt(region.area() / parameters.count)),
-        outline_(region, spacing_) {
+        sizes_(sizes_of(parameters, region)),
+        outline_(region, sizes_) {
+    if (!sizes_.is_even()) places_.emplace(region, sizes_);
     kept_ = outline_.positions().size();
     if (static_cast<int>(kept_) > parameters.count)
       throw Error(fmt::format("{} blocks are too few for this outline: it takes {} by itself",
@@ -131,7 +139,7 @@ class SeedDraw {
     seeds.radius.resize(static_cast<std::size_t>(outline));
     owner_.resize(static_cast<std::size_t>(outline));
     kept_ = static_cast<std::size_t>(outline);
-    along_.emplace(grains_, ways_, region_, outline_, along_spacing_);
+    along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(along_spacing_));
     add_along();
     const auto missing = static_cast<std::size_t>(std::max(0, parameters_.count - block_count()));
     const auto count = static_cast<std::ptrdiff_t>(std::min(free.position.size(), missing));
@@ -142,6 +150,7 @@ class SeedDraw {
   }
 
   std::size_t kept() const { return kept_; }
+  const BlockSizes& sizes() const { return sizes_; }
 
   /// Returns the grain of each seed, index into the grains, -1: of none; empty where blocks do not follow
   /// grains.
@@ -172,7 +181,8 @@ class SeedDraw {
     const double spread = parameters_.radius_spread;
     for (int i = block_count(); i < parameters_.count; ++i) {
       seeds.position.push_back(free_position());
-      seeds.radius.push_back(0.5 * spacing_ * random_.uniform(1.0 - spread, 1.0 + spread));
+      const double half = 0.5 * sizes_.at(seeds.position.back());
+      seeds.radius.push_back(half * random_.uniform(1.0 - spread, 1.0 + spread));
     }
   }
 
@@ -194,7 +204,9 @@ class SeedDraw {
                            [&](const Vec<2>& a, const Vec<2>& b) { return norm(a - at) < norm(b - at); });
       unfit = static_cast<std::size_t>(nearest - seeds.position.begin());
     }
-    seeds.position[unfit] = free_position();
+    const Vec<2> place = free_position();
+    if (!sizes_.is_even()) seeds.radius[unfit] *= sizes_.at(place) / sizes_.at(seeds.position[unfit]);
+    seeds.position[unfit] = place;
   }
 
   /// Finds the distance of seeds along surfaces with which all blocks are about as large, those beside a
@@ -202,18 +214,21 @@ class SeedDraw {
   double spacing_along() {
     const double room = parameters_.count - static_cast<double>(outline_.positions().size());
     const auto too_many = [&](double spacing) {
-      along_.emplace(grains_, ways_, region_, outline_, spacing);
+      along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(spacing));
+      // area in which blocks of the mean size would be as many
       double blocks = 0.0, area = region_.area();
       std::vector<char> has_one(grains_.size(), 0);
       for (const int grain : along_->owners()) {
         const bool is_one_cell = grain >= 0 && along_->is_one_cell(grain);
         if (is_one_cell && std::exchange(has_one[grain], 1)) continue;
         ++blocks;
-        area -= is_one_cell ? extent(grains_[grain]) : kAreaBesideGrain * spacing * spacing;
+        const double relative = is_one_cell ? sizes_.relative(grains_[grain].centre) : 1.0;
+        area -= is_one_cell ? extent(grains_[grain]) / (relative * relative)
+                            : kAreaBesideGrain * spacing * spacing;
       }
       return blocks + std::max(0.0, area / (spacing * spacing)) > room;
     };
-    double low = 0.5 * spacing_, high = 3.0 * spacing_;
+    double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
     for (int i = 0; i < kBisections; ++i) {
       const double middle = std::sqrt(low * high);
       (too_many(middle) ? low : high) = middle;
@@ -232,12 +247,16 @@ class SeedDraw {
     kept_ = seeds.position.size();
   }
 
+  Vec<2> anywhere() {
+    const Box& box = region_.box();
+    const double x = random_.uniform(box.low[0], box.high[0]);
+    return {{x, random_.uniform(box.low[1], box.high[1])}};
+  }
+
   Vec<2> free_position() {
     double clear = kClearOfGrains;
     for (int attempt = 1; attempt <= kAttempts; ++attempt) {
-      const Box& box = region_.box();
-      const double x = random_.uniform(box.low[0], box.high[0]);
-      const Vec<2> position{{x, random_.uniform(box.low[1], box.high[1])}};
+      const Vec<2> position = places_ ? places_->draw(random_) : anywhere();
       if (along_ && attempt % kAttemptsAtOneDistance == 0) clear = std::max(kLeastClear, clear - 0.05);
       const bool is_free = region_.is_rectangle() || outline_.leave_room_at(position);
       if (is_free && (!along_ || along_->leave_room_at(position, clear))) return position;
@@ -245,16 +264,17 @@ class SeedDraw {
     throw Error(
         fmt::format("no place for a seed was found in {} attempts: blocks of {:.3g} mm are too large for "
                     "this outline",
-                    kAttempts, 1e3 * spacing_));
+                    kAttempts, 1e3 * sizes_.mean()));
   }
 
   const BlockParameters& parameters_;
   const Region& region_;
   std::span<const Aggregate> grains_;
   Random& random_;
-  double spacing_;
+  BlockSizes sizes_;
+  std::optional<PlaceDraw> places_;  ///< where blocks are not alike
   OutlineSeeds outline_;
-  double along_spacing_ = 0.0;  ///< distance of seeds along surfaces, m
+  double along_spacing_ = 0.0;  ///< mean distance of seeds along surfaces, m
   std::vector<GrainSeeds::Way> ways_;
   std::optional<GrainSeeds> along_;
   std::vector<int> owner_;  ///< grain of each seed that is kept, -1: of none
@@ -308,7 +328,7 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
   while (true) {
     ++blocks.rounds;
     Seeds seeds = draw.seeds;
-    for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, region, draw.kept(), team);
+    for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, region, draw.kept(), team, draw.sizes());
     LaguerreResult result = laguerre_tessellation(seeds, region, team);
     std::vector<int> unfit = std::move(result.broken);
     const bool are_empty = !unfit.empty();
@@ -317,7 +337,7 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
       std::iota(seed.begin(), seed.end(), 0);
       blocks.grain = draw.owners(seeds.position);
       if (!grains.empty()) unite_small_grains(draw, result.tessellation, blocks.grain, seed);
-      Regularisation done = regularise(result.tessellation, region, parameters.shortest_edge);
+      Regularisation done = regularise(result.tessellation, region, parameters.shortest_edge, draw.sizes());
       blocks.tessellation = std::move(result.tessellation);
       blocks.edges_removed = done.edges_removed;
       blocks.edges_left_short = done.edges_left_short;
@@ -363,9 +383,17 @@ Blocks make_blocks(const BlockParameters& parameters, const Region& region, Rand
     blocks.edges_left_short = done.edges_left_short;
   }
   const std::vector<int> grain = std::exchange(blocks.grain, {});
+  const BlockSizes sizes = sizes_of(parameters, region);
   for (const std::size_t before : number_along_curve(blocks.tessellation, region.box())) {
     if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
     if (!grain.empty()) blocks.grain.push_back(grain[before]);
+  }
+  if (!sizes.is_even()) {
+    std::vector<Vec<2>> polygon;
+    for (std::size_t c = 0; c < blocks.tessellation.cells.size(); ++c) {
+      corners(blocks.tessellation, c, polygon);
+      blocks.size.push_back(sizes.at(centroid(polygon)));
+    }
   }
   return blocks;
 }

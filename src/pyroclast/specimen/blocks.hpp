@@ -16,6 +16,8 @@ struct Blocks {
   /// Grain of which each block is, index into the grains, -1: of none; empty where blocks do not follow
   /// grains.
   std::vector<int> grain;
+  /// Size that each block was to have, m; empty where blocks are alike.
+  std::vector<double> size;
   int edges_removed, edges_left_short;
   int seeds_redrawn;
   int rounds;  ///< number of tessellations made

@@ -50,11 +50,8 @@ double area_of_tangents(const std::vector<SurfacePoint<2>>& points) {
 }  // namespace
 
 GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
-                       const OutlineSeeds& outline, double spacing)
-    : region_(region),
-      outline_(outline),
-      spacing_(spacing),
-      grid_(region.box().low, region.box().high, grains) {
+                       const OutlineSeeds& outline, const BlockSizes& sizes)
+    : region_(region), outline_(outline), sizes_(sizes), grid_(region.box().low, region.box().high, grains) {
   for (std::size_t i = 0; i < grains.size(); ++i) grains_.push_back(followed(grains[i], ways[i]));
   std::vector<int> order(grains_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -65,30 +62,40 @@ GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> w
 GrainSeeds::Followed GrainSeeds::followed(const Aggregate& grain, const Way& way) const {
   std::shared_ptr<const Surface<2>> shape = grain.shape;
   if (!shape) shape = std::make_shared<Ball<2>>(0.5 * grain.diameter);
-  const double radius = std::sqrt(shape->extent() / std::numbers::pi);
+  const double radius = std::sqrt(shape->extent() / std::numbers::pi), spacing = sizes_.at(grain.centre);
   // seeds outside of a small grain are as far from each other as those along a large one
-  const double along = kAlongSurface * spacing_ * radius / (radius + kFromSurface * spacing_);
-  Followed result{grain.centre, shape, radius < kOneCell * spacing_};
+  const double along = kAlongSurface * spacing * radius / (radius + kFromSurface * spacing);
+  Followed result{grain.centre, shape, radius < kOneCell * spacing, spacing};
   const int tangents = shape->corner_count() > 0 ? kFewestSides : kFewestTangents;
-  result.along = result.is_one_cell ? std::min(along, shape->size() / tangents) : kAlongSurface * spacing_;
+  result.along = result.is_one_cell ? std::min(along, shape->size() / tangents) : kAlongSurface * spacing;
   if (result.is_one_cell && shape->corner_count() > 0) result.along = shape->size() / tangents;
-  const double larger = std::sqrt(area_of_tangents(shape->points(result.along)) / shape->extent());
+  const double larger =
+      std::sqrt(area_of_tangents(shape->points(result.along, {}, spacing_over(result))) / shape->extent());
   result.shape = shape->scaled(way.size / std::clamp(larger, 0.9, 1.25));
   const double inner = result.shape->inner_radius(), outer = result.shape->bounding_radius();
   if (result.is_one_cell && (way.is_of_one_seed || outer < kRound * inner))
-    result.power = inner * outer + kPower * spacing_ * spacing_;
+    result.power = inner * outer + kPower * spacing * spacing;
   return result;
+}
+
+/// Returns how the distance of seeds along a grain changes; empty where it does not. A grain of one cell has
+/// tangents that are alike.
+Surface<2>::Relative GrainSeeds::spacing_over(const Followed& grain) const {
+  if (sizes_.is_even() || grain.is_one_cell) return {};
+  return [this, centre = grain.centre, spacing = grain.spacing](const Vec<2>& place) {
+    return sizes_.at(centre + place) / spacing;
+  };
 }
 
 void GrainSeeds::follow(int number) {
   Followed& grain = grains_[number];
-  const double inner = grain.shape->inner_radius() / spacing_;
+  const double inner = grain.shape->inner_radius() / grain.spacing;
   if (!grain.is_one_cell && inner > kFewestAround && inner < kMiddle)
-    add(grain.centre, 0.25 * spacing_ * spacing_, number);
+    add(grain.centre, 0.25 * grain.spacing * grain.spacing, number);
   if (grain.power > 0.0) add(grain.centre, grain.power, number);
   std::vector<Vec<2>> taken;
   for (const Vec<2>& foot : grain.feet) taken.push_back(foot - grain.centre);
-  for (const auto& [at, normal] : grain.shape->points(grain.along, taken)) {
+  for (const auto& [at, normal] : grain.shape->points(grain.along, taken, spacing_over(grain))) {
     const Foot foot{grain.centre + at, normal};
     grain.feet.push_back(foot.at);
     const auto [half, other] = gap_from(number, foot);
@@ -97,14 +104,16 @@ void GrainSeeds::follow(int number) {
       const double support = dot(at, normal);
       add_between(grain.centre + (support + half) * normal, grain.power - support * support + half * half);
     } else {
+      const double spacing = sizes_.at(foot.at);
       add_within(number, foot);
-      add_between(foot.at + half * normal, half * half + kPower * spacing_ * spacing_);
+      add_between(foot.at + half * normal, half * half + kPower * spacing * spacing);
     }
     if (other < 0) continue;
     Followed& beside = grains_[other];
     const Foot across = nearest(other, foot.at + half * normal);
+    const double along = beside.is_one_cell ? beside.along : kAlongSurface * sizes_.at(across.at);
     const bool is_free = std::ranges::none_of(
-        beside.feet, [&](const Vec<2>& there) { return norm(there - across.at) < 0.5 * beside.along; });
+        beside.feet, [&](const Vec<2>& there) { return norm(there - across.at) < 0.5 * along; });
     if (!is_free) continue;
     beside.feet.push_back(across.at);
     add_within(other, across);
@@ -112,7 +121,7 @@ void GrainSeeds::follow(int number) {
 }
 
 GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
-  const double most = kNarrow * spacing_;
+  const double spacing = sizes_.at(foot.at), most = kNarrow * spacing;
   Gap gap{most, -1};
   // the place on the normal that is as far from another surface as from the foot
   const auto halve = [&](auto distance) {
@@ -133,7 +142,7 @@ GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
         }))
       gap.other = other;
   }
-  if (gap.other < 0) gap.half = kFromSurface * spacing_;
+  if (gap.other < 0) gap.half = kFromSurface * spacing;
   if (halve([&](double half) { return -region_.distance(foot.at + half * foot.normal); })) gap.other = -1;
   return gap;
 }
@@ -161,14 +170,16 @@ void GrainSeeds::add(const Vec<2>& place, double square, int owner) {
 
 void GrainSeeds::add_within(int number, const Foot& foot) {
   if (grains_[number].power > 0.0) return;
-  const double within = std::min(kFromSurface * spacing_, 0.5 * grains_[number].shape->inner_radius());
-  add(foot.at - within * foot.normal, within * within + kPower * spacing_ * spacing_, number);
+  const double spacing = sizes_.at(foot.at);
+  const double within = std::min(kFromSurface * spacing, 0.5 * grains_[number].shape->inner_radius());
+  add(foot.at - within * foot.normal, within * within + kPower * spacing * spacing, number);
 }
 
 void GrainSeeds::add_between(const Vec<2>& place, double square) {
   if (grain_at(place) >= 0) return;
+  const double apart = kApartBetween * sizes_.at(place);
   for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (owners_[i] < 0 && norm(positions_[i] - place) < kApartBetween * spacing_) return;
+    if (owners_[i] < 0 && norm(positions_[i] - place) < apart) return;
   add(place, square, -1);
 }
 
@@ -179,10 +190,10 @@ int GrainSeeds::grain_at(const Vec<2>& place) const {
 }
 
 bool GrainSeeds::leave_room_at(const Vec<2>& place, double clear) const {
-  for (const int number : near(place, clear * spacing_)) {
+  const double away = clear * sizes_.at(place);
+  for (const int number : near(place, away)) {
     const double distance = grains_[number].shape->nearest(place - grains_[number].centre).distance;
-    if (std::abs(distance) < clear * spacing_ || (distance < 0.0 && grains_[number].is_one_cell))
-      return false;
+    if (std::abs(distance) < away || (distance < 0.0 && grains_[number].is_one_cell)) return false;
   }
   return true;
 }

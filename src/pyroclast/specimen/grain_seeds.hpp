@@ -30,9 +30,9 @@ class GrainSeeds {
   /// \param grains   grains as they lie, without overlaps
   /// \param ways     ways of each grain
   /// \param outline  seeds that the outline asks for: the others keep away from them
-  /// \param spacing  mean distance of seeds: the block size, m
+  /// \param sizes    mean distances of seeds: sizes of blocks
   GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
-             const OutlineSeeds& outline, double spacing);
+             const OutlineSeeds& outline, const BlockSizes& sizes);
 
   const std::vector<Vec<2>>& positions() const { return positions_; }
   const std::vector<double>& radii() const { return radii_; }  ///< Returns the Laguerre radii, m.
@@ -55,9 +55,10 @@ class GrainSeeds {
     Vec<2> centre;
     std::shared_ptr<const Surface<2>> shape;  ///< drawn smaller
     bool is_one_cell;
+    double spacing;  ///< size of blocks at the centre, m
     double power =
         0.0;  ///< square of the radius of the one seed, m²; 0: each place of the surface has its own
-    double along = 0.0;             ///< distance from foot to foot, m
+    double along = 0.0;             ///< distance from foot to foot where blocks are as large as there, m
     std::vector<Vec<2>> feet = {};  ///< places on the surface that have their seeds, m
   };
   /// Seed between grains that a surface asks for.
@@ -67,6 +68,7 @@ class GrainSeeds {
   };
 
   Followed followed(const Aggregate& grain, const Way& way) const;
+  Surface<2>::Relative spacing_over(const Followed& grain) const;
   void follow(int number);
   Gap gap_from(int number, const Foot& foot) const;
   Foot nearest(int number, const Vec<2>& place) const;
@@ -77,7 +79,7 @@ class GrainSeeds {
 
   const Region& region_;
   const OutlineSeeds& outline_;
-  double spacing_;
+  BlockSizes sizes_;
   GrainGrid<2> grid_;
   std::vector<Followed> grains_;
   std::vector<Vec<2>> positions_;

@@ -191,7 +191,26 @@ LaguerreResult laguerre_tessellation(const Seeds& seeds, const Region& region, T
   return result;
 }
 
-void relax(Seeds& seeds, const Region& region, std::size_t kept, Team* team) {
+namespace {
+
+/// Returns how far the centroid of a cell moves where its area counts as size^-4, m: by the gradient of this
+/// weight times the second moment of the area, that of a square.
+Vec<2> towards_finer(const BlockSizes& sizes, const Vec<2>& place) {
+  constexpr double kMoment = 1.0 / 12.0, kExponent = -4.0, kStep = 0.1;
+  const double size = sizes.at(place), step = kStep * size;
+  Vec<2> move{};
+  for (const int d : {0, 1}) {
+    Vec<2> aside{};
+    aside[d] = step;
+    const double slope = (sizes.at(place + aside) - sizes.at(place - aside)) / (2.0 * step);
+    move[d] = kExponent * kMoment * slope * size;
+  }
+  return move;
+}
+
+}  // namespace
+
+void relax(Seeds& seeds, const Region& region, std::size_t kept, Team* team, const BlockSizes& sizes) {
   const SlabSize size(seeds, region);
   std::vector<Vec<2>> relaxed = seeds.position;
   for_each_cell<voro::voronoicell>(seeds, size, team,
@@ -199,10 +218,14 @@ void relax(Seeds& seeds, const Region& region, std::size_t kept, Team* team) {
                                      double x, y, z;
                                      if (seed < kept) return;
                                      prism.centroid(x, y, z);
-                                     const Vec<2> to = size.low + (position + Vec<2>{{x, y}}) * size.spacing;
+                                     Vec<2> to = size.low + (position + Vec<2>{{x, y}}) * size.spacing;
+                                     if (!sizes.is_even()) to += towards_finer(sizes, to);
                                      if (region.is_rectangle() || region.distance(to) < 0.0)
                                        relaxed[seed] = to;
                                    });
+  if (!sizes.is_even())
+    for (std::size_t i = kept; i < relaxed.size(); ++i)
+      seeds.radius[i] *= sizes.at(relaxed[i]) / sizes.at(seeds.position[i]);
   seeds.position = std::move(relaxed);
 }
 

@@ -28,6 +28,9 @@ LaguerreResult laguerre_tessellation(const Seeds& seeds, const Region& region, T
 
 /// Takes Lloyd's step: every seed but the first `kept` moves to the centroid of its cell in the region's box,
 /// where the centroid lies in the region; a seed with an empty cell stays. The team is as above.
-void relax(Seeds& seeds, const Region& region, std::size_t kept = 0, Team* team = nullptr);
+/// \param sizes  sizes of blocks: where they are not alike, the area counts as size^-4, which keeps a graded
+///               tessellation graded (Du, Faber and Gunzburger, SIAM Review 41, 637, 1999), and radii follow
+void relax(Seeds& seeds, const Region& region, std::size_t kept = 0, Team* team = nullptr,
+           const BlockSizes& sizes = BlockSizes(1.0));
 
 }  // namespace pyroclast::specimen

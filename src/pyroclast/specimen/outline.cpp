@@ -58,6 +58,33 @@ std::vector<double> fill(double length, double spacing, const std::vector<std::p
   return result;
 }
 
+/// The same with a spacing that changes from place to place, \param relative times as large at a place.
+template <class RelativeAt>
+std::vector<double> fill_unevenly(double length, double spacing, std::vector<std::pair<double, bool>> fixed,
+                                  RelativeAt relative) {
+  constexpr int kStretches = 720;
+  std::vector<double> stretched{0.0};  // length over the relative spacing, up to each part
+  for (int part = 0; part < kStretches; ++part)
+    stretched.push_back(stretched.back() +
+                        length / kStretches / relative(length * (part + 0.5) / kStretches));
+  const auto stretch = [&](double along) {
+    const double place = std::clamp(along / length, 0.0, 1.0) * kStretches;
+    const auto part = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(kStretches - 1));
+    return std::lerp(stretched[part], stretched[part + 1], place - static_cast<double>(part));
+  };
+  const auto shrink = [&](double along) {
+    const auto after = std::ranges::upper_bound(stretched, along);
+    if (after == stretched.end()) return length;
+    const double before = *(after - 1);
+    return (static_cast<double>(after - stretched.begin() - 1) + (along - before) / (*after - before)) *
+           length / kStretches;
+  };
+  for (auto& [along, is_end] : fixed) along = stretch(along);
+  std::vector<double> result = fill(stretched.back(), spacing, fixed);
+  for (double& along : result) along = shrink(along);
+  return result;
+}
+
 /// Returns the corners of the convex hull, counter-clockwise.
 std::vector<Vec<2>> hull_of(std::vector<Vec<2>> points) {
   std::ranges::sort(points, {}, &Vec<2>::c);
@@ -107,16 +134,23 @@ std::shared_ptr<const Surface<Dim>> Ball<Dim>::scaled(double factor) const {
 }
 
 template <>
-std::vector<SurfacePoint<2>> Ball<2>::points(double spacing, std::span<const Vec<2>> taken) const {
+std::vector<SurfacePoint<2>> Ball<2>::points(double spacing, std::span<const Vec<2>> taken,
+                                             const Relative& relative) const {
   std::vector<std::pair<double, bool>> fixed;
   for (const Vec<2>& point : taken) {
     const double angle = std::atan2(point[1], point[0]);
     fixed.emplace_back(radius_ * (angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle), true);
   }
   std::ranges::sort(fixed);
+  const auto normal_at = [&](double along) {
+    return Vec<2>{{std::cos(along / radius_), std::sin(along / radius_)}};
+  };
   std::vector<SurfacePoint<2>> points;
-  for (const double along : fill(size(), spacing, fixed)) {
-    const Vec<2> normal{{std::cos(along / radius_), std::sin(along / radius_)}};
+  for (const double along :
+       relative ? fill_unevenly(size(), spacing, fixed,
+                                [&](double place) { return relative(radius_ * normal_at(place)); })
+                : fill(size(), spacing, fixed)) {
+    const Vec<2> normal = normal_at(along);
     points.push_back({radius_ * normal, normal});
   }
   return points;
@@ -224,13 +258,17 @@ double Outline::along_of(const Vec<2>& point) const {
   return along;
 }
 
-std::vector<SurfacePoint<2>> Outline::points(double spacing, std::span<const Vec<2>> taken) const {
+std::vector<SurfacePoint<2>> Outline::points(double spacing, std::span<const Vec<2>> taken,
+                                             const Relative& relative) const {
   std::vector<std::pair<double, bool>> fixed;
   for (const double corner : corners_along_) fixed.emplace_back(corner, false);
   for (const Vec<2>& point : taken) fixed.emplace_back(along_of(point), true);
   std::ranges::sort(fixed);
   std::vector<SurfacePoint<2>> points;
-  for (const double along : fill(size(), spacing, fixed)) points.push_back(at(along));
+  for (const double along :
+       relative ? fill_unevenly(size(), spacing, fixed, [&](double place) { return relative(at(place).at); })
+                : fill(size(), spacing, fixed))
+    points.push_back(at(along));
   return points;
 }
 

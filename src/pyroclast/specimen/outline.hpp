@@ -21,7 +21,8 @@ class Ball final : public Surface<Dim> {
   double inner_radius() const override { return radius_; }
   double extent() const override;
   double size() const override;
-  std::vector<SurfacePoint<Dim>> points(double spacing, std::span<const Vec<Dim>> taken = {}) const override;
+  std::vector<SurfacePoint<Dim>> points(double spacing, std::span<const Vec<Dim>> taken = {},
+                                        const typename Surface<Dim>::Relative& relative = {}) const override;
   std::shared_ptr<const Surface<Dim>> scaled(double factor) const override;
 
  private:
@@ -42,7 +43,8 @@ class Outline final : public Surface<2> {
   double inner_radius() const override { return inner_radius_; }
   double extent() const override { return area_; }
   double size() const override { return starts_.back(); }
-  std::vector<SurfacePoint<2>> points(double spacing, std::span<const Vec<2>> taken = {}) const override;
+  std::vector<SurfacePoint<2>> points(double spacing, std::span<const Vec<2>> taken = {},
+                                      const Relative& relative = {}) const override;
   std::shared_ptr<const Surface<2>> scaled(double factor) const override;
   int corner_count() const override { return static_cast<int>(corners_along_.size()); }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pyroclast/specimen/block_sizes.hpp"
 #include "pyroclast/specimen/region.hpp"
 
 namespace pyroclast::specimen {
@@ -20,8 +21,8 @@ double slot_point(double length, double width, double spacing);
 class OutlineSeeds {
  public:
   /// Places the seeds. Throws Error, naming the side, where the outline is too fine for blocks of that size.
-  /// \param spacing  mean distance of seeds: the block size, m
-  OutlineSeeds(const Region& region, double spacing);
+  /// \param sizes  sizes of blocks: mean distances of seeds
+  OutlineSeeds(const Region& region, const BlockSizes& sizes);
 
   const std::vector<Vec<2>>& positions() const { return positions_; }
   const std::vector<double>& radii() const { return radii_; }  ///< Returns the Laguerre radii, m.
@@ -30,14 +31,14 @@ class OutlineSeeds {
   bool leave_room_at(const Vec<2>& point) const;
 
  private:
-  void add(const Vec<2>& point) { add(point, 0.5 * spacing_); }
   void add(const Vec<2>& point, double radius);
   void add_at_corner(const Vec<2>& corner, const Vec<2>& before, const Vec<2>& after, double foot);
   void add_along_notch(const Notch& notch);
-  void add_at_arc(const Piece& piece);
+  void add_at_arc(const Piece& piece, double least);
+  std::vector<double> places_along(const Vec<2>& from, const Vec<2>& along, double begin, double end) const;
 
   const Region& region_;
-  double spacing_;
+  const BlockSizes& sizes_;
   std::vector<Vec<2>> positions_;
   std::vector<double> radii_;
   struct Guarded {

@@ -182,9 +182,58 @@ double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<
   return norm(point - (from + along * share));
 }
 
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+/// Least number of sides by which a circle is drawn.
+constexpr double kFewest = 12.0;
+
+/// Returns the corners at some angles of a polygon around a circle's centre that has the circle's area.
+/// \param twice_area  twice the polygon's area for a radius of 1
+std::vector<Vec<2>> corners_at(const std::vector<double>& angles, const Vec<2>& centre, double diameter,
+                               double twice_area) {
+  const double radius = diameter * std::sqrt(0.5 * std::numbers::pi / twice_area);
+  std::vector<Vec<2>> result;
+  for (const double angle : angles)
+    result.push_back(centre + radius * Vec<2>{{std::cos(angle), std::sin(angle)}});
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter,
+                                   const std::function<double(const Vec<2>&)>& side,
+                                   std::vector<double> angles) {
+  constexpr int kStretches = 720;  // of each arc
+  const auto steps_in = [&](double angle, double part) {
+    const Vec<2> place = centre + 0.5 * diameter * Vec<2>{{std::cos(angle), std::sin(angle)}};
+    return part / std::min(kTurn / kFewest, 2.0 * side(place) / diameter);
+  };
+  std::ranges::sort(angles);
+  std::vector<double> corners;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double arc = (i + 1 < angles.size() ? angles[i + 1] : angles.front() + kTurn) - angles[i];
+    const double part = arc / kStretches;
+    std::vector<double> steps{0.0};
+    for (int k = 0; k < kStretches; ++k)
+      steps.push_back(steps.back() + steps_in(angles[i] + (k + 0.5) * part, part));
+    const int n = std::max(1, static_cast<int>(std::lround(steps.back())));
+    corners.push_back(angles[i]);
+    for (int k = 1; k < n; ++k) {
+      const double wanted = steps.back() * k / n;
+      const auto after = std::ranges::upper_bound(steps, wanted);
+      const double share = (wanted - *(after - 1)) / (*after - *(after - 1));
+      corners.push_back(angles[i] + (static_cast<double>(after - steps.begin() - 1) + share) * part);
+    }
+  }
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    twice_area += std::sin((i + 1 < corners.size() ? corners[i + 1] : corners.front() + kTurn) - corners[i]);
+  return corners_at(corners, centre, diameter, twice_area);
+}
+
 std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter, double side,
                                    std::vector<double> angles) {
-  constexpr double kTurn = 2.0 * std::numbers::pi, kFewest = 12.0;
   const double widest = std::min(kTurn / kFewest, 2.0 * side / diameter);
   std::ranges::sort(angles);
   std::vector<double> corners;
@@ -196,11 +245,7 @@ std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter, double
     for (int k = 0; k < n; ++k) corners.push_back(angles[i] + k * arc / n);
     twice_area += n * std::sin(arc / n);
   }
-  const double radius = diameter * std::sqrt(0.5 * std::numbers::pi / twice_area);
-  std::vector<Vec<2>> result;
-  for (const double angle : corners)
-    result.push_back(centre + radius * Vec<2>{{std::cos(angle), std::sin(angle)}});
-  return result;
+  return corners_at(corners, centre, diameter, twice_area);
 }
 
 Region Region::rectangle(double width, double height) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -159,6 +160,12 @@ class Region {
 /// \param side    length of a side, approximately, m; 12 sides at least
 /// \param angles  angles at which the polygon must have corners, radians
 std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter, double side,
+                                   std::vector<double> angles = {0.0});
+
+/// The same with sides whose length changes from place to place.
+/// \param side  length of a side at a place, approximately, m
+std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter,
+                                   const std::function<double(const Vec<2>&)>& side,
                                    std::vector<double> angles = {0.0});
 
 /// Returns the distance of a point from the segment between two others, m.

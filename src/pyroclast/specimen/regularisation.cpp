@@ -32,9 +32,10 @@ Shape shape_of(Corners polygon) {
 
 class Regulariser {
  public:
-  Regulariser(Tessellation& tessellation, const Region& region, double shortest_edge)
+  Regulariser(Tessellation& tessellation, const Region& region, double shortest_edge, const BlockSizes& sizes)
       : tessellation_(tessellation),
         share_(shortest_edge),
+        sizes_(sizes),
         edges_(edges(tessellation)),
         kept_(tessellation.vertices.size()),
         around_(tessellation.vertices.size()) {
@@ -72,15 +73,23 @@ class Regulariser {
   std::vector<int>& cell(int c) { return tessellation_.cells[static_cast<std::size_t>(c)]; }
   bool merged_away(int v) { return cells_around(v).empty(); }
 
+  /// Returns the size of blocks in the middle of an edge over the mean size.
+  double relative_at(int v0, int v1) { return sizes_.relative(0.5 * (at(v0) + at(v1))); }
+
   /// Sets the limits from the mean of the edges as they are now. Returns the edges that are too short,
   /// shortest first.
   std::vector<Edge> short_edges() {
     follow_merges();
-    std::vector<double> length;
+    std::vector<double> length;  // over the relative size of the blocks there
     length.reserve(edges_.size());
-    for (const Edge& e : edges_) length.push_back(norm(at(e.v1) - at(e.v0)));
-    const double sum = std::accumulate(length.begin(), length.end(), 0.0);
-    shortest_ = share_ * sum / static_cast<double>(edges_.size());
+    double sum = 0.0, relative = 0.0;
+    for (const Edge& e : edges_) {
+      const double all = norm(at(e.v1) - at(e.v0)), size = relative_at(e.v0, e.v1);
+      length.push_back(all / size);
+      sum += all;
+      relative += size;
+    }
+    shortest_ = share_ * sum / relative;
     thinnest_ = sliver_share * shortest_;
 
     std::vector<std::size_t> order;
@@ -114,7 +123,8 @@ class Regulariser {
   /// Merges the two ends of an edge at a place where every block around stays fit. Returns false when there
   /// is no such place, or the edge is not too short any more.
   bool merge(int a, int b) {
-    if (merged_away(a) || merged_away(b) || norm(at(b) - at(a)) >= shortest_) return false;
+    if (merged_away(a) || merged_away(b) || norm(at(b) - at(a)) >= shortest_ * relative_at(a, b))
+      return false;
     std::span<const double> positions = merge_positions;
     if (!(lines_of(a) == lines_of(b))) {
       // The end on more lines stays in place. Where each end has lines of its own, no place is on all of
@@ -155,6 +165,7 @@ class Regulariser {
   }
 
   bool all_fit(int a, int b, const Vec<2>& place) {
+    const double thinnest = thinnest_ * sizes_.relative(place);
     for (std::size_t i = 0; i < touched_.size(); ++i) {
       polygon_.clear();
       bool moved = false;
@@ -169,7 +180,7 @@ class Regulariser {
       if (polygon_.size() < 3) return false;
       const Shape after = shape_of(polygon_);
       if (after.largest_angle > std::max(largest_angle_allowed, before_[i].largest_angle)) return false;
-      if (after.thinnest_zone < std::min(thinnest_, before_[i].thinnest_zone)) return false;
+      if (after.thinnest_zone < std::min(thinnest, before_[i].thinnest_zone)) return false;
     }
     return true;
   }
@@ -213,7 +224,8 @@ class Regulariser {
       corners(tessellation_, c, polygon_);
       areas_.push_back(area(polygon_));
       const Shape shape = shape_of(polygon_);
-      if (shape.thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
+      if (shape.thinnest_zone <= thinnest_ * sizes_.relative(polygon_.front()))
+        unfit.push_back(static_cast<int>(c));
       if (shape.largest_angle > largest_angle_allowed) flat.push_back(c);
     }
     for (const std::size_t c : flat) {
@@ -250,7 +262,8 @@ class Regulariser {
 
   Tessellation& tessellation_;
   double share_;
-  double shortest_ = 0.0, thinnest_ = 0.0;  ///< m
+  const BlockSizes& sizes_;
+  double shortest_ = 0.0, thinnest_ = 0.0;  ///< limits where blocks have their mean size, m
   std::vector<Edge> edges_;
   std::vector<int> kept_;                 ///< vertex into which each one was merged, or itself
   std::vector<LineSet> lines_;            ///< lines of the region on which each vertex lies
@@ -263,8 +276,9 @@ class Regulariser {
 
 }  // namespace
 
-Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge) {
-  return Regulariser(tessellation, region, shortest_edge).run();
+Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge,
+                          const BlockSizes& sizes) {
+  return Regulariser(tessellation, region, shortest_edge, sizes).run();
 }
 
 }  // namespace pyroclast::specimen

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pyroclast/specimen/block_sizes.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
@@ -27,6 +28,8 @@ struct Regularisation {
 /// corners and gets neither a corner above `largest_block_angle` nor a sliver zone that it did not have
 /// before. Vertices on the outline or a slit stay on it; its corners and tips stay. The tessellation must be
 /// valid and remains so.
-Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge);
+/// \param sizes  sizes of the blocks: where blocks are finer, an edge may be shorter in proportion
+Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge,
+                          const BlockSizes& sizes = BlockSizes(1.0));
 
 }  // namespace pyroclast::specimen

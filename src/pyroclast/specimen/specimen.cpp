@@ -72,6 +72,11 @@ void require_valid(const BlockParameters& p) {
   require(p.count >= 1, "The number of blocks", p.count, "1 or more");
   require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,
           "0 to below 1");
+  for (const FinerPart& part : p.finer) {
+    require(part.size > 0.0 && part.size < p.largest_size, "The size of finer blocks", part.size,
+            "above 0, below that of the others");
+    require(part.distance >= 0.0, "The distance of finer blocks", part.distance, "0 or more");
+  }
   require(p.relaxation >= 0, "The number of relaxation steps", p.relaxation, "0 or more");
 }
 
@@ -230,6 +235,7 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
       follows ? std::span<const Aggregate>(specimen.aggregates) : std::span<const Aggregate>();
   Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team, followed);
   specimen.tessellation = std::move(blocks.tessellation);
+  specimen.size = std::move(blocks.size);
   if (blocks.phase.empty()) {
     const int matrix = specimen.matrix = place_in(specimen.phases, parameters.matrix);
     if (follows) {

@@ -11,6 +11,7 @@
 
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
+#include "pyroclast/specimen/block_sizes.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/surface.hpp"
 
@@ -125,7 +126,10 @@ struct Numbering {
 
 /// Tessellation asked for.
 struct BlockParameters {
-  int count = 0;  ///< number of blocks
+  int count = 0;  ///< number of blocks, with the finer ones
+  /// Parts near which blocks are finer; empty: blocks are alike.
+  std::vector<FinerPart> finer = {};
+  double largest_size = 0.0;  ///< size of blocks far from these parts, m, see SizedArea
   /// Spread of the Laguerre radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0,
   /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;
@@ -207,6 +211,8 @@ struct Specimen {
   std::vector<int> phase;           ///< phase of each cell, index into `phases`
   /// Grain of which each cell is, index into `aggregates`; -1: of none. Empty where cells are made elsewhere.
   std::vector<int> grain;
+  /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
+  std::vector<double> size;
   std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
   std::vector<Fibre> fibres;          ///< fibres as placed
   /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.

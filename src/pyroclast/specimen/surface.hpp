@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,10 +39,12 @@ class Surface {
   virtual int corner_count() const {
     return 0;
   }  ///< Returns the number of true corners; 0: the surface is smooth.
-  /// Returns points of the surface, evenly and about `spacing` apart (m). Together with points that are taken
-  /// they go all around; there are three at least.
-  virtual std::vector<SurfacePoint<Dim>> points(double spacing,
-                                                std::span<const Vec<Dim>> taken = {}) const = 0;
+  /// Distance of points at a place over `spacing`; empty: 1 everywhere.
+  using Relative = std::function<double(const Vec<Dim>& place)>;
+  /// Returns points of the surface, evenly and about `spacing` apart (m), or so many times as much. Together
+  /// with points that are taken they go all around; there are three at least.
+  virtual std::vector<SurfacePoint<Dim>> points(double spacing, std::span<const Vec<Dim>> taken = {},
+                                                const Relative& relative = {}) const = 0;
   /// Returns the same shape, larger by a factor.
   virtual std::shared_ptr<const Surface> scaled(double factor) const = 0;
 };
