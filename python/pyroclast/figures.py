@@ -15,7 +15,8 @@ heat conduction alone gets neither. A run that computes its temperatures gets te
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png. A run that keeps no fields gets
 those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png.
 
-Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
+Prints the path of each figure. Ends with 1 and a line on stderr for each thing that is missing or malformed; figures
+that need none of these are drawn.
 """
 
 from __future__ import annotations
@@ -159,15 +160,29 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
     out: folder for all of these in the place of the run's own, which is then only read.
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
+
+    Raises Error at the end, with a line for each reason, where figures could not be drawn: a run of an older program
+    lacks a column that one figure needs, and has those of the others.
     """
     run = Results(folder)
-    for picture in figures_of(run, magnification, temperatures):
-        place = out or make_folder(run.folder / "figures")
-        if picture.write is not None:
-            place.mkdir(parents=True, exist_ok=True)
-            picture.write(place, out or run.folder)
-        yield save(picture.draw(), place / f"{picture.name}.{file_format}")
-        gc.collect()  # a figure refers to itself; of a long history it holds much
+    reasons = []
+    try:
+        for picture in figures_of(run, magnification, temperatures):
+            place = out or make_folder(run.folder / "figures")
+            try:
+                if picture.write is not None:
+                    place.mkdir(parents=True, exist_ok=True)
+                    picture.write(place, out or run.folder)
+                path = save(picture.draw(), place / f"{picture.name}.{file_format}")
+            except Error as error:
+                reasons.append(str(error))
+                continue
+            yield path
+            gc.collect()  # a figure refers to itself; of a long history it holds much
+    except Error as error:
+        reasons.append(str(error))
+    if reasons:
+        raise Error("\n".join(dict.fromkeys(reasons)))
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -337,7 +352,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _tell(what: object) -> None:
-    print(f"pyroclast figures: {what}", file=sys.stderr)
+    for line in str(what).splitlines():
+        print(f"pyroclast figures: {line}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -712,6 +712,16 @@ class ErrorsNameTheThing(FolderTest):
                 self.assert_fails(["run", self.run_folder], "history.csv", f"'{name}'")
                 path.write_text(before)
 
+    def test_a_column_that_a_run_lacks_stops_only_its_figure(self):
+        path = self.run_folder / "history.csv"
+        lines = [line.split(",") for line in path.read_text().splitlines()]
+        kept = [i for i, name in enumerate(lines[0]) if not name.endswith("_broken_length_m")]
+        path.write_text("".join(",".join(line[i] for i in kept) + "\n" for line in lines))
+        code, printed, err = self.command("run", self.run_folder)
+        self.assertEqual((code, [Path(line).stem for line in printed]), (1, ["stress_strain", "energy", "fracture"]))
+        self.assertEqual(len(err.splitlines()), 1, err)
+        self.assertIn("_broken_length_m'", err)
+
     def test_word_for_a_number(self):
         replace_in(self.run_folder / "history.csv", "1,1000,", "1,often,")
         self.assert_fails(["run", self.run_folder], "history.csv, line 3", "'step'", "'often'")
