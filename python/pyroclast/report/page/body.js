@@ -174,7 +174,7 @@ class Body {
 
   // Of each contact the first frame in which its damage by any mode is above a half; -1 where it never is.
   get brokeIn() {
-    if (this.first_) return this.first_;
+    if (this.brokeInKept) return this.brokeInKept;
     const first = new Int32Array(this.contacts).fill(-1),
       {interface: kind} = this.arrays;
     for (let f = this.frames.length - 1; f >= 0; f--)
@@ -185,7 +185,7 @@ class Body {
         for (let c = 0; c < this.contacts; c++)
           if (damage.values[row + c] > least && this.about.breakable[kind.values[c]]) first[c] = f;
       }
-    return (this.first_ = first);
+    return (this.brokeInKept = first);
   }
 
   // The mode with the largest damage of a contact, and that damage.

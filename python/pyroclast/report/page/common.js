@@ -70,6 +70,26 @@ function table(host, head, rows) {
 // A body of the plane or a solid.
 const bodyOf = (about, arrays, frames) => new (about.solid ? SolidBody : Body)(about, arrays, frames);
 
+// Into a key: the scale of a field that blocks are coloured by.
+function tellScale(key, body, field) {
+  const {low, high, isTwoSided} = body.range(field),
+    stops = isTwoSided ? TWO_SIDED : ONE_SIDED,
+    scale = made("span", null, key, "scale");
+  scale.append(number(low));
+  made("i", null, scale).style.background = `linear-gradient(90deg, ${stops.map(css).join(", ")})`;
+  scale.append(`${number(high)} ${unitOf(body.fields.find((f) => f[0] === field)[1])}`);
+  if (field.startsWith("stress")) key.append("tension positive");
+}
+
+// Into a key: cracks by their mode.
+function tellModes(key, body) {
+  for (const mode of body.modes)
+    key.append(
+      entry({name: `${mode}, broken`, colour: `var(--${mode})`}),
+      entry({name: `${mode}, damaged by more than half`, colour: `var(--${mode}-tint)`}),
+    );
+}
+
 // The unit in the brackets of a label.
 const unitOf = (label) => (label.match(/\[(.*)\]/) || ["", ""])[1];
 const page = JSON.parse($("data").textContent);

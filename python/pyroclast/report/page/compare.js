@@ -179,9 +179,9 @@ class ComparePage {
       });
       run.frame = best;
       run.specimen.frame = best;
-      run.specimen.told.textContent = `frame ${best}: ${number(x[run.frames[best].row], 4)} ${unitOf(q.label)}, ${
-        run.body.modes.length ? `${run.body.cracks(best).length} cracks` : ""
-      }`;
+      const cracks = run.body.modes.length ? `, ${run.body.cracks(best).length} cracks` : "";
+      run.specimen.told.textContent =
+        `frame ${run.frames[best].number}: ${number(x[run.frames[best].row], 4)} ${unitOf(q.label)}${cracks}`;
     }
     $("now").textContent = `${q.label}: ${number(place, 4)}`;
     this.redraw();
@@ -214,7 +214,7 @@ class ComparePage {
   drawBoth() {
     const {pair, specimen} = this.both,
       [a, b] = pair.map((k) => this.runs[k]),
-      {context, ratio} = specimen;
+      {ratio} = specimen;
     Object.assign(specimen, {frame: a.frame, colour: "material", cracks: "none", magnification: 0});
     specimen.draw();
     const ofA = new Set(a.body.cracks(a.frame)),
@@ -232,7 +232,6 @@ class ComparePage {
     specimen.told.textContent =
       `only in ${a.name}: ${ofFirst}; only in ${b.name}: ${ofSecond}; in both: ${ofBoth}`;
     this.counts = sets.map((s) => s.length);
-    context.lineWidth = 1;
   }
 
   bothColours(theme) {
@@ -241,18 +240,11 @@ class ComparePage {
 
   tellKey() {
     const key = $("key"),
+      {body} = this.shown[0],
       field = $("colour").value;
     key.replaceChildren();
-    if (field !== "material") {
-      const {low, high, isTwoSided} = this.shown[0].body.range(field),
-        scale = made("span", null, key, "scale");
-      scale.append(number(low));
-      made("i", null, scale).style.background =
-        `linear-gradient(90deg, ${(isTwoSided ? TWO_SIDED : ONE_SIDED).map(css).join(", ")})`;
-      scale.append(`${number(high)} ${unitOf(this.shown[0].body.fields.find((f) => f[0] === field)[1])}`);
-    }
-    for (const mode of this.shown[0].body.modes)
-      key.append(entry({name: `${mode}, broken`, colour: `var(--${mode})`}));
+    if (field !== "material") tellScale(key, body, field);
+    tellModes(key, body);
     if (!this.both) return;
     const [a, b] = this.both.pair.map((k) => this.runs[k].name);
     key.append(

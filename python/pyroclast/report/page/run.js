@@ -147,8 +147,6 @@ class RunPage extends RunTabs {
   }
 }
 
-const canvasWidth = (tip) => tip.offsetWidth || 180;
-
 const born = performance.now();
 unpackedAll(page.arrays).then((arrays) => {
   const decoded = performance.now() - born;

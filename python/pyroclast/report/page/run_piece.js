@@ -65,7 +65,7 @@ class RunPiece extends RunCurve {
         const of = (what) => this.course.change(`${mode}_${name}_${what}`, this.piece);
         rows.push([mode, name.replaceAll("_", "–"), of("damaged"), of("broken"), number(factor * of(extent))]);
       }
-    if (rows.length) table(host, ["mode", "interface", "first damaged", "broken", `cracks [${unit}]`], rows);
+    if (rows.length) table(host, ["mode", "interface", "first damaged", "broken", `damaged [${unit}]`], rows);
   }
 
   tellEnergies(host) {
@@ -100,7 +100,7 @@ class RunPiece extends RunCurve {
       interfaces[k] || `the ${lit.size} that stand out`,
       ...values.map((v) => number(v)),
     ]);
-    made("p", `Contacts lost from frame ${from} to frame ${to}, in J:`, host);
+    made("p", `Contacts lost from frame ${this.frames[from].number} to frame ${this.frames[to].number}, in J:`, host);
     table(
       host,
       ["interface", ...losses.map((name) => name.replace("lost_", ""))],

@@ -56,7 +56,7 @@ class RunProbes extends RunSpecimen {
     tip.textContent = said.join("\n");
     const left = x / s.ratio,
       top = y / s.ratio,
-      width = canvasWidth(tip);
+      width = tip.offsetWidth;
     tip.style.left = `${Math.max(0, Math.min(left + 14, s.W / s.ratio - width))}px`;
     tip.style.top = `${top + 16}px`;
   }
@@ -79,7 +79,7 @@ class RunProbes extends RunSpecimen {
       facts = this.body.modes.map((m) => [`damage in ${m}`, number(a[`damage_${m}`].at(frame, c), 2)]);
     facts.push(["opening [µm]", number(1e6 * a.opening.at(frame, c))]);
     const first = this.body.brokeIn[c];
-    if (first >= 0) facts.push(["passed a half by frame", String(first)]);
+    if (first >= 0) facts.push(["passed a half by frame", String(this.frames[first].number)]);
     return facts;
   }
 

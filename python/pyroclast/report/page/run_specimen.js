@@ -94,7 +94,7 @@ class RunSpecimen extends RunPiece {
     if (f.temperature > 25 && !(f.strain === null && page.course.drawn[0] === "temperature"))
       said.push(`${number(f.temperature, 3)} °C`);
     if (f.heating_time > 0) said.push(`${number(f.heating_time / 60, 3)} min`);
-    return `frame ${frame} of ${this.frames.length - 1}: ${said.join(", ")}`;
+    return `frame ${f.number} of ${this.frames[this.frames.length - 1].number}: ${said.join(", ")}`;
   }
 
   redraw() {
@@ -113,21 +113,9 @@ class RunSpecimen extends RunPiece {
       this.body.about.materials.forEach(({name}, k) => {
         if (shownMaterials.has(k)) key.append(entry({name, colour: css(s.theme().phases[k]), base: true}));
       });
-    } else {
-      const {low, high, isTwoSided} = this.body.range(s.colour),
-        stops = isTwoSided ? TWO_SIDED : ONE_SIDED;
-      const scale = made("span", null, key, "scale");
-      scale.append(number(low));
-      made("i", null, scale).style.background = `linear-gradient(90deg, ${stops.map(css).join(", ")})`;
-      scale.append(`${number(high)} ${unitOf(this.body.fields.find((f) => f[0] === s.colour)[1])}`);
-      if (s.colour.startsWith("stress")) key.append("tension positive");
-    }
+    } else tellScale(key, this.body, s.colour);
     if (!this.body.modes.length || s.cracks === "none") return;
-    if (s.cracks === "mode")
-      for (const mode of this.body.modes) {
-        key.append(entry({name: `${mode}, broken`, colour: `var(--${mode})`}));
-        key.append(entry({name: `${mode}, damaged by more than half`, colour: `var(--${mode}-tint)`}));
-      }
+    if (s.cracks === "mode") tellModes(key, this.body);
     if (s.cracks === "opening")
       [0, 15, 75].forEach((um, k) =>
         key.append(

@@ -86,7 +86,7 @@ class RunTabs extends RunProbes {
 
   drawCracks() {
     const {modes, extent} = page.course,
-      label = extent === "length_m" ? "length of cracks [m]" : "area of cracks [m²]";
+      label = extent === "length_m" ? "length of damaged contacts [m]" : "area of damaged contacts [m²]";
     const chart = this.chart("crack_lengths", {
       name: label,
       pick: (row) => this.showRow(row),
@@ -111,7 +111,7 @@ class RunTabs extends RunProbes {
     }
   }
 
-  // Length of broken contacts at the end by the steepness of their lines.
+  // Length of cracks, damaged by more than a half, at the end by the steepness of their lines.
   drawRose() {
     const host = $("rose"),
       last = this.frames.length - 1,

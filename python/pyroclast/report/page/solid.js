@@ -226,9 +226,6 @@ class SolidBody extends Body {
   contactNumber(c) {
     return this.arrays.number.values[c];
   }
-  steepness() {
-    return null;
-  } // the trace of a plane is not the crack's
   get hasIsotherms() {
     return false;
   }
