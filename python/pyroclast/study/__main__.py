@@ -10,7 +10,6 @@ import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 from .. import _core
 from ..errors import CodeNotAllowed, Error

@@ -10,17 +10,19 @@ from pathlib import Path
 
 from ... import _core
 from ...decks import toml
-from ..driver import duration
-from ..store import DONE
-from .drawing import parameter_label, value_text
 from ...report.markup import Markup, element, picture, together
 from ...report.shell import page
+from ..driver import NOT_RUN, duration
+from ..store import DONE
+from .drawing import parameter_label, value_text
 from .runs import RunPageLink
 from .section import HOW_TO_READ, PageTable, Section, Shown
 from .seen import Seen, number
 
 _MOST_REASONS = 20
 _PIXELS = 133  # of a page, for an inch of a figure
+
+
 def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes],
             runs: Sequence[RunPageLink]) -> str:
     """All of the page. pictures: PNG files by the names of figures. runs: pages beside this one."""
@@ -89,7 +91,7 @@ def _warnings(seen: Seen) -> Markup:
                     f"{more}{left} What stands here is of these runs alone.")
     if seen.none_because:
         said.append(f"Nothing could be found yet: {seen.none_because}")
-    if failed := sum(row["state"] not in (DONE, "not run") for row in seen.rows):
+    if failed := sum(row["state"] not in (DONE, NOT_RUN) for row in seen.rows):
         said.append(f"{_counted(failed, 'run')} of {len(seen.rows)} gave no value; see below.")
     if len(versions := _versions(seen)) > 1:
         said.append(f"The runs are of several physics versions: {', '.join(versions)}.")
@@ -189,7 +191,7 @@ def _failures(seen: Seen) -> Markup:
     said = [(row["state"], row["reason"]) for row in seen.rows]
     found = Counter((state, reason) for state, reason in said if state != DONE or reason)
     if not found:
-        return element("p", "All runs gave a value.")
+        return element("p", "All runs gave a value.") if said else Markup()
     rows = [[state, str(count), reason] for (state, reason), count in found.most_common(_MOST_REASONS)]
     left = len(found) - len(rows)
     note = f"{left} more reasons stand in the table." if left > 0 else ""

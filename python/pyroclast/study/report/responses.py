@@ -100,7 +100,6 @@ def ranked(values: Array) -> list[int]:
 
 def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> PageTable:
     rows = []
-    share = effects["seed_share"]
     order = ranked(numbers(effects["coefficient"]))
     for i in order:
         rows.append([parameter_label(parameters[i]),

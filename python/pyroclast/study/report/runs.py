@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from ...errors import Error
 from ...report import write_page
 from ...results import is_of_run
+from ..driver import NOT_RUN
 from ..store import DONE
 from .drawing import output_label
 from .seen import Seen, number
@@ -46,6 +47,6 @@ def _chosen(seen: Seen) -> list[tuple[str, dict[str, Any]]]:
                   key=lambda row: float(row[output.name]))
     label = output_label(output)
     ends = [("least", done[0]), ("greatest", done[-1])] if len(done) > 1 else []
-    failed = [row for row in seen.rows if row["state"] != DONE][:_MOST_FAILED]
+    failed = [row for row in seen.rows if row["state"] not in (DONE, NOT_RUN)][:_MOST_FAILED]
     return [*((f"{what} {label}: {number(row[output.name])}, seed {row['seed']}", row) for what, row in ends),
             *((f"{row['state']}: {row['reason']}", row) for row in failed)]
