@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import Error
 from .label_image import pixels_of
+from .writing import write_text
 
 _SMOOTH = 1.0  # pixels over which the staircase of an image is smoothed
 _FEWEST_POINTS = 6
@@ -69,9 +71,11 @@ def grains_of_labels(image: ArrayLike | str | Path, pixel: float, *, matrix: int
     image: (rows, columns) of labels, as an array or a file; row 0 is at the top
     pixel: edge of a pixel, m
     matrix: label of the matrix; the others are phases 0, 1, ... in ascending order
-    Raises Error where there is no grain.
+    Raises Error where there is no grain, or the edge of a pixel is no positive number.
     """
     from scipy import ndimage
+    if not 0.0 < pixel < np.inf:
+        raise Error(f"the edge of a pixel is {pixel} m; it must be positive")
     pixels, source = pixels_of(image)
     labels = [int(label) for label in np.unique(pixels) if label != matrix]
     if not labels:
@@ -91,7 +95,7 @@ def write_grains(file: str | Path, grains: Sequence[Grain]) -> None:
     lines = ["grain,x_m,y_m,phase"]
     for number, grain in enumerate(grains):
         lines += [f"{number},{x:.9g},{y:.9g},{grain.phase}" for x, y in grain.outline]
-    Path(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(Path(file), "\n".join(lines) + "\n")
 
 
 def _grain_of_mask(mask: NDArray[Any], first: tuple[int, int], rows: int, pixel: float, phase: int) -> list[Grain]:

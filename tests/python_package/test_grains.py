@@ -54,7 +54,8 @@ class Outlines(unittest.TestCase):
                 ("returned an array of", lambda: grains.grains_of_distance(lambda p: p, (0, 0), (1, 1), 0.1)),
                 ("must be finite", lambda: grains.grains_of_distance(lambda p: p[:, 0] * np.nan, (0, 0), (1, 1), 0.1)),
                 ("no grid", lambda: grains.grains_of_distance(lambda p: p[:, 0], (0, 0), (0, 1), 0.1)),
-                ("there are no grains", lambda: grains.grains_of_labels(np.zeros((5, 5), int), 1e-3))):
+                ("there are no grains", lambda: grains.grains_of_labels(np.zeros((5, 5), int), 1e-3)),
+                ("it must be positive", lambda: grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), 0.0))):
             with self.subTest(message), self.assertRaisesRegex(pyroclast.Error, message):
                 call()
 
