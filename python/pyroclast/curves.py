@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -277,14 +277,16 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
                   zorder=5, label=label)
 
 
-def names_apart(runs: Sequence[Results]) -> list[str]:
+def names_apart(runs: Sequence[Results], written: Callable[[str], str] = style.plain) -> list[str]:
     """Titles; where these do not tell the runs apart, what differs between their decks, else the shortest ends of the
     folders' paths. Warnings stay.
+
+    written: how a text of the user's stands in a figure, or elsewhere
     """
-    names = [style.plain(run.title) for run in runs]
+    names = [written(run.title) for run in runs]
     if len(set(names)) < len(names):
         ends = _ends_apart([run.folder.resolve() for run in runs])
-        names = names_by_decks(runs) or [style.plain(end) for end in ends]
+        names = [written(name) for name in names_by_decks(runs) or ends]
     return [" – ".join([name, *style.warnings_of(run)]) for name, run in zip(names, runs)]
 
 

@@ -6,8 +6,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import style
-
 if TYPE_CHECKING:
     from .results import Results
 
@@ -31,7 +29,7 @@ def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
     words = _short(differing)
     names = [", ".join(f"{word} {deck[key]}" if key in deck else f"no {word}" for key, word in zip(differing, words))
              for deck in decks]
-    return [style.plain(name) for name in names] if len(set(names)) == len(names) else None
+    return names if len(set(names)) == len(names) else None
 
 
 def _values(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:

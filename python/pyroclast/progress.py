@@ -110,7 +110,8 @@ def heating_cracks(run: Results) -> Figure:
 
 def extent_of_cracks(run: Results) -> tuple[str, str, str]:
     """What cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
-    in_space = any(name.endswith("_area_m2") for name in run.history.names)
+    in_space = any(f"{mode}_{interface}_area_m2" in run.history.names for mode, interfaces in run.crack_modes.items()
+                   for interface in interfaces)  # and not a record of that ending
     return ("Area", "m²", "area_m2") if in_space else ("Length", "m", "length_m")
 
 
@@ -201,7 +202,7 @@ def energy(course: Course) -> Figure:
     return figure
 
 
-def _energies(run: Results) -> list[tuple[str, str, str, str | None]]:
+def energies_out(run: Results) -> list[tuple[str, str, str, str | None]]:
     """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
     known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
     others = [name for name in run.history.names
@@ -211,7 +212,7 @@ def _energies(run: Results) -> list[tuple[str, str, str, str | None]]:
 
 
 def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
-    energies = _energies(course.run)
+    energies = energies_out(course.run)
     rows, top = np.zeros(len(course.over), dtype=bool), np.zeros_like(course.over)
     for column, *_ in energies:
         top = top + course[column]

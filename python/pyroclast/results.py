@@ -120,15 +120,20 @@ class Results:
         return read_json(path) if path.exists() else {"stages": []}
 
     @cached_property
+    def manifest(self) -> dict:
+        """manifest.json: the command, versions and files that the run was made of; empty without one."""
+        path = self.folder / "manifest.json"
+        return read_json(path) if path.exists() else {}
+
+    @cached_property
     def parent(self) -> Results | None:
         """The run that this one is a fork of; None without one, or when its folder is gone."""
-        path = self.folder / "manifest.json"
-        parent = read_json(path).get("parent") if path.exists() else None
+        parent = self.manifest.get("parent")
         if parent is None:
             return None
         folder = parent.get("folder") if isinstance(parent, dict) else None
         if not isinstance(folder, str) or "\0" in folder:
-            raise Error(f"{path}: 'parent' has no 'folder' that is a path")
+            raise Error(f"{self.folder / 'manifest.json'}: 'parent' has no 'folder' that is a path")
         return Results(folder) if (Path(folder) / "history.csv").exists() else None
 
     @cached_property

@@ -18,7 +18,6 @@ from .mesh import BlockMesh, specimen_box
 from .solid_sections import draw_cut_open, flat
 
 if TYPE_CHECKING:
-    from .files import Table
     from .results import SpecimenFolder
 
 MARGIN = np.full((2, 2), 0.08)

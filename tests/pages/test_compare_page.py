@@ -6,6 +6,7 @@ SMALL_FORMS names the folder of runs that `validation/reference check --cases sm
 import json
 import os
 import pathlib
+import re
 import unittest
 
 import h5py
@@ -14,7 +15,7 @@ from browser import PageTest, begin, browser
 import pyroclast
 from pyroclast.errors import Error
 from pyroclast.report import write_page
-from pyroclast.report.compare_page import deck_differences
+from pyroclast.report.compare_page import compare_page, deck_differences
 
 RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 
@@ -66,6 +67,18 @@ class Compared(PageTest):
         key = browser.run("return document.querySelector('#curve .key').textContent")
         self.assertIn("3 seeds: least to greatest", key)
         self.assert_silent()
+
+    def test_a_title_stands_as_it_is(self):
+        run = self.copy(RUNS / "starter", "fields")
+        summary = json.loads((run / "summary.json").read_text())
+        (run / "summary.json").write_text(json.dumps(summary | {"title": "costs 3 $ & <b>more"}))
+        html = compare_page([pyroclast.read(run), pyroclast.read(RUNS / "compression")])
+        self.assertIn("</span> costs 3 $ &amp; &lt;b&gt;more", html)
+
+    def test_runs_alike_are_no_seeds(self):
+        runs = [pyroclast.read(self.copy(RUNS / "starter", "fields", name=f"run_{number}")) for number in (1, 2, 3)]
+        data = re.search('id="data">(.*?)</script>', compare_page(runs))[1]
+        self.assertFalse(json.loads(data)["seeds"])
 
     def test_runs_with_nothing_in_common_are_refused(self):
         with self.assertRaisesRegex(Error, "nothing in common"):

@@ -11,8 +11,10 @@ import tempfile
 import unittest
 
 import pyroclast
+from pyroclast.report.course import course_of
 from pyroclast.report.judging import BAD, DOUBT, GOOD, cards, verdict, worst
 from pyroclast.report.marks import marks
+from pyroclast.report.run_page import _cards, _stages
 
 RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 
@@ -62,6 +64,40 @@ class Judging(unittest.TestCase):
         run = self.changed("starter", results={"f_c_MPa": None, "f_c_none_because": "it ended too soon"})
         self.assertEqual((self.card(run, "f_c").value, self.card(run, "f_c").reason), ("–", "it ended too soon"))
 
+    def test_a_warning_of_the_run_is_on_its_cards_whatever_its_first_word(self):
+        run = self.changed("starter", results={"quasi_static": True}, warnings=["stage 1 began late"])
+        self.assertEqual((self.card(run, "E").level, self.card(run, "E").reason), (DOUBT, "stage 1 began late"))
+
+    def test_a_stage_is_signed_as_it_is_judged(self):
+        for is_static, level in ((True, GOOD), (False, BAD)):
+            run = self.changed("starter", results={"quasi_static": is_static})
+            self.assertEqual(_stages(run)[-1]["level"], level)
+
+    def test_a_summary_that_does_not_judge_says_so(self):
+        run = self.changed("starter")
+        path = run.folder / "summary.json"
+        summary = json.loads(path.read_text())
+        path.write_text(json.dumps({key: value for key, value in summary.items() if key not in ("outcome_id", "is_good")}))
+        first = verdict(pyroclast.read(run.folder))[0]
+        self.assertEqual((first.level, first.text), (BAD, "summary.json does not say whether the run is good"))
+
+    def test_a_card_leads_to_no_place_that_the_curve_has_not(self):
+        run = self.changed("starter", results={"f_c_MPa": 33.33})
+        self.assertEqual(self.card(run, "f_c").mark, "peak")
+        self.assertEqual({card.mark for card in _cards(run, {"course": {"marks": []}})}, {""})
+
+    def test_without_a_strength_the_largest_stress_is_no_peak(self):
+        for strength, label in ((33.33, "peak"), (None, "largest")):
+            run = self.changed("starter", results={"f_c_MPa": strength})
+            found = {mark.id: mark.label for mark in marks(run, run.history["stress_MPa"])}
+            self.assertEqual(found["peak"], label)
+
+    def test_energies_lost_in_ways_of_their_own_are_told(self):
+        run = pyroclast.read(RUNS / "anderberg_thelandersson")
+        lost = {name for name in run.history.names if name.startswith("dissipated_")}
+        self.assertIn("dissipated_creep_J", lost)
+        self.assertLessEqual(lost, {energy["column"] for energy in course_of(run).about["energy_out"]})
+
     def test_results_of_a_deck_come_first(self):
         found = [card.label for card in cards(pyroclast.read(RUNS / "notched_beam"))]
         self.assertLess(found.index("G_F"), found.index("peak_load"))
@@ -71,7 +107,8 @@ class Judging(unittest.TestCase):
         run = pyroclast.read(RUNS / "compression")
         history = run.history
         broken = sum(history[name] for name in history.names if name.endswith("_broken"))
-        length = sum(history[name] for name in history.names if name.endswith("_length_m"))
+        length = sum(history[f"{mode}_{interface}_length_m"] for mode, interfaces in run.crack_modes.items()
+                     for interface in interfaces)
         found = {mark.id: mark.row for mark in marks(run, history["stress_MPa"])}
         self.assertGreater(broken[found["first"]], 0)
         self.assertEqual(broken[found["first"] - 1], 0)

@@ -11,7 +11,7 @@ from .plane_body import PackedBody, body_of
 from .solid_body import solid_body_of
 
 _TEXT_OF_BLOCK, _TEXT_OF_RIGID_BLOCK, _TEXT_OF_POLYHEDRON = 22.0, 11.0, 40.0
-"""Characters of a page for each block and frame, at most as measured."""
+"""Characters of a page for each block and frame: the most that was measured."""
 
 
 def fitted(run: Results, most: int, needed: Callable[[Frame], bool]) -> PackedBody:

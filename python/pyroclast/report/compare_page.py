@@ -11,8 +11,8 @@ import numpy as np
 
 from ..curves import names_apart
 from ..errors import Error
-from ..files import read_json
 from ..results import Results
+from ..style import visible
 from .judging import cards, verdict, worst
 from .run_page import MOST_TEXT, run_data
 from .shell import page
@@ -26,14 +26,14 @@ def compare_page(runs: Sequence[Results]) -> str:
     """All of the page. Raises Error where the runs have nothing in common to be drawn over."""
     whole = [run_data(run, MOST_TEXT // min(len(runs), _MOST_BODIES) if i < _MOST_BODIES else 0)
              for i, run in enumerate(runs)]
-    names = names_apart(runs)
+    names = names_apart(runs, visible)
     notes = [f"{name}: {note}" for name, data in zip(names, whole) for note in data.notes]
     if len(runs) > _MOST_BODIES:
         notes.append(f"specimens are those of the first {_MOST_BODIES} runs")
     differences = deck_differences(runs)
     data = {"runs": [{**one.data, "name": name} for name, one in zip(names, whole)],
             "over": _common([one.data for one in whole], "over"), "of": _common([one.data for one in whole], "of"),
-            "seeds": len(runs) > 2 and all(key == "seed" for key, *_ in differences),
+            "seeds": len(runs) > 2 and [key for key, _ in differences] == ["seed"],
             "same": [list(pair) for pair in combinations(range(min(len(runs), _MOST_BODIES)), 2)
                      if _is_same_specimen(runs[pair[0]], runs[pair[1]])]}
     return page("compare.html", _SCRIPTS, data, title=f"{len(runs)} runs compared", names=names,
@@ -66,9 +66,8 @@ def deck_differences(runs: Sequence[Results]) -> list[tuple[str, list[str]]]:
     """Keys of the decks whose values are not all the same, and these; "–" where a deck does not have the key."""
     flat = [_flat(run.deck) for run in runs]
     for run, keys in zip(runs, flat):
-        path = run.folder / "manifest.json"
-        if path.exists() and "seed" in (known := read_json(path)):
-            keys["seed"] = str(known["seed"])
+        if "seed" in run.manifest:
+            keys["seed"] = str(run.manifest["seed"])
             keys.pop("specimen.seed", None)
     names = dict.fromkeys(name for keys in flat for name in keys)
     rows = [(name, [keys.get(name, "–") for keys in flat]) for name in names]

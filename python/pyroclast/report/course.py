@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import style
-from ..progress import ENERGY_IN, ENERGY_OUT
+from ..progress import ENERGY_IN, energies_out, extent_of_cracks
 from ..records import abscissa, leading, records_of
 from ..reference import TRANSIENT_STRAIN, strain_band
 from ..results import Results
@@ -107,12 +107,12 @@ def course_of(run: Results) -> PackedCourse:
         "marks": [{**asdict(mark), "row": place[mark.row]} for mark in found],
         "frames": [place[row] for row in frames],
         "stages": _stages(run, stage[rows]),
-        "modes": {mode: interfaces for mode, interfaces in modes.items()},
+        "modes": modes,
         "energy_in": [name for name in ENERGY_IN if name in history.names],
         "energy_out": [{"column": name, "label": label, "colour": colour}
-                       for name, label, colour, _ in ENERGY_OUT if name in history.names],
+                       for name, label, colour, _ in energies_out(run)],
         "references": list(_references(run)),
-        "extent": "area_m2" if any(name.endswith("_area_m2") for name in history.names) else "length_m",
+        "extent": extent_of_cracks(run)[2],
     }
     notes = [] if len(rows) == history.rows else \
         [f"the page keeps {len(rows)} of {history.rows} rows of history.csv"]

@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from ..errors import Error
-from ..results import Results, read
+from ..results import read
 from .judging import BAD, Card, cards, verdict, worst
 from .markup import Markup, picture
 from .shell import page
@@ -44,7 +44,7 @@ def index_page(folder: Path, page_name: str, relative: Callable[[Path], str]) ->
 def _entry(folder: Path, page_name: str, relative: Callable[[Path], str]) -> _Entry:
     link = quote(relative(folder / page_name)) if (folder / page_name).exists() else ""
     try:
-        run: Results = read(folder)
+        run = read(folder)
         reasons = verdict(run)
         level = worst(reasons)
         said = next((reason.text for reason in reasons if reason.level == level), "")

@@ -68,25 +68,38 @@ def worst(reasons: list[Reason]) -> str:
 
 
 def verdict(run: Results) -> list[Reason]:
-    """Of the run as a whole, worst first."""
-    if "outcome_id" not in run.summary:
-        said = {"running": "the run still goes on: its numbers are those of now",
-                "killed": "the run was killed before it could sum up"}.get(run.outcome, "the run broke off")
-        return [Reason(DOUBT if run.outcome == "running" else BAD, said)]
-    reasons = [Reason(DOUBT, text) for text in run.warnings]
-    stages = run.stages
-    if not run.summary.get("is_good"):
-        reasons.insert(0, Reason(BAD, f"the program does not count this run as good: {run.outcome}"))
-    for number, stage in enumerate(stages, 1):
+    """Of a run with all its stages, worst first."""
+    reasons = _of_end(run)
+    for number, stage in enumerate(run.stages, 1):
         of = f"stage {number}, {stage.get('kind')}"
         reasons += [Reason(reason.level, f"{of}: {reason.text}") for reason in stage_verdict(stage)]
+    reasons += _of_ledgers(run)
+    return sorted(dict.fromkeys(reasons), key=lambda reason: -_LEVELS.index(reason.level))
+
+
+def _of_end(run: Results) -> list[Reason]:
+    """Against a run as a whole: how it ended, and its warnings."""
+    if "outcome_id" not in run.summary:
+        said = {"running": "the run still goes on: its numbers are those of now",
+                "killed": "the run was killed before it could sum up", "broken off": "the run broke off"}
+        return [Reason(DOUBT if run.outcome == "running" else BAD,
+                       said.get(run.outcome, "summary.json does not say whether the run is good"))]
+    warnings = [Reason(DOUBT, text) for text in run.warnings]
+    if run.summary.get("is_good"):
+        return warnings
+    return [Reason(BAD, f"the program does not count this run as good: {run.outcome}"), *warnings]
+
+
+def _of_ledgers(run: Results) -> list[Reason]:
+    """How well ledgers close; the program warns where that is not well enough."""
+    reasons = []
     for ledger, name in (("energy_J", "error_over_turnover"), ("heat_J", "error_over_largest")):
         error = run.summary.get(ledger, {}).get(name)
         if isinstance(error, (int, float)):
             of = "energy turned over" if ledger == "energy_J" else "largest term"
             within = f"{100.0 * abs(error):.2g} % of the {of}"
             reasons.append(Reason(GOOD, f"the {ledger[:-2]} ledger closes within {within}"))
-    return sorted(dict.fromkeys(reasons), key=lambda reason: -_LEVELS.index(reason.level))
+    return reasons
 
 
 def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
@@ -111,7 +124,7 @@ def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
 
 def cards(run: Results) -> list[Card]:
     """The headlines of a run: of each result the last stage that has it."""
-    whole = [reason for reason in verdict(run) if not reason.text.startswith("stage ")]
+    whole = _of_end(run) + _of_ledgers(run)
     found = {}
     for stage in run.stages:
         reasons = stage_verdict(stage)

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..progress import extent_of_cracks
 from ..results import Results
 
-_CRACK_LENGTH = 1.0  # m
+_CRACK_LENGTH = 1.0  # m, of damaged contacts
 _CRACK_SHARE = 0.01  # of the area of all contacts of a solid
 _HIGHER = 1e-3  # of the peak: what counts as higher
 _STRETCH = 0.01  # of the rows of the test, over which a drop is measured
@@ -28,15 +29,16 @@ def marks(run: Results, leading: np.ndarray | None) -> list[Mark]:
     broken = _sum(run, "_broken")
     if broken is not None and (broken > 0).any():
         found.append(Mark("first", "first contact broken", int((broken > 0).argmax())))
-    for ending, least, label in _extents(run):
-        extent = _sum(run, ending)
-        if extent is not None and (extent >= least).any():
+    extent = _sum(run, f"_{extent_of_cracks(run)[2]}")
+    if extent is not None and (asked := _least_extent(run)) is not None:
+        least, label = asked
+        if (extent >= least).any():
             found.append(Mark("extent", label, int((extent >= least).argmax())))
     if leading is not None and np.isfinite(leading).any() and _has_peak(run):
         largest = int(np.nanargmax(leading))
         peak = _peak_row(run, largest)
         if leading[largest] > 0.0:
-            found.append(Mark("peak", "peak", peak))
+            found.append(Mark("peak", "peak" if _is_peak(run, leading, peak) else "largest", peak))
             if leading[largest] > leading[peak] * (1.0 + _HIGHER):
                 found.append(Mark("largest", "higher again", largest))
             if (drop := _largest_drop(leading)) is not None:
@@ -58,13 +60,20 @@ def _peak_row(run: Results, largest: int) -> int:
     return int(rows[np.nanargmin(np.abs(run.loaded_strain - run.peak[0]))])
 
 
-def _extents(run: Results) -> list[tuple[str, float, str]]:
-    if any(name.endswith("_length_m") for name in run.history.names):
-        return [("_length_m", _CRACK_LENGTH, "1 m of cracks")]
-    if run.has_fields and any(name.endswith("_area_m2") for name in run.history.names):
-        whole = float(run.mesh.contacts.extent.sum())
-        return [("_area_m2", _CRACK_SHARE * whole, "cracks on 1 % of the contact area")]
-    return []
+def _is_peak(run: Results, leading: np.ndarray, row: int) -> bool:
+    """Whether the curve falls behind the row of its largest value: of a compression, whether the program has an f_c."""
+    if run.has_platens and not run.ends_heated:
+        return run.has_peak
+    return row < int(np.flatnonzero(np.isfinite(leading))[-1])
+
+
+def _least_extent(run: Results) -> tuple[float, str] | None:
+    """Length [m], of a solid area [m²], of damaged contacts that is marked, and how; None where it is not known."""
+    if extent_of_cracks(run)[0] == "Length":
+        return _CRACK_LENGTH, "1 m of contacts damaged"
+    if not run.has_fields:
+        return None
+    return _CRACK_SHARE * float(run.mesh.contacts.extent.sum()), "1 % of the contact area damaged"
 
 
 def _sum(run: Results, ending: str) -> np.ndarray | None:

@@ -8,7 +8,7 @@ of them. Stresses are means over blocks. Every kept number differs from that of 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -28,10 +28,6 @@ STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5}
 _LOST_SHARE = 1e-5  # of all energy that contacts lost: the step of what one of them lost
 _LOST = re.compile(r"lost_(\w+) \[J m-2\]")
 _BROKEN = 127  # a damage of 1; everything below is at most 126
-
-
-class NotFinite(Exception):
-    """A frame holds numbers that are not finite."""
 
 
 @dataclass(frozen=True)
@@ -115,20 +111,12 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
     mesh = run.mesh
     outline = outline_of(mesh)
     shown = _Reader(run, outline)
-    taken, values, broken = [], [], 0
-    for frame in frames:
-        try:
-            values.append(shown.read(frame))
-            taken.append(frame)
-        except NotFinite:
-            broken += 1
-    notes = [f"{broken} frames hold numbers that are not finite and are left out"] if broken else []
+    taken, columns, notes = read_finite(shown.read, frames)
     corner = mesh.blocks.points[outline.gridpoint]
     fine = FINE * float(np.ptp(corner, axis=0).max())
     arrays = {"corner": packed_steps(corner, fine, 4), "first": packed_whole(outline.first, 4),
               "material": packed_whole(outline.material, 1), "side": packed_whole(outline.side, 4),
               "interface": packed_whole(mesh.contacts.interface, 1), "extent": packed_floats(mesh.contacts.extent)}
-    columns = {name: np.array([value[name] for value in values]) for name in (values[0] if values else {})}
     if "displacement" in columns:
         moves = columns.pop("displacement")
         if rigid:
@@ -148,6 +136,20 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
     about = {**about_body(run), "solid": False,
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
     return PackedBody(about, arrays, taken, notes)
+
+
+def read_finite(read: Callable[[Frame], dict[str, np.ndarray]],
+                frames: Sequence[Frame]) -> tuple[list[Frame], dict[str, np.ndarray], list[str]]:
+    """The frames whose numbers are all finite, these (frames, ...) by name, and a note of the other frames."""
+    taken, found = [], []
+    for frame in frames:
+        values = read(frame)
+        if all(np.isfinite(column).all() for column in values.values()):
+            taken.append(frame)
+            found.append(values)
+    left = len(frames) - len(taken)
+    notes = [f"{left} frames hold numbers that are not finite and are left out"] if left else []
+    return taken, {name: np.array([values[name] for values in found]) for name in (found[0] if found else {})}, notes
 
 
 def about_body(run: Results) -> dict[str, Any]:
@@ -213,10 +215,7 @@ class _Reader:
         self._heated = not run.uniform or not run.moves
 
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
-        found = {name: values.astype(float) for name, values in self._fields(frame)}
-        if not all(np.isfinite(values).all() for values in found.values()):
-            raise NotFinite
-        return found
+        return {name: values.astype(float) for name, values in self._fields(frame)}
 
     def _fields(self, frame: Frame) -> Iterator[tuple[str, np.ndarray]]:
         run, outline = self._run, self._outline

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import shlex
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 from .. import style
 from ..errors import Error
-from ..files import read_json
 from ..results import Results, SpecimenFolder
 from .course import course_of, rows_of_frames
-from .judging import cards, verdict, worst
+from .judging import Card, cards, stage_verdict, verdict, worst
 from .bodies import fitted
 from .shell import page
 
@@ -47,6 +46,8 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
     marked = {min((row for row in rows if row >= mark.row), default=rows[-1]) for mark in course.marks}
     body = fitted(run, most, lambda frame: row_of[frame.number] in marked)
+    if not body.frames:
+        return RunData(data, notes + body.notes)
     place = dict(zip((frame.number for frame in run.frames), course.about["frames"]))
     data["frames"] = [{**asdict(frame), "row": place[frame.number]} for frame in body.frames]
     data["body"] = body.about
@@ -61,10 +62,16 @@ def run_page(run: Results) -> str:
     facts = [_without_formulas(fact) for fact in style.facts_of(run)]
     body = data["body"]
     return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
-                cards=cards(run), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
+                cards=_cards(run, data), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
                 can_crack=bool(run.moves and run.crack_modes))
+
+
+def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
+    """Those of the run; only one whose place the curve has leads there."""
+    places = {mark["id"] for mark in data["course"]["marks"]}
+    return [card if card.mark in places else replace(card, mark="") for card in cards(run)]
 
 
 def _without_formulas(fact: str) -> str:
@@ -72,12 +79,12 @@ def _without_formulas(fact: str) -> str:
 
 
 def _stages(run: Results) -> list[dict[str, Any]]:
-    """What the summary says of each stage, with its numbers in short."""
+    """What the summary says of each stage, with its numbers in short, and how it is judged."""
     said = []
     for number, stage in enumerate(run.stages, 1):
         results = {name: _shown(value) for name, value in stage.get("results", {}).items() if value is not None}
         said.append({"number": number, "kind": str(stage.get("kind", "")), "outcome": str(stage.get("outcome", "")),
-                     "is_good": bool(stage.get("is_good", True)), "results": results})
+                     "level": worst(stage_verdict(stage)), "results": results})
     return said
 
 
@@ -124,15 +131,10 @@ def _gradation(run: Results) -> list[tuple[str, str, str]]:
         return []  # a specimen without circles has none
 
 
-def _manifest(run: Results) -> dict[str, Any]:
-    path = run.folder / "manifest.json"
-    return read_json(path) if path.exists() else {}
-
-
 def _changes(run: Results) -> list[str]:
     """What `--set` and `--seed` of the command changed of the deck."""
     try:
-        words = shlex.split(str(_manifest(run).get("command", "")))
+        words = shlex.split(str(run.manifest.get("command", "")))
     except ValueError:
         return []
     found = []
@@ -147,7 +149,7 @@ def _changes(run: Results) -> list[str]:
 
 def _made(run: Results) -> list[tuple[str, str]]:
     shown = []
-    for name, value in _manifest(run).items():
+    for name, value in run.manifest.items():
         if isinstance(value, (str, int, float)) and value != "":
             shown.append((name.replace("_", " "), str(value)))
     if isinstance(run.summary.get("wall_time_s"), (int, float)):

@@ -14,7 +14,7 @@ from ..files import read_array
 from ..mesh import BlockMesh
 from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
-from .plane_body import FINE, NotFinite, PackedBody, about_body, packed_damage, STEPS
+from .plane_body import FINE, PackedBody, STEPS, about_body, packed_damage, read_finite
 
 _CRACK = 0.5  # damage from which a contact is kept
 
@@ -40,18 +40,11 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
     point = blocks.points[used]
     fine = FINE * float(np.ptp(point, axis=0).max())
     reader = _Reader(run, number, used, first)
-    taken, values, lost = [], [], 0
-    for frame in frames:
-        try:
-            values.append(reader.read(frame))
-            taken.append(frame)
-        except NotFinite:
-            lost += 1
-    modes = list(run.crack_modes) if run.moves else []
+    taken, columns, left_out = read_finite(reader.read, frames)
+    modes = list(run.crack_modes) if run.moves and taken else []
     arrays = {"point": packed_steps(point, fine, 4), "point_first": packed_whole(first, 4),
               "triangle": packed_whole(triangle, 4), "outer": packed_whole(is_outer, 1),
               "material": packed_whole(_of_blocks(blocks, number), 1)}
-    columns = {name: np.array([value[name] for value in values]) for name in (values[0] if values else {})}
     size = float(np.median(np.maximum.reduceat(point, first[:-1]) - np.minimum.reduceat(point, first[:-1])))
     for name, column in columns.items():
         kind = name.split("_")[0]
@@ -75,9 +68,7 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
     about = {**about_body(run), "solid": True,
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
     notes = ["blocks of a solid move as rigid bodies"] if run.moves else []
-    if lost:
-        notes.append(f"{lost} frames hold numbers that are not finite and are left out")
-    return PackedBody(about, arrays, taken, notes)
+    return PackedBody(about, arrays, taken, notes + left_out)
 
 
 def _of_blocks(blocks: BlockMesh, number: np.ndarray) -> np.ndarray:
@@ -108,12 +99,6 @@ class _Reader:
         return np.add.reduceat(values, self._first[:-1]) / self._count[:, None]
 
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
-        found = self._read(frame)
-        if not all(np.isfinite(values).all() for values in found.values()):
-            raise NotFinite
-        return found
-
-    def _read(self, frame: Frame) -> dict[str, np.ndarray]:
         run, found = self._run, {}
         blocks, contacts = run.mesh.blocks, run.mesh.contacts
         if self._heated:
