@@ -16,6 +16,7 @@ from matplotlib.patches import Rectangle
 from pyroclast.study.executors.local import Local
 from pyroclast.study.report import _SECTIONS, write_report
 from pyroclast.study.report.drawing import NOT_TOLD, SEED
+from pyroclast.study.report.runs import _chosen
 from pyroclast.study.report.seen import number, percent, seen
 from pyroclast.study.store import RunResult
 from pyroclast.study.study import Study
@@ -131,6 +132,15 @@ E = "E_GPa"
             self.assertIn("Compression of a 1,000-block specimen", (page.parent / file).read_text())
 
 
+    def test_failed_runs_are_chosen_behind_runs_not_yet_made(self) -> None:
+        found = mock.Mock()
+        found.setup.outputs = [mock.Mock(of_history=False, what="E_GPa")]
+        found.setup.outputs[0].name = "E"
+        found.rows = [{"state": state, "reason": "", "E": None, "run": str(number)} for number, state in
+                      enumerate(("not run", "not run", "not run", "failed"))]
+        self.assertEqual([row["run"] for _, row in _chosen(found)], ["3"])
+
+
 class Elsewhere(ReportTest):
     def test_a_report_may_leave_the_study_as_it_is(self) -> None:
         study = self.made(*METHODS["ensemble"])
@@ -200,6 +210,7 @@ class Standing(ReportTest):
             with self.subTest(name):
                 page = write_report(self.of(method, parameters, rest)).read_text()
                 self.assertIn("This study is not complete: 0 of ", page)
+                self.assertNotIn("All runs gave a value", page)
                 self.assertRegex(page, "Nothing is said of this yet|Nothing could be found yet|There are no effects yet")
 
     def test_a_study_that_was_stopped_shows_what_there_is(self) -> None:
