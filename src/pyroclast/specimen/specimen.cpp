@@ -194,12 +194,14 @@ std::vector<std::string> warnings(const Specimen& s) {
   if (s.fraction_placed == 0.0) return {};
   const double change = s.fraction_of_circles / s.fraction_placed - 1.0;
   if (std::abs(change) <= kSmallChange) return {};
+  // blocks that follow grains have no covered fraction
+  const char* const remedy =
+      s.covered_fraction > 0.0 ? "more blocks, or [superposition] rule = \"fit\"" : "more blocks";
   return {
       fmt::format("aggregates take {:.3f} of the specimen as blocks, {:.0f} % {} than the {:.3f} that were "
-                  "placed: blocks "
-                  "of {:.1f} mm are too large for them; more blocks, or [superposition] rule = \"fit\"",
+                  "placed: blocks of {:.1f} mm are too large for them; {}",
                   s.fraction_of_circles, 100.0 * std::abs(change), change < 0.0 ? "less" : "more",
-                  s.fraction_placed, 1e3 * s.metrics.mean_size)};
+                  s.fraction_placed, 1e3 * s.metrics.mean_size, remedy)};
 }
 
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
