@@ -305,8 +305,10 @@ std::vector<ColumnInfo> possible_gauge_columns() {
   infos.push_back(
       {crack + "damaged", "1", "contact points of the interface whose damage by the mode is above 0"});
   infos.push_back({crack + "broken", "1", "contact points of the interface whose damage by the mode is 1"});
-  infos.push_back({crack + "length_m", "m", "length of the broken contacts, in the plane"});
-  infos.push_back({crack + "area_m2", "m2", "area of the broken contacts, of a solid"});
+  infos.push_back({crack + "length_m", "m", "length of the damaged contacts, in the plane"});
+  infos.push_back({crack + "area_m2", "m2", "area of the damaged contacts, of a solid"});
+  infos.push_back({crack + "broken_length_m", "m", "length of the broken contacts, in the plane"});
+  infos.push_back({crack + "broken_area_m2", "m2", "area of the broken contacts, of a solid"});
   infos.push_back({"mean_opening_m", "m", "mean opening of the broken contacts"});
   infos.push_back({"NAME_UNIT", "its own", "a [[record]] of the deck"});
   infos.push_back({"rate_K_s", "K/s", "root of the mean square of the temperature's rate over the volume"});
