@@ -882,8 +882,9 @@ class ErrorsOfHeatedRuns(HeatedTest):
         replace_in(folder / "fields" / "frames.csv", "temperature_degC", "renamed")
         out = self.root / "out.png"
         self.assert_fails(["levels", folder, "--out", out], "frames.csv", "'temperature_degC'")
-        replace_in(folder / "history.csv", "cycles", "renamed")
-        self.assert_fails(["run", folder], "history.csv", "'cycles'")
+        other = self.heated("other", Heating(spread=100.0, unconverged=(40,)))
+        replace_in(other / "history.csv", "cycles", "renamed")
+        self.assert_fails(["run", other], "history.csv", "'cycles'")
 
     def test_summary(self):
         folder = self.heated("run")
