@@ -13,6 +13,9 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
 
+CONTROLLED = ["velocity=0.2 mm/s", "fastest_velocity=8 mm/s", "unbalanced_ratio=1e-4", "kinetic_over_strain=5e-3",
+              "platen_difference=0.01", "dissipation_rate=1 1/s"]
+"""Keys of a stage `compress` whose platen's velocity is controlled, so that fine specimens take minutes."""
 _AT = 5000  # blocks of the cases, for which their time step is
 _TIME_STEP = 10e-6  # s
 

@@ -107,6 +107,22 @@ class ByDeck(unittest.TestCase):
         self.assertEqual(first["aggregates"], again["aggregates"])
         self.assertAlmostEqual(first["fraction_placed"], again["fraction_placed"], delta=1e-6)
 
+    def test_outlines_of_a_run_have_its_circles_too(self):
+        kind = 'fraction = {}\nd_min = "6 mm"\nd_max = "12 mm"\nfuller_exponent = 0.5\nminimum_gap = "0.5 mm"\n'
+        code, told, tables = self.specimen(self.deck(
+            "[aggregates]\n" + kind.format(0.2) + '[aggregates.grain_shape]\nkind = "ellipse"\nelongation = [1.2, 1.6]\n'
+            '[[inclusions]]\nshape = "circle"\nphase = "aggregate"\n' + kind.format(0.1)))
+        self.assertEqual(code, 0, told)
+        facts = json.loads((tables / "specimen.json").read_text())
+        with open(tables / "outlines.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({int(row["grain"]) for row in rows}, set(range(facts["aggregates"])))
+        (self.folder / "known.csv").write_text((tables / "outlines.csv").read_text())
+        code, told, tables = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "known.csv"\n'), "again")
+        self.assertEqual(code, 0, told)
+        again = json.loads((tables / "specimen.json").read_text())
+        self.assertAlmostEqual(facts["fraction_placed"], again["fraction_placed"], delta=1e-6)
+
     def test_faults_are_told_by_their_place(self):
         (self.folder / "bad.csv").write_text("grain,x_m,y_m\n0,0.01,0.01\n0,0.02,0.01\n0,0.02,0.02\n1,0.03,0.03\n1,0.04,0.03\n")
         code, told, _ = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "bad.csv"\n'))

@@ -18,6 +18,7 @@ namespace pyroclast {
 namespace {
 
 constexpr int kGradationPoints = 60;
+constexpr double kSideOfCircle = 0.05;  ///< side of the polygon for a circle, as a share of the diameter
 
 /// Returns the rows of one kind of stones.
 /// \param kind    number of the kind, from 0
@@ -59,12 +60,15 @@ std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
   return csv;
 }
 
-/// Returns the outlines of all grains; circles among them as polygons.
+/// Returns the outlines of all grains; circles among them as polygons of their area.
 std::string outlines_csv(const std::vector<specimen::Aggregate>& grains) {
   std::string csv = "grain,x_m,y_m,phase\n";
-  for (std::size_t i = 0; i < grains.size(); ++i)
-    for (const Vec<2>& corner : specimen::corners_of(grains[i]))
-      csv += fmt::format("{},{:.9g},{:.9g},{}\n", i, corner[0], corner[1], grains[i].phase);
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    const auto& [centre, diameter, phase, kind, shape] = grains[i];
+    for (const Vec<2>& corner : shape ? specimen::corners_of(grains[i])
+                                      : specimen::circle_corners(centre, diameter, kSideOfCircle * diameter))
+      csv += fmt::format("{},{:.9g},{:.9g},{}\n", i, corner[0], corner[1], phase);
+  }
   return csv;
 }
 

@@ -207,99 +207,89 @@ void set_gradation_of_stones(specimen::AggregateParameters& a) {
   a.d_max = sizes.back().first;
 }
 
-std::vector<std::string> read_phases(const Section& s, const specimen::AggregateParameters& a) {
+/// Columns of a table of stones: three, and the number of the phase, which may be missing.
+using StoneColumns = std::array<AskedColumn, 4>;
+
+/// Reads stones that are known, from a table as a run writes it.
+/// \param add  function of the values by column and the first row of a stone with its place, which returns
+/// the
+///             stone without its phase, and the row behind the stone
+template <class Add>
+void read_known_stones(const Section& s, const std::filesystem::path& folder, const StoneColumns& asked,
+                       specimen::AggregateParameters& a, Add add) {
+  constexpr std::size_t kWithoutPhase = 3;
+  const auto read = read_named_table(s, folder, asked, kWithoutPhase);
   auto phases = s.optional_texts("phases",
                                  "names of the phases, by their numbers from 0; without them all stones "
                                  "are of number 0, and of `phase`");
   if (phases.empty()) phases = {a.phase};
-  return phases;
-}
-
-/// Returns the values of the columns, in SI units.
-std::vector<std::vector<double>> values_of(const NamedTable& read, std::span<const AskedColumn> asked) {
-  std::vector<std::vector<double>> values;
-  for (std::size_t i = 0; i < read.columns.size(); ++i)
-    values.push_back(read.table.values(read.columns[i], asked[i].unit));
-  return values;
-}
-
-/// Returns the name of the phase of a row; the column may be missing. Throws Error where its number has no
-/// name.
-std::string phase_in(const std::vector<std::string>& phases, const std::vector<std::vector<double>>& values,
-                     std::size_t column, std::size_t row, const std::string& place) {
-  const double phase = values.size() > column ? values[column][row] : 0.0;
-  if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
-    throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place, phase,
-                            phases.size() - 1));
-  return phases[static_cast<std::size_t>(phase)];
-}
-
-/// Reads stones that are known, from a table as a run writes it.
-void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
-  constexpr std::size_t kWithoutPhase = 3;
-  const Section own = s.section("stones",
-                                "places and diameters of all circles, in the place of a grading: "
-                                "`specimen/aggregates.csv` of a run, or "
-                                "a table of x, y, diameter, and the number of a phase or none");
-  const std::array<AskedColumn, 4> asked{
-      {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
-  const auto read = read_named_table(own, folder, asked, kWithoutPhase);
-  const auto phases = read_phases(own, a);
-  if (!read || !own.ok()) return;
-  a.place = fmt::format("{}: {}", own.where("csv"), own.path());
+  if (!read || !s.ok()) return;
+  a.place = fmt::format("{}: {}", s.where("csv"), s.path());
   try {
-    const std::vector<std::vector<double>> values = values_of(*read, asked);
-    for (std::size_t row = 0; row < read->table.rows(); ++row) {
+    std::vector<std::vector<double>> values;  // by column
+    for (std::size_t i = 0; i < read->columns.size(); ++i)
+      values.push_back(read->table.values(read->columns[i], asked[i].unit));
+    for (std::size_t row = 0; row < read->table.rows();) {
       const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
-      if (!(values[2][row] > 0.0)) throw Error(fmt::format("{}: the diameter must be greater than 0", place));
-      a.stones.push_back({{{values[0][row], values[1][row]}},
-                          values[2][row],
-                          phase_in(phases, values, kWithoutPhase, row, place),
-                          place});
+      const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
+      auto [stone, end] = add(values, row, place);
+      if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
+        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place,
+                                phase, phases.size() - 1));
+      stone.phase = phases[static_cast<std::size_t>(phase)];
+      stone.place = place;
+      a.stones.push_back(std::move(stone));
+      row = end;
     }
   } catch (const Error& error) {
-    own.error("csv", error.what());
+    s.error("csv", error.what());
     return;
   }
   set_gradation_of_stones(a);
 }
 
+using Columns = std::vector<std::vector<double>>;
+using StoneAndEnd = std::pair<specimen::Stone, std::size_t>;
+
+void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  const Section own = s.section("stones",
+                                "places and diameters of all circles, in the place of a grading: "
+                                "`specimen/aggregates.csv` of a run, or "
+                                "a table of x, y, diameter, and the number of a phase or none");
+  const StoneColumns asked{
+      {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
+  read_known_stones(
+      own, folder, asked, a, [](const Columns& values, std::size_t row, const std::string& place) {
+        if (!(values[2][row] > 0.0))
+          throw Error(fmt::format("{}: the diameter must be greater than 0", place));
+        return StoneAndEnd{{{{values[0][row], values[1][row]}}, values[2][row], {}, {}}, row + 1};
+      });
+}
+
 /// Reads outlines that are known: points of the outline of each grain, in turn.
 void read_outlines(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
-  constexpr std::size_t kWithoutPhase = 3;
   const Section own =
       s.section("outlines",
                 "outlines of all grains, in the place of a grading: `specimen/outlines.csv` of a "
                 "run, or a table of the number of the grain, x, y of a point of its outline, and "
                 "the number of a phase or none; points of a grain follow each other");
-  const std::array<AskedColumn, 4> asked{{{"grain", unit::dimensionless},
-                                          {"x", unit::length},
-                                          {"y", unit::length},
-                                          {"phase", unit::dimensionless}}};
-  const auto read = read_named_table(own, folder, asked, kWithoutPhase);
-  const auto phases = read_phases(own, a);
-  if (!read || !own.ok()) return;
-  a.place = fmt::format("{}: {}", own.where("csv"), own.path());
-  try {
-    const std::vector<std::vector<double>> values = values_of(*read, asked);
-    for (std::size_t row = 0, end = 0; row < read->table.rows(); row = end) {
-      const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
-      std::vector<Vec<2>> points;
-      for (end = row; end < read->table.rows() && values[0][end] == values[0][row]; ++end)
-        points.push_back({{values[1][end], values[2][end]}});
-      const std::string phase = phase_in(phases, values, kWithoutPhase, row, place);
-      try {
-        const auto [outline, centre] = specimen::outline_around(points);
-        a.stones.push_back({centre, outline->width(), phase, place, outline});
-      } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", place, error.what()));
-      }
-    }
-  } catch (const Error& error) {
-    own.error("csv", error.what());
-    return;
-  }
-  set_gradation_of_stones(a);
+  const StoneColumns asked{{{"grain", unit::dimensionless},
+                            {"x", unit::length},
+                            {"y", unit::length},
+                            {"phase", unit::dimensionless}}};
+  read_known_stones(own, folder, asked, a,
+                    [](const Columns& values, std::size_t row, const std::string& place) {
+                      std::vector<Vec<2>> points;
+                      std::size_t end = row;
+                      for (; end < values[0].size() && values[0][end] == values[0][row]; ++end)
+                        points.push_back({{values[1][end], values[2][end]}});
+                      try {
+                        const auto [outline, centre] = specimen::outline_around(points);
+                        return StoneAndEnd{{centre, outline->width(), {}, {}, outline}, end};
+                      } catch (const Error& error) {
+                        throw Error(fmt::format("{}: {}", place, error.what()));
+                      }
+                    });
 }
 
 /// Reads the least and the largest of numbers that are drawn.

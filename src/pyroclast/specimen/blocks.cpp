@@ -54,6 +54,7 @@ constexpr int kRoundsOfCorrection = 8;
 /// Round from which a seed beside a grain whose block is unfit gives way to a free one.
 constexpr int kGivesWay = 4;
 
+/// Blocks of one grain.
 struct BlocksOfGrain {
   int count = 0;
   double area = 0.0;  ///< m²
@@ -95,8 +96,8 @@ class SeedDraw {
 
   /// Draws the seeds of unfit blocks anew. A seed along a grain whose cell is empty, or stays unfit, gives
   /// way. Where the outline asks for a seed, or a grain does, the free seed nearest to it is drawn anew
-  /// instead. A radius stays with its seed, or the cells of small radii would die out. \param unfit  seeds,
-  /// ascending
+  /// instead. A radius stays with its seed, or the cells of small radii would die out.
+  /// \param unfit  seeds, ascending
   void redraw(const std::vector<int>& unfit, bool are_empty, int round) {
     std::vector<std::size_t> numbers;
     for (const int seed : unfit | std::views::reverse) {
@@ -129,16 +130,13 @@ class SeedDraw {
       ways_[i].size *= std::clamp(std::pow(share, -kCorrection), 0.95, 1.05);
     }
     if (!is_off) return false;
-    const auto outline = static_cast<std::ptrdiff_t>(outline_.positions().size());
     const auto first_free = static_cast<std::ptrdiff_t>(kept_);
-    seeds.position.erase(seeds.position.begin() + outline, seeds.position.begin() + first_free);
-    seeds.radius.erase(seeds.radius.begin() + outline, seeds.radius.begin() + first_free);
-    const Seeds free{{seeds.position.begin() + outline, seeds.position.end()},
-                     {seeds.radius.begin() + outline, seeds.radius.end()}};
-    seeds.position.resize(static_cast<std::size_t>(outline));
-    seeds.radius.resize(static_cast<std::size_t>(outline));
-    owner_.resize(static_cast<std::size_t>(outline));
-    kept_ = static_cast<std::size_t>(outline);
+    const Seeds free{{seeds.position.begin() + first_free, seeds.position.end()},
+                     {seeds.radius.begin() + first_free, seeds.radius.end()}};
+    kept_ = outline_.positions().size();
+    seeds.position.resize(kept_);
+    seeds.radius.resize(kept_);
+    owner_.resize(kept_);
     along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(along_spacing_));
     add_along();
     const auto missing = static_cast<std::size_t>(std::max(0, parameters_.count - block_count()));
@@ -166,13 +164,21 @@ class SeedDraw {
   Seeds seeds;
 
  private:
-  /// Returns the number of blocks of the seeds: the cells of a small grain become one.
-  int block_count() const {
-    auto count = static_cast<int>(seeds.position.size());
-    if (!along_) return count;
+  /// Calls f(grain, whether the grain is one block) for each block that seeds along grains make: the cells of
+  /// a small grain become one. The grain is -1 between grains.
+  template <class F>
+  void for_each_block(const std::vector<int>& owners, F&& f) const {
     std::vector<char> has_one(grains_.size(), 0);
-    for (const int grain : owner_)
-      if (grain >= 0 && along_->is_one_cell(grain) && std::exchange(has_one[grain], 1)) --count;
+    for (const int grain : owners) {
+      const bool is_one = grain >= 0 && along_->is_one_cell(grain);
+      if (!is_one || !std::exchange(has_one[grain], 1)) f(grain, is_one);
+    }
+  }
+
+  /// Returns the number of blocks of the seeds.
+  int block_count() const {
+    auto count = static_cast<int>(seeds.position.size() - kept_);
+    for_each_block(owner_, [&](int, bool) { ++count; });
     return count;
   }
 
@@ -217,15 +223,12 @@ class SeedDraw {
       along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(spacing));
       // area in which blocks of the mean size would be as many
       double blocks = 0.0, area = region_.area();
-      std::vector<char> has_one(grains_.size(), 0);
-      for (const int grain : along_->owners()) {
-        const bool is_one_cell = grain >= 0 && along_->is_one_cell(grain);
-        if (is_one_cell && std::exchange(has_one[grain], 1)) continue;
+      for_each_block(along_->owners(), [&](int grain, bool is_one) {
         ++blocks;
-        const double relative = is_one_cell ? sizes_.relative(grains_[grain].centre) : 1.0;
-        area -= is_one_cell ? extent(grains_[grain]) / (relative * relative)
-                            : kAreaBesideGrain * spacing * spacing;
-      }
+        const double relative = is_one ? sizes_.relative(grains_[grain].centre) : 1.0;
+        area -=
+            is_one ? extent(grains_[grain]) / (relative * relative) : kAreaBesideGrain * spacing * spacing;
+      });
       return blocks + std::max(0.0, area / (spacing * spacing)) > room;
     };
     double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
@@ -290,7 +293,9 @@ std::string side_near(const Region& region, const Vec<2>& point) {
 }
 
 /// Makes one cell of the cells of each small grain, where it is convex. Cells keep their order by their first
-/// one. \param grain  grain of each cell; follows \param seed   seed of each cell; follows
+/// one.
+/// \param grain  grain of each cell; follows
+/// \param seed   seed of each cell; follows
 void unite_small_grains(const SeedDraw& draw, Tessellation& tessellation, std::vector<int>& grain,
                         std::vector<int>& seed) {
   std::map<int, std::vector<int>> small;

@@ -106,8 +106,7 @@ std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
                                       const std::vector<Grain<Dim>>& aggregates,
                                       std::span<const double> sizes) {
   if (aggregates.empty()) throw Error("No grading curve: the specimen has no aggregates.");
-  double total = 0.0;
-  for (const auto& a : aggregates) total += extent(a);
+  const double total = extent_of(std::span<const Grain<Dim>>(aggregates));
   std::vector<GradationPoint> points;
   for (const double size : sizes) {
     double realised = 0.0;

@@ -7,15 +7,10 @@
 #include "pyroclast/specimen/outline.hpp"
 
 namespace pyroclast::specimen {
-namespace {
-
-/// Returns the distance of a place from the surface of a grain, m: negative within.
 double distance(const Grain<2>& grain, const Vec<2>& place) {
   const Vec<2> there = place - grain.centre;
   return grain.shape ? grain.shape->nearest(there).distance : norm(there) - 0.5 * grain.diameter;
 }
-
-}  // namespace
 
 std::vector<Vec<2>> corners_of(const Grain<2>& grain) {
   const auto* outline = dynamic_cast<const Outline*>(grain.shape.get());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "pyroclast/specimen/specimen.hpp"
@@ -33,6 +34,17 @@ template <int Dim>
 double reach(const Grain<Dim>& grain) {
   return grain.shape ? grain.shape->bounding_radius() : 0.5 * grain.diameter;
 }
+
+/// Returns the sum of the extents of grains.
+template <int Dim>
+double extent_of(std::span<const Grain<Dim>> grains) {
+  double sum = 0.0;
+  for (const Grain<Dim>& grain : grains) sum += extent(grain);
+  return sum;
+}
+
+/// Returns the distance of a place from the surface of a grain, m: negative within.
+double distance(const Grain<2>& grain, const Vec<2>& place);
 
 /// Tells whether a place lies in a grain or on its surface.
 bool holds(const Grain<2>& grain, const Vec<2>& place);

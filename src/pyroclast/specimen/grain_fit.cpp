@@ -18,10 +18,8 @@ double mean_square_distance(const Aggregate& grain, const Vec<2>& from, const Ve
   const std::array<double, 3> weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   double sum = 0.0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const Vec<2> place = from + at[i] * (to - from) - grain.centre;
-    const double distance =
-        grain.shape ? grain.shape->nearest(place).distance : norm(place) - 0.5 * grain.diameter;
-    sum += weight[i] * distance * distance;
+    const double away = distance(grain, from + at[i] * (to - from));
+    sum += weight[i] * away * away;
   }
   return sum;
 }

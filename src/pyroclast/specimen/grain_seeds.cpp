@@ -51,7 +51,11 @@ double area_of_tangents(const std::vector<SurfacePoint<2>>& points) {
 
 GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
                        const OutlineSeeds& outline, const BlockSizes& sizes)
-    : region_(region), outline_(outline), sizes_(sizes), grid_(region.box().low, region.box().high, grains) {
+    : region_(region),
+      outline_(outline),
+      sizes_(sizes),
+      grid_(region.box().low, region.box().high, grains),
+      between_(region.box().low, region.box().high, sizes.mean()) {
   for (std::size_t i = 0; i < grains.size(); ++i) grains_.push_back(followed(grains[i], ways[i]));
   std::vector<int> order(grains_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -63,12 +67,14 @@ GrainSeeds::Followed GrainSeeds::followed(const Aggregate& grain, const Way& way
   std::shared_ptr<const Surface<2>> shape = grain.shape;
   if (!shape) shape = std::make_shared<Ball<2>>(0.5 * grain.diameter);
   const double radius = std::sqrt(shape->extent() / std::numbers::pi), spacing = sizes_.at(grain.centre);
-  // seeds outside of a small grain are as far from each other as those along a large one
-  const double along = kAlongSurface * spacing * radius / (radius + kFromSurface * spacing);
   Followed result{grain.centre, shape, radius < kOneCell * spacing, spacing};
-  const int tangents = shape->corner_count() > 0 ? kFewestSides : kFewestTangents;
-  result.along = result.is_one_cell ? std::min(along, shape->size() / tangents) : kAlongSurface * spacing;
-  if (result.is_one_cell && shape->corner_count() > 0) result.along = shape->size() / tangents;
+  if (!result.is_one_cell)
+    result.along = kAlongSurface * spacing;
+  else if (shape->corner_count() > 0)
+    result.along = shape->size() / kFewestSides;
+  else  // seeds outside of the grain are as far from each other as those along a large one
+    result.along = std::min(kAlongSurface * spacing * radius / (radius + kFromSurface * spacing),
+                            shape->size() / kFewestTangents);
   const double larger =
       std::sqrt(area_of_tangents(shape->points(result.along, {}, spacing_over(result))) / shape->extent());
   result.shape = shape->scaled(way.size / std::clamp(larger, 0.9, 1.25));
@@ -136,11 +142,7 @@ GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
   };
   for (const int other : near(foot.at, 2.0 * most)) {
     if (other == number) continue;
-    const Followed& beside = grains_[other];
-    if (halve([&](double half) {
-          return beside.shape->nearest(foot.at + half * foot.normal - beside.centre).distance;
-        }))
-      gap.other = other;
+    if (halve([&](double half) { return distance(other, foot.at + half * foot.normal); })) gap.other = other;
   }
   if (gap.other < 0) gap.half = kFromSurface * spacing;
   if (halve([&](double half) { return -region_.distance(foot.at + half * foot.normal); })) gap.other = -1;
@@ -152,6 +154,10 @@ GrainSeeds::Foot GrainSeeds::nearest(int number, const Vec<2>& place) const {
   return {grains_[number].centre + found.point.at, found.point.normal};
 }
 
+double GrainSeeds::distance(int number, const Vec<2>& place) const {
+  return grains_[number].shape->nearest(place - grains_[number].centre).distance;
+}
+
 std::vector<int> GrainSeeds::near(const Vec<2>& place, double distance) const {
   std::vector<int> numbers;
   Vec<2> half;
@@ -160,12 +166,13 @@ std::vector<int> GrainSeeds::near(const Vec<2>& place, double distance) const {
   return numbers;
 }
 
-void GrainSeeds::add(const Vec<2>& place, double square, int owner) {
-  if (!region_.is_rectangle() && !outline_.leave_room_at(place)) return;
-  if (region_.distance(place) >= 0.0) return;
+bool GrainSeeds::add(const Vec<2>& place, double square, int owner) {
+  if (!region_.is_rectangle() && !outline_.leave_room_at(place)) return false;
+  if (region_.distance(place) >= 0.0) return false;
   positions_.push_back(place);
   radii_.push_back(std::sqrt(std::max(square, 0.0)));
   owners_.push_back(owner);
+  return true;
 }
 
 void GrainSeeds::add_within(int number, const Foot& foot) {
@@ -178,22 +185,21 @@ void GrainSeeds::add_within(int number, const Foot& foot) {
 void GrainSeeds::add_between(const Vec<2>& place, double square) {
   if (grain_at(place) >= 0) return;
   const double apart = kApartBetween * sizes_.at(place);
-  for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (owners_[i] < 0 && norm(positions_[i] - place) < apart) return;
-  add(place, square, -1);
+  if (between_.overlaps({place, 0.0}, apart)) return;
+  if (add(place, square, -1)) between_.insert({place, 0.0});
 }
 
 int GrainSeeds::grain_at(const Vec<2>& place) const {
   for (const int number : near(place, 0.0))
-    if (grains_[number].shape->nearest(place - grains_[number].centre).distance < 0.0) return number;
+    if (distance(number, place) < 0.0) return number;
   return -1;
 }
 
 bool GrainSeeds::leave_room_at(const Vec<2>& place, double clear) const {
   const double away = clear * sizes_.at(place);
   for (const int number : near(place, away)) {
-    const double distance = grains_[number].shape->nearest(place - grains_[number].centre).distance;
-    if (std::abs(distance) < away || (distance < 0.0 && grains_[number].is_one_cell)) return false;
+    const double outside = distance(number, place);
+    if (std::abs(outside) < away || (outside < 0.0 && grains_[number].is_one_cell)) return false;
   }
   return true;
 }

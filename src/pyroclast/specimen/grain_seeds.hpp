@@ -43,7 +43,8 @@ class GrainSeeds {
   /// Returns the grain in which a place lies, index into the grains; -1: it lies between them.
   int grain_at(const Vec<2>& place) const;
   /// Tells whether another seed may stand at a place: not so near to a surface that its cell would reach
-  /// across. \param clear  least distance from surfaces, in spacings
+  /// across.
+  /// \param clear  least distance from surfaces, in spacings
   bool leave_room_at(const Vec<2>& place, double clear) const;
 
  private:
@@ -56,8 +57,8 @@ class GrainSeeds {
     std::shared_ptr<const Surface<2>> shape;  ///< drawn smaller
     bool is_one_cell;
     double spacing;  ///< size of blocks at the centre, m
-    double power =
-        0.0;  ///< square of the radius of the one seed, m²; 0: each place of the surface has its own
+    /// Square of the radius of the one seed, m²; 0: each place of the surface has its own.
+    double power = 0.0;
     double along = 0.0;             ///< distance from foot to foot where blocks are as large as there, m
     std::vector<Vec<2>> feet = {};  ///< places on the surface that have their seeds, m
   };
@@ -74,13 +75,15 @@ class GrainSeeds {
   Foot nearest(int number, const Vec<2>& place) const;
   void add_between(const Vec<2>& place, double square);
   void add_within(int number, const Foot& foot);
-  void add(const Vec<2>& place, double square, int owner);
+  bool add(const Vec<2>& place, double square, int owner);
+  double distance(int number, const Vec<2>& place) const;
   std::vector<int> near(const Vec<2>& place, double distance) const;
 
   const Region& region_;
   const OutlineSeeds& outline_;
   BlockSizes sizes_;
   GrainGrid<2> grid_;
+  GrainGrid<2> between_;  ///< seeds of no grain, without extent
   std::vector<Followed> grains_;
   std::vector<Vec<2>> positions_;
   std::vector<double> radii_;

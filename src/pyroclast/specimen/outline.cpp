@@ -29,8 +29,8 @@ Vec<2> turned(const Vec<2>& v, double angle) {
 }
 
 /// Returns places along a closed line, evenly between the places that are taken.
-/// \param fixed  places, ascending, at which each arc ends: taken points, or corners
-/// \param is_end  for each of them whether it holds a point itself; else the arc keeps half a step from it
+/// \param fixed  places, ascending, at which each arc ends, and whether a point is taken there; else there is
+///               a corner, from which the arc keeps half a step
 std::vector<double> fill(double length, double spacing, const std::vector<std::pair<double, bool>>& fixed) {
   std::vector<double> result;
   if (fixed.empty()) {
@@ -58,7 +58,7 @@ std::vector<double> fill(double length, double spacing, const std::vector<std::p
   return result;
 }
 
-/// The same with a spacing that changes from place to place, \param relative times as large at a place.
+/// The same with a spacing that is `relative(place)` times as large.
 template <class RelativeAt>
 std::vector<double> fill_unevenly(double length, double spacing, std::vector<std::pair<double, bool>> fixed,
                                   RelativeAt relative) {
@@ -100,10 +100,6 @@ std::vector<Vec<2>> hull_of(std::vector<Vec<2>> points) {
     std::ranges::reverse(points);
   }
   return hull;
-}
-
-bool pieces_cross(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
-  return cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
 }
 
 }  // namespace
@@ -168,7 +164,7 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = i + 2; k < n; ++k)
-      if (pieces_cross(corners_[i], corners_[next(i)], corners_[k], corners_[next(k)]))
+      if (cross_each_other(corners_[i], corners_[next(i)], corners_[k], corners_[next(k)]))
         throw Error("an outline of a grain crosses itself");
   double length = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -191,36 +187,39 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   inner_radius_ = std::max(0.0, -nearest({}).distance);
 }
 
-NearestPoint<2> Outline::nearest(const Vec<2>& place) const {
-  bool inside = false;
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t nearest = 0;
-  Vec<2> foot{};
+/// Returns the place of the line that is nearest to a point.
+Outline::Foot Outline::foot_of(const Vec<2>& point) const {
+  Foot foot{0, 0.0, std::numeric_limits<double>::infinity(), {}};
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Vec<2>&from = corners_[i], &to = corners_[next(i)];
-    const Vec<2> along = to - from, there = place - from;
-    const double share = std::clamp(dot(there, along) / dot(along, along), 0.0, 1.0);
-    const Vec<2> away = there - share * along;
-    const double square = dot(away, away);
-    if (square < least) {
-      least = square;
-      nearest = i;
-      foot = from + share * along;
-    }
+    const Vec<2> piece = corners_[next(i)] - corners_[i], there = point - corners_[i];
+    const double share = std::clamp(dot(there, piece) / dot(piece, piece), 0.0, 1.0);
+    const Vec<2> away = there - share * piece;
+    if (const double square = dot(away, away); square < foot.square)
+      foot = {i, share, square, corners_[i] + share * piece};
+  }
+  return foot;
+}
+
+NearestPoint<2> Outline::nearest(const Vec<2>& place) const {
+  const Foot foot = foot_of(place);
+  bool inside = false;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
     // a ray to the right crosses the outline an odd number of times
+    const Vec<2>&from = corners_[i], &to = corners_[next(i)];
     if ((from[1] > place[1]) != (to[1] > place[1]) &&
-        place[0] < from[0] + (place[1] - from[1]) / (to[1] - from[1]) * along[0])
+        place[0] < from[0] + (place[1] - from[1]) / (to[1] - from[1]) * (to[0] - from[0]))
       inside = !inside;
   }
-  const double distance = std::sqrt(least);
-  Vec<2> normal = place - foot;
-  if (distance > 1e-9 * bounding_radius_) {
-    normal = normal * ((inside ? -1.0 : 1.0) / distance);
-  } else {
-    const Vec<2> along = corners_[next(nearest)] - corners_[nearest];
-    normal = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
-  }
-  return {{foot, normal}, inside ? -distance : distance};
+  const double distance = std::sqrt(foot.square);
+  const Vec<2> normal = distance > 1e-9 * bounding_radius_
+                            ? (place - foot.at) * ((inside ? -1.0 : 1.0) / distance)
+                            : normal_of(foot.piece);
+  return {{foot.at, normal}, inside ? -distance : distance};
+}
+
+Vec<2> Outline::normal_of(std::size_t piece) const {
+  const Vec<2> along = corners_[next(piece)] - corners_[piece];
+  return Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
 }
 
 /// Returns the point at a place on the line; its normal turns from the middle of one piece to that of the
@@ -230,10 +229,6 @@ SurfacePoint<2> Outline::at(double along) const {
   const auto found = std::ranges::upper_bound(starts_, along) - starts_.begin() - 1;
   const auto i = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(found, 0)), n - 1);
   const double piece = starts_[i + 1] - starts_[i], share = (along - starts_[i]) / piece;
-  const auto normal_of = [&](std::size_t k) {
-    const Vec<2> d = corners_[next(k)] - corners_[k];
-    return Vec<2>{{d[1], -d[0]}} * (1.0 / norm(d));
-  };
   Vec<2> normal = normal_of(i);
   const std::size_t other = share < 0.5 ? (i == 0 ? n - 1 : i - 1) : next(i);
   const Vec<2> beside = normal_of(other);
@@ -245,17 +240,8 @@ SurfacePoint<2> Outline::at(double along) const {
 }
 
 double Outline::along_of(const Vec<2>& point) const {
-  double least = std::numeric_limits<double>::infinity(), along = 0.0;
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Vec<2> piece = corners_[next(i)] - corners_[i], there = point - corners_[i];
-    const double share = std::clamp(dot(there, piece) / dot(piece, piece), 0.0, 1.0);
-    const Vec<2> away = there - share * piece;
-    if (dot(away, away) < least) {
-      least = dot(away, away);
-      along = starts_[i] + share * norm(piece);
-    }
-  }
-  return along;
+  const Foot foot = foot_of(point);
+  return starts_[foot.piece] + foot.share * norm(corners_[next(foot.piece)] - corners_[foot.piece]);
 }
 
 std::vector<SurfacePoint<2>> Outline::points(double spacing, std::span<const Vec<2>> taken,

@@ -35,7 +35,8 @@ class Ball final : public Surface<Dim> {
 class Outline final : public Surface<2> {
  public:
   /// Makes an outline; moves it so that its centroid is the origin. Throws Error where it has fewer than
-  /// three corners, crosses itself or has no area. \param corners  corners in either sense, m
+  /// three corners, crosses itself or has no area.
+  /// \param corners  corners in either sense, m
   explicit Outline(std::vector<Vec<2>> corners);
 
   NearestPoint<2> nearest(const Vec<2>& place) const override;
@@ -48,15 +49,22 @@ class Outline final : public Surface<2> {
   std::shared_ptr<const Surface<2>> scaled(double factor) const override;
   int corner_count() const override { return static_cast<int>(corners_along_.size()); }
 
-  const std::vector<Vec<2>>& corners() const {
-    return corners_;
-  }  ///< Returns the corners, counter-clockwise, m.
+  /// Returns the corners, counter-clockwise, m.
+  const std::vector<Vec<2>>& corners() const { return corners_; }
   /// Returns the least distance between two parallel lines that hold the outline, m: the sieve that it
   /// passes.
   double width() const;
 
  private:
   std::size_t next(std::size_t i) const { return i + 1 == corners_.size() ? 0 : i + 1; }
+  /// Place of the line, and the square of its distance from the point that it belongs to, m².
+  struct Foot {
+    std::size_t piece;
+    double share, square;
+    Vec<2> at;  ///< m
+  };
+  Foot foot_of(const Vec<2>& point) const;
+  Vec<2> normal_of(std::size_t piece) const;
   SurfacePoint<2> at(double along) const;
   double along_of(const Vec<2>& point) const;
 

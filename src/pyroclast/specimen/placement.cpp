@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/growth.hpp"
 
@@ -36,14 +37,6 @@ bool find_place(Grain<Dim>& grain, const Room<Dim>& room, const GrainGrid<Dim>& 
     if (!grid.overlaps(grain, parameters.minimum_gap)) return true;
   }
   return false;
-}
-
-/// Returns the extent of grains.
-template <int Dim>
-double extent_of(std::span<const Grain<Dim>> grains) {
-  double sum = 0.0;
-  for (const auto& grain : grains) sum += extent(grain);
-  return sum;
 }
 
 /// Throws Error for grains that can never fit: with their gaps they would take more than any packing.

@@ -104,6 +104,11 @@ double common_area(Corners polygon, const Vec<2>& centre, double radius) {
   return sum;
 }
 
+bool cross_each_other(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
+  const auto side = [](const Vec<2>& p, const Vec<2>& q, const Vec<2>& r) { return cross(q - p, r - p); };
+  return side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+}
+
 double common_area(Corners convex, std::vector<Vec<2>> other) {
   std::vector<Vec<2>> kept;
   for (std::size_t i = 0; i < convex.size() && !other.empty(); ++i) {

@@ -31,6 +31,9 @@ double thinnest_zone(Corners polygon);
 /// Returns the smallest angle of a triangle, radians.
 double smallest_angle(const std::array<Vec<2>, 3>& triangle);
 
+/// Tells whether the segments from a to b and from c to d run through each other.
+bool cross_each_other(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d);
+
 /// Returns the area that a convex or non-convex polygon has in common with a circle, m^2. Exact up to
 /// rounding.
 double common_area(Corners polygon, const Vec<2>& centre, double radius);

@@ -56,11 +56,6 @@ class Grid {
   std::map<std::pair<long long, long long>, Vec<2>> known_;
 };
 
-bool cross_each_other(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
-  const auto side = [](const Vec<2>& p, const Vec<2>& q, const Vec<2>& r) { return cross(q - p, r - p); };
-  return side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-}
-
 double distance_of_segments(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
   if (cross_each_other(a, b, c, d)) return 0.0;
   return std::min({distance_from_segment(a, c, d), distance_from_segment(b, c, d),

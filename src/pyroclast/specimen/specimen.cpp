@@ -15,6 +15,7 @@
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/placement.hpp"
@@ -144,12 +145,6 @@ void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random
   }
 }
 
-double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_area) {
-  double sum = 0.0;
-  for (const Aggregate& a : aggregates) sum += extent(a);
-  return sum / specimen_area;
-}
-
 /// Returns the share of the specimen's area that blocks take for which `counts(phase)` holds.
 template <class Counts>
 double fraction_of(const Specimen& specimen, Counts counts) {
@@ -229,7 +224,7 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
       add_aggregates(parameters, *circles, ++kind, aggregate_random, specimen);
     else
       add_fibres(parameters, std::get<FibreParameters>(inclusions), aggregate_random, specimen);
-  specimen.fraction_placed = fraction_of(specimen.aggregates, specimen_area);
+  specimen.fraction_placed = extent_of(std::span<const Aggregate>(specimen.aggregates)) / specimen_area;
   require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min);
 
   const bool follows = parameters.superposition == Superposition::follow;

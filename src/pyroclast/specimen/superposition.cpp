@@ -105,8 +105,7 @@ double fitting_fraction(const Tessellation& tessellation, std::span<const Cover>
     cells.push_back({covers[c].share, area(polygon)});
   }
   std::ranges::sort(cells, std::greater<>(), &Cell::covered);
-  double missing = 0.0;
-  for (const Aggregate& a : aggregates) missing += extent(a);
+  double missing = extent_of(aggregates);
   // cells become aggregate, the most covered first, while that brings their area nearer to that of the
   // circles
   std::size_t taken = 0;

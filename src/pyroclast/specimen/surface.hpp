@@ -36,9 +36,8 @@ class Surface {
   virtual double inner_radius() const = 0;
   virtual double extent() const = 0;  ///< Returns the area, m², or the volume, m³.
   virtual double size() const = 0;    ///< Returns the length of the outline, m, or the surface's area, m².
-  virtual int corner_count() const {
-    return 0;
-  }  ///< Returns the number of true corners; 0: the surface is smooth.
+  /// Returns the number of true corners; 0: the surface is smooth.
+  virtual int corner_count() const { return 0; }
   /// Distance of points at a place over `spacing`; empty: 1 everywhere.
   using Relative = std::function<double(const Vec<Dim>& place)>;
   /// Returns points of the surface, evenly and about `spacing` apart (m), or so many times as much. Together
