@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import shutil
 import tempfile
@@ -15,6 +16,9 @@ try:
     from selenium.webdriver.chrome.service import Service
 except ImportError:
     webdriver = None
+
+RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
+"""Runs of the cases in their small forms, by name."""
 
 _IS_THERE = webdriver is not None and all(shutil.which(name) for name in ("chromium", "chromedriver"))
 _PATIENCE = 20.0  # s, for a page to be ready

@@ -4,20 +4,16 @@ SMALL_FORMS names the folder of runs that `validation/reference check --cases sm
 """
 
 import json
-import os
-import pathlib
 import re
 import unittest
 
 import h5py
-from browser import PageTest, begin, browser
+from browser import RUNS, PageTest, begin, browser
 
 import pyroclast
 from pyroclast.errors import Error
 from pyroclast.report import write_page
 from pyroclast.report.compare_page import compare_page, deck_differences
-
-RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 
 
 def setUpModule():

@@ -3,16 +3,12 @@
 SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
 """
 
-import os
-import pathlib
 import unittest
 
-from browser import PageTest, begin, browser
+from browser import RUNS, PageTest, begin, browser
 
 import pyroclast
 from pyroclast.report import write_page
-
-RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 
 
 def setUpModule():

@@ -14,14 +14,13 @@ import unittest
 
 import h5py
 import numpy as np
-from browser import PageTest, begin, browser
+from browser import RUNS, PageTest, begin, browser
 from matplotlib.path import Path
 
 import pyroclast
 from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
 
-RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 ROOT = pathlib.Path(__file__).parents[2]
 
 

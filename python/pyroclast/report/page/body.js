@@ -44,14 +44,7 @@ class Body {
   bounds() {
     const {corner} = this.arrays;
     const box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity};
-    for (let i = 0; i < this.corners; i++) {
-      const x = corner.at(i, 0),
-        y = corner.at(i, 1);
-      box.x0 = Math.min(box.x0, x);
-      box.x1 = Math.max(box.x1, x);
-      box.y0 = Math.min(box.y0, y);
-      box.y1 = Math.max(box.y1, y);
-    }
+    for (let i = 0; i < this.corners; i++) takeIn(box, corner.at(i, 0), corner.at(i, 1));
     const air = 0.07 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
     return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.4 * air, y1: box.y1 + 0.4 * air};
   }
@@ -381,6 +374,14 @@ class Body {
     }
     return found;
   }
+}
+
+// Makes a box hold a point.
+function takeIn(box, x, y) {
+  box.x0 = Math.min(box.x0, x);
+  box.x1 = Math.max(box.x1, x);
+  box.y0 = Math.min(box.y0, y);
+  box.y1 = Math.max(box.y1, y);
 }
 
 // Colours: stops from low to high, dark and light themes alike.

@@ -155,14 +155,7 @@ class SolidBody extends Body {
       y0: this.ends[this.up][0],
       y1: this.ends[this.up][1],
     };
-    for (let i = 0; i < this.corners; i++) {
-      const x = this.rest[3 * i + this.right],
-        y = this.rest[3 * i + this.up];
-      box.x0 = Math.min(box.x0, x);
-      box.x1 = Math.max(box.x1, x);
-      box.y0 = Math.min(box.y0, y);
-      box.y1 = Math.max(box.y1, y);
-    }
+    for (let i = 0; i < this.corners; i++) takeIn(box, this.rest[3 * i + this.right], this.rest[3 * i + this.up]);
     const air = 0.09 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
     return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.5 * air, y1: box.y1 + 0.5 * air};
   }
