@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import subprocess
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
@@ -74,17 +75,23 @@ def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
     return _same_run(folder, command) and not _has_ended(folder) and any(folder.glob("checkpoints/*.state"))
 
 
+def deck_hash(deck: pathlib.Path) -> str:
+    """Of the keys and values of a deck: comments and blanks do not count."""
+    meaning = json.dumps(tomllib.loads(deck.read_text()), sort_keys=True)
+    return hashlib.sha256(meaning.encode()).hexdigest()[:8]
+
+
 def _source(folder: pathlib.Path) -> pathlib.Path:
     """File beside a run with the hash of the deck that it was made from; the run has the deck with its changes."""
     return folder.parent / f"{folder.name}.source"
 
 
 def finished(folder: pathlib.Path, command: list[str], deck: pathlib.Path) -> bool:
-    """Whether the folder holds the results of this command with this text of the deck and this physics version."""
+    """Whether the folder holds the results of this command with these values of the deck and this physics version."""
     if not _same_run(folder, command) or not _has_ended(folder) or not _source(folder).exists():
         return False
     manifest = json.loads((folder / "manifest.json").read_text())
-    same_deck = _source(folder).read_text() == hashlib.sha256(deck.read_bytes()).hexdigest()
+    same_deck = _source(folder).read_text() == deck_hash(deck)
     return same_deck and str(manifest["physics_version"]) == physics_version(PROGRAM)
 
 
@@ -102,8 +109,8 @@ def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str],
         return
     if broken_off(folder, command):
         command = [PROGRAM, "resume", str(folder), "--no-figures", "--threads", "1"]
-    text = hashlib.sha256(deck.read_bytes()).hexdigest()
+    source = deck_hash(deck)
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 2):
         raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
-    _source(folder).write_text(text)
+    _source(folder).write_text(source)
