@@ -30,8 +30,7 @@ class Grain:
     @property
     def area(self) -> float:
         """Area, m²."""
-        x, y = self.outline.T
-        return 0.5 * abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
+        return abs(_signed_area(self.outline))
 
     @property
     def perimeter(self) -> float:
@@ -41,7 +40,7 @@ class Grain:
 
 def grains_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low: Sequence[float],
                        high: Sequence[float], spacing: float, phase: int = 0) -> list[Grain]:
-    """Grains where a signed distance is negative: a line around each.
+    """Grains where a signed distance is negative: a line around each, its holes filled.
 
     distance: takes places (n, 2) in m and returns n distances, negative within a grain. It is asked once, here: what a
     deck reads is the table of `write_grains`.
@@ -68,10 +67,12 @@ def grains_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low
 def grains_of_labels(image: ArrayLike | str | Path, pixel: float, *, matrix: int = 0) -> list[Grain]:
     """Grains of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own area.
 
+    A hole in a grain, as a pore is in a stone of a scan, is filled: grains are whole.
     image: (rows, columns) of labels, as an array or a file; row 0 is at the top
     pixel: edge of a pixel, m
     matrix: label of the matrix; the others are phases 0, 1, ... in ascending order
-    Raises Error where there is no grain, or the edge of a pixel is no positive number.
+    Raises Error where there is no grain, a hole of one holds another label than the matrix, or the edge of a pixel is no
+    positive number.
     """
     from scipy import ndimage
     if not 0.0 < pixel < np.inf:
@@ -84,7 +85,13 @@ def grains_of_labels(image: ArrayLike | str | Path, pixel: float, *, matrix: int
     for phase, label in enumerate(labels):
         parts, count = ndimage.label(pixels == label)
         for part, box in zip(range(1, count + 1), ndimage.find_objects(parts)):
-            grains += _grain_of_mask(parts[box] == part, (box[0].start, box[1].start), pixels.shape[0], pixel, phase)
+            whole = ndimage.binary_fill_holes(parts[box] == part)
+            others = np.argwhere(whole & (pixels[box] != label) & (pixels[box] != matrix))
+            if len(others):
+                row, column = others[0] + (box[0].start, box[1].start)
+                raise Error(f"{source}a grain of label {label} encloses the label {pixels[row, column]} at row {row}, "
+                            f"column {column}; a grain can have no other inside")
+            grains += _grain_of_mask(whole, (box[0].start, box[1].start), pixels.shape[0], pixel, phase)
     if not grains:
         raise Error(f"{source}no part of a label is large enough to be a grain: three pixels or more across")
     return grains
@@ -116,6 +123,12 @@ def _grain_of_mask(mask: NDArray[Any], first: tuple[int, int], rows: int, pixel:
     return [Grain(middle + factor * (largest.outline - middle), phase)]
 
 
+def _signed_area(outline: NDArray[np.float64]) -> float:
+    """Of a polygon, positive where its points run counter-clockwise."""
+    x, y = outline.T
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
 def _lines_around(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArray[np.float64], phase: int) -> list[Grain]:
     from contourpy import contour_generator
     grains = []
@@ -123,6 +136,8 @@ def _lines_around(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArra
         if np.any(line[0] != line[-1]):
             raise Error(f"a grain reaches out of the box, near ({line[0][0]:.6g}, {line[0][1]:.6g}) m")
         points = line[:-1]
+        if _signed_area(points) > 0.0:  # higher values lie to the left of a line, so this one is around a hole
+            continue
         apart = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1) > 1e-6 * (x[1] - x[0])
         if np.count_nonzero(apart) >= _FEWEST_POINTS:
             grains.append(Grain(points[apart], phase))

@@ -48,8 +48,17 @@ class Outlines(unittest.TestCase):
         apart = np.linalg.norm(stone.outline[:, None] - (exact.outline + [0.02, 0.025]), axis=2).min(axis=1)
         self.assertLess(apart.max(), 0.3e-3)  # a pixel
 
+    def test_holes_are_filled(self):
+        annulus, = grains.grains_of_distance(
+            lambda p: np.abs(np.linalg.norm(p - 0.05, axis=1) - 0.02) - 0.01, (0, 0), (0.1, 0.1), 0.5e-3)
+        self.assertAlmostEqual(annulus.area / (np.pi * 0.03**2), 1.0, delta=2e-3)
+        stone, = grains.grains_of_labels(image_of_annulus(0), 1e-3)
+        self.assertAlmostEqual(stone.area / (np.pi * 0.03**2), 1.0, delta=0.01)
+
     def test_refused(self):
         for message, call in (
+                ("a grain of label 1 encloses the label 2 at row 35, column 50",
+                 lambda: grains.grains_of_labels(image_of_annulus(2), 1e-3)),
                 ("reaches out of the box", lambda: grains.grains_of_distance(lambda p: p[:, 0] - 0.5, (0, 0), (1, 1), 0.1)),
                 ("returned an array of", lambda: grains.grains_of_distance(lambda p: p, (0, 0), (1, 1), 0.1)),
                 ("must be finite", lambda: grains.grains_of_distance(lambda p: p[:, 0] * np.nan, (0, 0), (1, 1), 0.1)),
@@ -58,6 +67,13 @@ class Outlines(unittest.TestCase):
                 ("it must be positive", lambda: grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), 0.0))):
             with self.subTest(message), self.assertRaisesRegex(pyroclast.Error, message):
                 call()
+
+
+def image_of_annulus(inside):
+    """(100, 100): a ring of label 1, from 15 to 30 pixels of its middle, and a label inside it."""
+    row, column = np.mgrid[:100, :100] - 50
+    distance = np.hypot(row, column)
+    return np.select([distance <= 15, distance < 30], [inside, 1])
 
 
 class ByDeck(unittest.TestCase):
