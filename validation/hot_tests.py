@@ -6,6 +6,7 @@ Each is loaded to a share of its own strength at 20 degC, which the second case 
 
 import dataclasses
 import pathlib
+import re
 import sys
 import threading
 
@@ -65,7 +66,19 @@ def heated(specimen: Specimen, level: float, to: float = 800.0, platen: str = "f
     if level > 0.0:
         changes.append(f"stages[1].f_c={strength(specimen):.6g} MPa")
     kind = "heated" if platen == "force" else "restrained"
-    return _run(HEATED, f"{kind}-{level:g}-{to:g}-{specimen.name}", specimen, changes)
+    deck = HEATED if platen == "force" else _without_reference(HEATED)
+    return _run(deck, f"{kind}-{level:g}-{to:g}-{specimen.name}", specimen, changes)
+
+
+def _without_reference(deck: pathlib.Path) -> pathlib.Path:
+    """The deck without the reference of strains, which no figure of a restrained test draws."""
+    text, found = re.subn(r"\[\[output\.references\]\].*?\n(?=\[|\Z)", "", deck.read_text(), flags=re.DOTALL)
+    if not found:
+        raise ValueError(f"{deck} names no reference any more")
+    made = RUNS / f"{deck.stem}_restrained.toml"
+    RUNS.mkdir(parents=True, exist_ok=True)
+    made.write_text(text)
+    return made
 
 
 def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual: bool = False) -> Crushed:

@@ -111,6 +111,24 @@ TEST(SpecimenFromCells, AFileSaysTheUnitOfItsVertices) {
            "\"vertices_m\" and \"vertices_mm\"; only one is allowed"));
 }
 
+TEST(SpecimenFromCells, AFileKeepsTheSizesOfBlocks) {
+  const auto of_list = [](const std::string& lists) {
+    return R"({"phases": ["a"], "cells": [[0, 1, 2]], "phase": [0], "vertices_m": [[0, 0], [1, 0], [0, 1]])" +
+           lists + "}";
+  };
+  const Specimen made = specimen_from(cells_from(of_list(R"(, "block_size_m": [0.25])"), "mine.json").cells);
+  EXPECT_EQ(made.size, std::vector<double>{0.25});
+  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size});
+  EXPECT_EQ(cells_from(text, "again.json").cells.size, made.size);
+  EXPECT_TRUE(cells_from(of_list(""), "mine.json").cells.size.empty());
+  EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_mm": [1])"), "mine.json"); }),
+                   "\"block_size_mm\"; beside \"vertices_m\" it must be \"block_size_m\""));
+  EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_m": [1, 2])"), "mine.json"); }),
+                   "there are 1 cells, but the sizes of 2"));
+  EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_m": [-1])"), "mine.json"); }),
+                   "it must be greater than 0"));
+}
+
 TEST(SpecimenFromCells, ANumberTooLargeIsToldWithItsFile) {
   EXPECT_TRUE(says(message([] { cells_from(R"({"phase": [1e999]})", "mine.json"); }),
                    "^mine.json: number overflow parsing '1e999'$"));

@@ -27,9 +27,11 @@ using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
 /// \param corners  corners of all cells in turn
 /// \param first    first corner of each cell, and the end behind the last
+/// \param size     size that each cell was to have, m; empty where cells are alike
 /// \param join     distance within which vertices are joined, m; 0: none
 Specimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
-                    std::vector<std::string> phases, const Integers& phase, double join) {
+                    std::vector<std::string> phases, const Integers& phase, std::vector<double> size,
+                    double join) {
   specimen::Cells cells;
   const auto at = vertices.unchecked<2>();
   for (py::ssize_t v = 0; v < at.shape(0); ++v) cells.tessellation.vertices.push_back({{at(v, 0), at(v, 1)}});
@@ -38,6 +40,7 @@ Specimen from_cells(const Reals& vertices, const Integers& corners, const Intege
                                           corners.data() + first.data()[c + 1]);
   cells.phases = std::move(phases);
   cells.phase.assign(phase.data(), phase.data() + phase.size());
+  cells.size = std::move(size);
   const py::gil_scoped_release no_gil;
   return specimen::specimen_from(specimen::joined(specimen::checked(std::move(cells)), join));
 }
@@ -153,7 +156,7 @@ void bind_specimens(py::module_& m) {
   bind_solid_specimens(m);
   py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, and what each is made of.")
       .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
-                  arg("phase"), arg("join"))
+                  arg("phase"), arg("block_size"), arg("join"))
       .def_static("rectangle", &rectangle, arg("width"), arg("height"), arg("count"), arg("shortest_edge"),
                   arg("relaxation"), arg("radius_spread"), arg("seed"))
       .def_static("of_deck", &of_deck, arg("deck"), arg("seed"))
@@ -161,9 +164,10 @@ void bind_specimens(py::module_& m) {
       .def(
           "text",
           [](const Specimen& s) {
-            return specimen::cells_text({s.tessellation, s.phases, s.phase});
+            return specimen::cells_text({s.tessellation, s.phases, s.phase, s.size});
           },
           "As a file holds it.")
+      .def_readonly("block_size", &Specimen::size)
       .def_property_readonly("vertices",
                              [](const Specimen& s) {
                                std::vector<Vec<3>> places;

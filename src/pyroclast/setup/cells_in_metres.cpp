@@ -18,8 +18,10 @@ double metres_of(std::string_view unit) {
 specimen::Cells cells_in_metres(const std::filesystem::path& file, double join) {
   auto [cells, unit] = specimen::read_cells(file);
   try {
-    if (const UnitFactors to_m = unit_factors(unit, unit::length); !to_m.is_none())
+    if (const UnitFactors to_m = unit_factors(unit, unit::length); !to_m.is_none()) {
       for (Vec<2>& v : cells.tessellation.vertices) v = {{to_m(v[0]), to_m(v[1])}};
+      for (double& size : cells.size) size = to_m(size);
+    }
   } catch (const QuantityError& error) {
     throw Error(fmt::format("{}: \"vertices_{}\": {}", file.string(), unit, error.reason()));
   }

@@ -17,6 +17,8 @@ namespace {
 
 /// Beginning of the name of the list of vertices; the unit follows.
 constexpr std::string_view kVertices = "vertices_";
+/// Likewise of the list of the sizes that blocks were to have.
+constexpr std::string_view kBlockSize = "block_size_";
 
 Vec<2> place(const Json& item) {
   const auto [x, y] = item.get<std::array<double, 2>>();
@@ -49,6 +51,7 @@ std::string cells_text(const Cells& cells) {
   json["vertices_m"] = std::move(vertices);
   json["cells"] = cells.tessellation.cells;
   json["phase"] = cells.phase;
+  if (!cells.size.empty()) json["block_size_m"] = cells.size;
   return json.dump() + "\n";
 }
 
@@ -67,6 +70,13 @@ CellsFile cells_from(const std::string& text, const std::string& name) {
     cells.tessellation.cells =
         list_in(json, "cells", "a list of vertices, each by its number from 0", numbers_in);
     cells.phase = list_in(json, "phase", "the number of a phase, from 0", number_in);
+    const std::string size = std::string(kBlockSize) + file.unit;
+    for (const auto& [list, items] : json.items())
+      if (list.starts_with(kBlockSize) && list != size)
+        throw Error(
+            fmt::format("there is the list \"{}\"; beside \"{}\" it must be \"{}\"", list, key, size));
+    if (json.contains(size))
+      cells.size = list_in(json, size, fmt::format("a size in {}", file.unit), real_in);
     file.cells = checked(std::move(cells));
   });
   return file;

@@ -12,6 +12,10 @@ int number_in(const Json& item) {
   return item.get<int>();
 }
 
+double real_in(const Json& item) {
+  return item.get<double>();
+}
+
 std::vector<int> numbers_in(const Json& items) {
   std::vector<int> all;
   for (const Json& item : items.get_ref<const Json::array_t&>()) all.push_back(number_in(item));

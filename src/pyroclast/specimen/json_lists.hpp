@@ -33,6 +33,9 @@ auto list_in(const Json& table, const std::string& key, const std::string& neede
 /// Reads a number from 0; throws Json::exception for anything else.
 int number_in(const Json& item);
 
+/// Reads a number; throws Json::exception for anything else.
+double real_in(const Json& item);
+
 /// Reads a list of numbers from 0; throws Json::exception for anything else.
 std::vector<int> numbers_in(const Json& items);
 
