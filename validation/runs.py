@@ -107,10 +107,13 @@ def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str],
         command += ["--set", change]
     if not again and finished(folder, command, deck):
         return
-    if broken_off(folder, command):
-        command = [PROGRAM, "resume", str(folder), "--no-figures", "--threads", "1"]
     source = deck_hash(deck)
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = None
+    if broken_off(folder, command):  # a checkpoint of another build may not fit this one
+        resume = [PROGRAM, "resume", str(folder), "--no-figures", "--threads", "1"]
+        done = subprocess.run(resume, capture_output=True, text=True)
+    if done is None or done.returncode not in (0, 2):
+        done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 2):
         raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
     _source(folder).write_text(source)
