@@ -64,16 +64,17 @@ class Concrete(unittest.TestCase):
         self.pyroclast("study", "check", "limestone-calibrate.toml")
 
     def test_a_mix_and_a_sieve_curve_make_fraction_and_grading(self):
-        self.concrete(*LIMESTONE, "--stones", "1800 kg/m3", "--passing", "4 mm=38 %", "8 mm=55 %", "20 mm=100 %",
-                      "--d_min", "4 mm")
+        done = self.concrete(*LIMESTONE, "--stones", "1800 kg/m3", "--passing", "4 mm=38 %", "8 mm=55 %", "20 mm=100 %",
+                             "--d_min", "4 mm")
         deck = self.deck()["aggregates"]
         self.assertAlmostEqual(deck["fraction"], 1800.0 / 2700.0 * (1.0 - 0.38), delta=5e-4)
         self.assertEqual(deck["passing"], [["4 mm", "38 %"], ["8 mm", "55 %"], ["20 mm", "100 %"]])
         self.assertEqual(deck["passing_by"], "volume")
+        self.assertIn("0.413 of a section: what is larger than --d_min 4 mm", done.stdout)
         self.pyroclast("check", "mine.toml", "--set", "blocks.count=300")
 
     def test_a_hot_test_takes_mortar_and_contacts_from_the_calibrated_deck(self):
-        self.concrete(*LIMESTONE, *FULLER, "--blocks", "1500")
+        self.concrete(*LIMESTONE, *FULLER, "--blocks", "1500", "--width", "100 mm")
         text = (self.folder / "mine.toml").read_text()
         was = self.deck()["materials"]["mortar"]["E"]
         (self.folder / "best.toml").write_text(text.replace(f'E = "{was}"', 'E = "51.25 GPa"'))
@@ -81,8 +82,20 @@ class Concrete(unittest.TestCase):
         hot = self.deck("hot.toml")
         self.assertEqual(hot["materials"]["mortar"]["E"]["value"], "51.25 GPa")
         self.assertEqual(hot["blocks"]["count"], 1500)
+        self.assertEqual(hot["specimen"]["width"], "100 mm")
         self.assertEqual(hot["contacts"]["mortar_mortar"]["f_t"], self.deck()["contacts"]["mortar_mortar"]["f_t"])
-        self.pyroclast("check", "hot.toml")
+        self.assertNotIn("warning", self.pyroclast("check", "hot.toml").stdout)  # nothing is heated under load
+
+    def test_a_deck_of_another_concrete_is_refused_and_first_guesses_are_told(self):
+        self.concrete(*LIMESTONE, *FULLER)
+        hot = ("--hot", "400 degC", "--from", "mine.toml", "-o", "hot.toml")
+        for words, told in (((*LIMESTONE[:5], "basalt", *FULLER), "its E of aggregate, in GPa, is 60, but --aggregate"),
+                            ((*LIMESTONE, "--fraction", "0.3", *FULLER[2:]), "its share of aggregate is 0.4, but")):
+            self.assertIn(told, self.pyroclast("concrete", *words, *hot, code=1).stderr)
+            self.assertFalse((self.folder / "hot.toml").exists())
+        told = self.pyroclast("concrete", *LIMESTONE, *FULLER, *hot).stdout
+        self.assertIn("mine.toml has the first guesses", told)
+        self.assertIn("pyroclast run hot.toml --seeds 3", told)
 
     def test_another_number_of_blocks_than_was_calibrated_is_told(self):
         self.concrete(*LIMESTONE, *FULLER)
@@ -106,6 +119,7 @@ class Concrete(unittest.TestCase):
                 ((*LIMESTONE, "--d_max", "20 mm"), "--stones"),
                 ((*LIMESTONE, "--fraction", "0.4"), "--d_max is needed"),
                 ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm:45 %"), "'8 mm=45 %'"),
+                ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45"), '"45": must be between 0 and 1, or 0 % and 100 %'),
                 ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45 %", "16 mm=90 %"), "100 %"),
                 ((*LIMESTONE, "--stones", "1900 kg/m3", "--d_max", "20 mm"), "at most 0.6 can be placed"),
                 ((*LIMESTONE, *FULLER, "--from", "x.toml"), "--hot")):

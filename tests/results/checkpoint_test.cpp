@@ -52,6 +52,8 @@ void write(const fs::path& path, Thing thing, std::int64_t number = 1) {
   CheckpointInfo info;
   info.number = number;
   info.step = 100 * number;
+  info.version = "0.1";
+  info.commit = "of old";
   write_checkpoint(path, info, [&](StateVisitor& visitor) { thing.visit_state(visitor); });
 }
 
@@ -80,7 +82,8 @@ TEST_F(Results, ACheckpointOfSomethingElseIsRefusedByName) {
   const auto restore = [&](const char* name) {
     return message([&] { file.restore([&](StateVisitor& visitor) { visitor.visit(name, number); }); });
   };
-  EXPECT_NE(restore("other").find("does not hold \"other\""), std::string::npos);
+  EXPECT_NE(restore("other").find("does not hold \"other\"; it was written by pyroclast 0.1 (of old)"),
+            std::string::npos);
   EXPECT_NE(restore("more.flag").find("holds 1 x 1 bytes of \"more.flag\""), std::string::npos);
   EXPECT_NE(restore("number").find("which this run does not have"), std::string::npos);
 }

@@ -153,6 +153,8 @@ def _status(options: argparse.Namespace) -> int:
     print(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points may follow"))
     if not math.isnan(seen.seconds) and seen.left:
         print(f"left            {duration(seen.seconds)} of one core")
+    if begun := study.count_begun():
+        print(f"begun           {begun}, under way or broken off")
     table = study.rows()
     states = collections.Counter(row["state"] for row in table)
     for state, count in states.most_common():

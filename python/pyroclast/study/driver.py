@@ -131,6 +131,8 @@ class Driver:
             proposal = self.plan.propose(self._answers)
             missing = self._missing(proposal)
             if missing:
+                count = "1 run" if len(missing) == 1 else f"{len(missing)} runs"
+                say(f"{count} to make" + ("" if proposal.is_complete else "; what follows depends on them"))
                 progress = _Progress(len(missing), say)
 
                 def finished(result: RunResult, progress: _Progress = progress) -> None:
@@ -160,6 +162,10 @@ class Driver:
         """Runs that gave a value of every output."""
         return sum(result is not None and result.state == DONE
                    for result in map(self._result, self._wanted(self.plan.propose(self._answers))))
+
+    def count_begun(self) -> int:
+        """Runs that were begun and have no result."""
+        return self.store.begun()
 
     def rows(self) -> list[dict[str, Any]]:
         """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""
@@ -202,7 +208,10 @@ class Driver:
         if self.study.method.kind not in WITH_A_BEST or self.study.runner.kind != "pyroclast":
             return None
         file = self.store.folder / "best.toml"
-        write_text(file, self.points.text(self.values(self.findings()["best"]["u"])))
+        values = self.values(self.findings()["best"]["u"])
+        found = ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(self.study.parameters, values))
+        write_text(file, f"# Best point of the study \"{self.study.title}\": {found}.\n"
+                         "# The comments below are those of the deck that it began with.\n" + self.points.text(values))
         return file
 
     def findings(self) -> dict[str, Any]:

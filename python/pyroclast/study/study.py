@@ -133,6 +133,10 @@ class Study:
         """Runs that gave a value of every output."""
         return self._driver().count_values()
 
+    def count_begun(self) -> int:
+        """Runs that are under way or were broken off: begun, without a result."""
+        return self._driver().count_begun()
+
     def rows(self) -> list[dict[str, Any]]:
         """The table as it is written: None where there is no value."""
         return self._driver().rows()

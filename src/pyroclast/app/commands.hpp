@@ -94,7 +94,7 @@ int make_deck(const std::string& name, const std::string& from);
 struct ConcreteOptions {
   // quantities as typed; empty where they are not stated
   std::string strength, modulus, rock, fraction, stones, d_max, hot;
-  std::string d_min = "4.75 mm", width = "150 mm", height = "300 mm";
+  std::string d_min = "4.75 mm", width, height;
   std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %"
   std::int64_t blocks = 0;           ///< 0: by the largest aggregate
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed

@@ -37,9 +37,17 @@ constexpr double kOfFactor = 0.79;             // ... and with the factor on str
 
 /// Blocks in the diameter of the largest aggregate, where that gives a usual number of blocks.
 constexpr double kBlocksInAggregate = 5.0;
+constexpr const char *kWidth = "150 mm", *kHeight = "300 mm";  // of a specimen where nothing is said
 constexpr int kFewestBlocks = 1000, kMostBlocks = 5000;
 /// Block size, m, and time step, s, that go together in cases/.
 constexpr double kSizeOfCases = 3e-3, kStepOfCases = 10e-6;
+
+/// Largest relative difference of two numbers that count as one, of a deck's digits.
+constexpr double kAlike = 2e-3;
+
+bool are_alike(double a, double b) {
+  return std::abs(a - b) <= kAlike * std::max(std::abs(a), std::abs(b));
+}
 
 /// Numbers of mortar and contacts that are guessed or taken from a deck, SI.
 struct Found {
@@ -66,7 +74,10 @@ double quantity_of(const char* option, const std::string& text, const Unit& unit
   }
   if (!(value >= least && value <= most))
     throw Error(
-        fmt::format("{} \"{}\": must be between {:g} and {:g} {}", option, text, least, most, unit.si));
+        unit == unit::dimensionless
+            ? fmt::format("{} \"{}\": must be between {:g} and {:g}, or {:g} % and {:g} %", option, text,
+                          least, most, 100.0 * least, 100.0 * most)
+            : fmt::format("{} \"{}\": must be between {:g} and {:g} {}", option, text, least, most, unit.si));
   return value;
 }
 
@@ -99,8 +110,8 @@ Asked asked_of(const ConcreteOptions& o) {
   a.rock = &rock(o.rock);
   a.strength = quantity_of("--f_c", o.strength, unit::stress, 5e6, 150e6);
   a.modulus = quantity_of("--E", o.modulus, unit::stress, 5e9, 80e9);
-  a.width = quantity_of("--width", o.width, unit::length, 0.02, 2.0);
-  a.height = quantity_of("--height", o.height, unit::length, 0.02, 2.0);
+  a.width = quantity_of("--width", o.width.empty() ? kWidth : o.width, unit::length, 0.02, 2.0);
+  a.height = quantity_of("--height", o.height.empty() ? kHeight : o.height, unit::length, 0.02, 2.0);
   a.d_min = quantity_of("--d_min", o.d_min, unit::length, 5e-4, 0.1);
   a.passing = passing_of(o.passing);
   if (a.passing.sizes.empty() && o.d_max.empty())
@@ -220,7 +231,10 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
   over_temperature(v["MORTAR_E"], "glasgow_modulus", ", share = 0.87");
   v["MORTAR_E"] +=
       "\n# The share of the loss was fitted to a siliceous concrete (docs/validation/hot_concrete.md).";
-  for (const char* key : {"G_F1", "G_F2"}) over_temperature(v[key], "glasgow_fracture_energy", "");
+  for (const char* key : {"G_F1", "G_F2"}) {
+    over_temperature(v[key], "glasgow_fracture_energy", "");
+    v[key] += "  # literature, on concrete as a whole";
+  }
   v["HOT_CONCRETE"] = fmt::format(
       "[concrete]                   # strains of the phases follow from those of the concrete as a whole\n"
       "thermal_strain = {{ builtin = \"{}\" }}  # {}\n"
@@ -350,8 +364,9 @@ Found guess(const Asked& a, const ConcreteOptions& o) {
   return found;
 }
 
-/// Reads mortar and contacts from a deck.
-Found read(const std::filesystem::path& file) {
+/// Reads mortar and contacts from a deck, and takes the size of its specimen. Throws Error where it is not of
+/// the concrete that is asked for.
+Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a) {
   const Deck deck = Deck::open(file);
   const Setup setup = read_setup(deck, file.parent_path());  // refuses what is no deck
   const Section root = deck.root();
@@ -359,6 +374,22 @@ Found read(const std::filesystem::path& file) {
     return s.is_table(key) ? s.section(key).quantity("value", unit, Range::any(), "")
                            : s.quantity(key, unit, Range::any(), "");
   };
+  const auto require = [&](const char* what, double there, double asked, const char* option) {
+    if (!are_alike(there, asked))
+      throw Error(fmt::format(
+          "--from \"{}\": its {} is {:.3g}, but {} asks for {:.3g}; mortar and contacts are taken "
+          "from a deck of the same concrete",
+          file.string(), what, there, option, asked));
+  };
+  require("share of aggregate", setup.specimen.aggregates.fraction, a.fraction, "--fraction or --stones");
+  require("E of aggregate, in GPa,",
+          1e-9 * value_of(root.section("materials").section("aggregate"), "E", unit::stress),
+          a.rock->modulus.value, "--aggregate");
+  const specimen::Box box = setup.specimen.region.box();
+  if (!o.width.empty()) require("width, in m,", box.width(), a.width, "--width");
+  if (!o.height.empty()) require("height, in m,", box.height(), a.height, "--height");
+  a.width = box.width();
+  a.height = box.height();
   const Section contacts = root.section("contacts").section("mortar_mortar");
   Found found;
   const double paper = found.f_t;
@@ -372,6 +403,14 @@ Found read(const std::filesystem::path& file) {
   found.blocks = setup.specimen.blocks.count;
   found.factor = found.f_t / paper;
   return found;
+}
+
+/// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete.
+bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o) {
+  ConcreteOptions alike = o;
+  alike.blocks = found.blocks;
+  const Found first = guess(a, alike);
+  return are_alike(found.mortar_modulus, first.mortar_modulus) && are_alike(found.f_t, first.f_t);
 }
 
 std::string study_text(const Asked& a, const ConcreteOptions& o) {
@@ -397,7 +436,7 @@ log_uniform = [0.4, 2.5]
 [parameters.strength]
 keys = {{ "contacts.mortar_mortar.f_t" = 1, "contacts.mortar_mortar.f_cm" = 1, "contacts.mortar_mortar.c_o" = 1, "contacts.mortar_mortar.c_res" = 1, "contacts.mortar_mortar.G_f1" = 1, "contacts.mortar_mortar.G_f2" = 1 }}
 vary = "scale"
-log_uniform = [0.33, 3]
+log_uniform = [0.32, 3.125]
 
 [outputs]
 E = "E_GPa"
@@ -422,7 +461,7 @@ by = "strength"
 int write_concrete(const ConcreteOptions& options) {
   ConcreteOptions o = options;
   if (o.out.extension() != ".toml") o.out += ".toml";
-  const Asked asked = asked_of(o);
+  Asked asked = asked_of(o);
   const auto beside = [&](const char* ending) {
     return o.out.parent_path() / fmt::format("{}-{}.toml", o.out.stem().string(), ending);
   };
@@ -431,7 +470,7 @@ int write_concrete(const ConcreteOptions& options) {
     throw Error("--from takes mortar and contacts for a hot test: state --hot, such as --hot '400 degC'");
   if (!is_guess && o.blocks > 0)
     throw Error("--blocks has no meaning beside --from, whose number of blocks is kept");
-  const Found found = is_guess ? guess(asked, o) : read(o.from);
+  const Found found = is_guess ? guess(asked, o) : read(o.from, o, asked);
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   if (is_guess) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
@@ -446,13 +485,26 @@ int write_concrete(const ConcreteOptions& options) {
     write_text_file(file, text);
     fmt::print("{} is written\n", file.string());
   }
-  if (is_guess)
+  if (!o.stones.empty() || !asked.passing.sizes.empty())
+    fmt::print("coarse          {:.3g} of a section: what is larger than --d_min {:g} mm\n", asked.fraction,
+               1e3 * asked.d_min);
+  if (!is_guess) {
+    if (is_first_guess(found, asked, o))
+      fmt::print(
+          "warning         {} has the first guesses: run its calibration, and take the deck of its best "
+          "point\n",
+          o.from.string());
+    fmt::print("Next:\n  pyroclast run {} --seeds 3\n", o.out.string());
+    return 0;
+  }
+  fmt::print(
+      "first guesses   E of the mortar {:g} GPa, strengths {:g} times the paper's; {} blocks\nNext:\n"
+      "  pyroclast study run {}\n",
+      1e-9 * found.mortar_modulus, found.factor, found.blocks, beside("calibrate").string());
+  if (asked.hot)
     fmt::print(
-        "first guesses   E of the mortar {:g} GPa, strengths {:g} times the paper's; {} blocks\nNext:\n"
-        "  pyroclast study run {}\n",
-        1e-9 * found.mortar_modulus, found.factor, found.blocks, beside("calibrate").string());
-  else
-    fmt::print("Next:\n  pyroclast run {}\n", o.out.string());
+        "and then {} again, by this command with `--from runs/{}-calibrate/best.toml` and another -o\n",
+        beside("hot").string(), o.out.stem().string());
   return 0;
 }
 

@@ -285,11 +285,13 @@ int command_line(int argc, char** argv) {
       ->add_option("--d_min", concrete_options.d_min,
                    "Smallest coarse aggregate; the mortar has what is smaller")
       ->capture_default_str();
-  concrete->add_option("--width", concrete_options.width, "Of the specimen")->capture_default_str();
-  concrete->add_option("--height", concrete_options.height, "Of the specimen")->capture_default_str();
+  concrete->add_option("--width", concrete_options.width,
+                       "Of the specimen (default: 150 mm; with --from: its deck's)");
+  concrete->add_option("--height", concrete_options.height,
+                       "Of the specimen (default: 300 mm; with --from: its deck's)");
   concrete
       ->add_option("--blocks", concrete_options.blocks,
-                   "Number of blocks (default: 5 in the largest aggregate)")
+                   "Number of blocks (default: 5 in the largest aggregate, but 1000 to 5000 of them)")
       ->check(whole_number(100, 1000000));
   concrete->add_option("--hot", concrete_options.hot,
                        "Write a test at this temperature too: --hot '400 degC'");

@@ -19,6 +19,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/publish.hpp"
+#include "pyroclast/version.hpp"
 
 namespace pyroclast {
 
@@ -154,7 +155,8 @@ class CheckpointReader : public StateVisitor {
 
   void finish() const {
     for (const auto& [name, piece] : checkpoint_.pieces_)
-      if (!taken_.contains(name)) fail(fmt::format("holds \"{}\", which this run does not have", name));
+      if (!taken_.contains(name))
+        refuse_body(fmt::format("holds \"{}\", which this run does not have", name));
   }
   /// Reads all pieces. Throws Error for the first that is damaged.
   void verify() {
@@ -168,11 +170,11 @@ class CheckpointReader : public StateVisitor {
  protected:
   void visit_piece(const std::string& name, const Piece& piece) override {
     const auto found = checkpoint_.pieces_.find(name);
-    if (found == checkpoint_.pieces_.end()) fail(fmt::format("does not hold \"{}\"", name));
+    if (found == checkpoint_.pieces_.end()) refuse_body(fmt::format("does not hold \"{}\"", name));
     const CheckpointFile::Piece& kept = found->second;
     if (kept.item != piece.item || (!piece.resize && kept.count != piece.count))
-      fail(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count, kept.item, name,
-                       piece.count, piece.item));
+      refuse_body(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count,
+                              kept.item, name, piece.count, piece.item));
     read(name, kept, piece.resize ? piece.resize(kept.count) : piece.data);
     taken_.insert(name);
   }
@@ -188,6 +190,15 @@ class CheckpointReader : public StateVisitor {
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}", checkpoint_.path().string(), what));
+  }
+  /// Refuses what a run of this build would not have written.
+  [[noreturn]] void refuse_body(const std::string& what) const {
+    const CheckpointInfo& info = checkpoint_.info();
+    if (info.commit == kCommit) fail(what);
+    fail(fmt::format(
+        "{}; it was written by pyroclast {} ({}), and this is {} ({}): resume it with that build, or run "
+        "its deck anew",
+        what, info.version, info.commit, kVersion, kCommit));
   }
 
   const CheckpointFile& checkpoint_;

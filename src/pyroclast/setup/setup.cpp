@@ -151,7 +151,7 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const double size = s.largest_block_size(), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
   const bool is_heated_under_load =
-      any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
+      any([](const auto& stage) { return stage->held_stress() != 0.0; }) &&
       any([](const auto& stage) { return stage->heating().to || stage->heating().duration > 0.0; });
   const Section blocks = root.section("blocks");
   const char* const key = blocks.has("size") ? "size" : "count";

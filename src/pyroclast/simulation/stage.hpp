@@ -144,6 +144,9 @@ class Stage {
   virtual void check(const Simulation&, Acting&) const {}
   /// Tells whether the stage loads the body from outside.
   virtual bool loads() const { return false; }
+  /// Returns the stress that the stage brings on the upper platen and holds, Pa, compression positive; 0 where
+  /// it brings none.
+  virtual double held_stress() const { return 0.0; }
   /// Prepares supports and loads of the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;
   /// Moves on by one batch: at most `most_steps` steps of the mechanics, or evaluations of the heat solver.

@@ -25,6 +25,7 @@ class Load : public Stage {
 
   const char* kind() const override { return "load"; }
   StageNeeds needs() const override { return {.press = true}; }
+  double held_stress() const override { return keys_.stress; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;
