@@ -287,5 +287,39 @@ class Cylinder(unittest.TestCase):
             self.assertAlmostEqual(volume[phase == number].sum() / specimen.volume, share, delta=2e-3)
 
 
+class WithoutShortEdges(unittest.TestCase):
+    def test_faces_that_bend_are_kept_to_the_bit(self):
+        """A run begun again at a checkpoint, one of another number of threads, and one of blocks from a file."""
+        place = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, place)
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        deck["blocks"] = {"count": 150, "shortest_edge": 0.35, "largest_bend": "20 deg"}
+        deck["aggregates"].update(fraction=0.2, d_min="20 mm", sieves=[])
+        deck["stages[1]"].update(stop_strain=6e-4, ramp_time="2 ms", velocity="4 mm/s")
+        deck["output"].update(history_strain=2e-5, fields=False)
+        with pyroclast.Run(deck, out=place / "out", threads=1) as run:
+            run.finish()
+            made = run.specimen
+        facts = json.loads((place / "out/specimen/specimen.json").read_text())
+        self.assertGreater(facts["vertices_merged"], 300)
+        self.assertTrue(15.0 < facts["largest_bend_deg"] < 20.0 + 1e-9)
+        made.save(place / "cylinder.json")
+        read = pyroclast.SolidSpecimen.read(place / "cylinder.json")
+        for what in ("vertices", "neighbours", "phase"):
+            np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
+        deck["specimen"] = read
+        with pyroclast.Run(deck, out=place / "read", threads=2) as run:
+            run.finish()
+        again = json.loads((place / "read/specimen/specimen.json").read_text())
+        self.assertEqual(again["largest_bend_deg"], facts["largest_bend_deg"])
+        done = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked", "--no-figures"],
+                              cwd=place, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        want = (place / "out/history.csv").read_bytes()
+        self.assertGreater(want.count(b"\n"), 10)
+        for name in ("read", "forked"):
+            self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
+
+
 if __name__ == "__main__":
     unittest.main()

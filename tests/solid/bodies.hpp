@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "pyroclast/solid/prism.hpp"
 
 /// Bodies that the tests of solids share.
@@ -14,6 +16,13 @@ inline Prism cylinder(double diameter, double height) {
   const double radius = 0.5 * diameter;
   const auto corners = specimen::circle_corners({{radius, radius}}, diameter, diameter / 10.0);
   return {specimen::Region::polygon(corners, {"rim"}, true), Prism::Axis::y, height};
+}
+
+/// A box, a cylinder and a triangle drawn out.
+inline std::vector<Prism> bodies() {
+  const auto triangle =
+      specimen::Region::polygon({{{0.0, 0.0}}, {{0.1, 0.0}}, {{0.03, 0.08}}}, {"a", "b", "c"});
+  return {cuboid(0.1, 0.2, 0.05), cylinder(0.1, 0.2), Prism(triangle, Prism::Axis::z, 0.06)};
 }
 
 }  // namespace pyroclast::solid

@@ -22,12 +22,6 @@ Complex cells_of(const Prism& body, int count, double spread, std::uint64_t seed
   return result.complex;
 }
 
-std::vector<Prism> bodies() {
-  const auto triangle =
-      specimen::Region::polygon({{{0.0, 0.0}}, {{0.1, 0.0}}, {{0.03, 0.08}}}, {"a", "b", "c"});
-  return {cuboid(0.1, 0.2, 0.05), cylinder(0.1, 0.2), Prism(triangle, Prism::Axis::z, 0.06)};
-}
-
 // Promise: cells fill the body, and each is closed, to round-off.
 TEST(Complex, CellsFillTheBodyAndAreClosed) {
   for (const Prism& body : bodies())

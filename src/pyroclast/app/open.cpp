@@ -72,6 +72,10 @@ std::string describe_specimen(const solid::SolidSpecimen& s) {
   text += fmt::format(
       "                shortest edge {:.3g} mm, lowest zone {:.3g} mm, of block {}; {} seeds redrawn\n",
       kMilli * m.shortest_edge, kMilli * m.lowest_zone, m.lowest_zone_cell, m.seeds_redrawn);
+  if (m.vertices_merged > 0)
+    text += fmt::format(
+        "                {} vertices merged, {} edges left short, faces bent by up to {:.1f} deg\n",
+        m.vertices_merged, m.edges_left_short, m.largest_bend);
   return text;
 }
 

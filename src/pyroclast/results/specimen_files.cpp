@@ -147,6 +147,9 @@ void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen&
   json["most_corners_of_a_face"] = s.metrics.most_corners;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
   json["lowest_zone_m"] = s.metrics.lowest_zone;
+  json["vertices_merged"] = s.metrics.vertices_merged;
+  json["edges_left_short"] = s.metrics.edges_left_short;
+  json["largest_bend_deg"] = s.metrics.largest_bend;
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
   for (const solid::SizeClass& c : s.classes)
     json["size_classes"].push_back({{"kind", c.kind},

@@ -909,16 +909,27 @@ void read_groups(const Section& s, const specimen::NeperTess& tess, const std::v
   }
 }
 
-/// Reads the shortest edge. Cells of a solid keep their short edges.
-double read_shortest_edge(const Section& s, const DeckSpace& space) {
+/// Reads which edges are removed, and how far that may bend the faces of a solid.
+void read_regularity(const Section& s, const DeckSpace& space, specimen::BlockParameters& b) {
   constexpr Meaning kMeaning =
-      "shorter edges are removed where the blocks allow it; as a fraction of the mean edge. Blocks of a "
-      "solid keep theirs, so that it may be left out there";
+      "shorter edges are removed where the blocks allow it; as a fraction of the mean edge. In a solid it "
+      "may "
+      "be left out: 0 keeps all edges there";
+  constexpr double kBend = std::numbers::pi / 9.0;
+  constexpr std::string_view kKey = "largest_bend";
   const Range range = Range::between(0.0, 0.5);
-  if (!space.is_solid()) return s.number("shortest_edge", range, kMeaning);
-  if (s.number("shortest_edge", range, 0.0, kMeaning) > 0.0)
-    s.warn("shortest_edge", "has no effect on a solid, whose blocks keep their short edges");
-  return 0.0;
+  if (!space.is_solid()) {
+    b.shortest_edge = s.number("shortest_edge", range, kMeaning);
+    if (s.has(kKey)) s.error(kKey, "is for solids: blocks of the plane have straight edges");
+    return;
+  }
+  b.shortest_edge = s.number("shortest_edge", range, 0.0, kMeaning);
+  b.largest_bend = s.quantity(
+      kKey, unit::angle, Range::between(0.0, specimen::kMostBend), kBend,
+      "of a solid: the removal of short edges bends no face between blocks by more, so that no triangle of "
+      "it leaves its mean plane by a larger angle");
+  if (s.has(kKey) && b.shortest_edge == 0.0)
+    s.warn(kKey, "has no effect without shortest_edge: faces stay plane");
 }
 
 /// End of the name of a notch's tip.
@@ -974,7 +985,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
                        const DeckSpace& space, bool is_covered) {
   ReadBlocks read;
   specimen::BlockParameters& b = read.parameters;
-  b.shortest_edge = read_shortest_edge(s, space);
+  read_regularity(s, space, b);
   if (s.has("file") && space.is_solid())
     s.error("file", "holds cells of a plane; a solid makes its own blocks: count or size says how many");
   if (s.has("file")) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -26,6 +27,68 @@ Vec<3> area_vector(const Complex& complex, const CellFace& face) {
     doubled +=
         cross(at[face.corners[i]] - at[face.corners[0]], at[face.corners[i + 1]] - at[face.corners[0]]);
   return 0.5 * doubled;
+}
+
+double bend(const std::vector<Vec<3>>& at, const std::vector<int>& corners) {
+  Vec<3> all{};
+  const auto doubled = [&](std::size_t i) {
+    return cross(at[corners[i]] - at[corners[0]], at[corners[i + 1]] - at[corners[0]]);
+  };
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) all += doubled(i);
+  double largest = 0.0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    // exact for small angles too, where the cosine is not
+    largest = std::max(largest, std::atan2(norm(cross(doubled(i), all)), dot(doubled(i), all)));
+  return largest;
+}
+
+bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, double largest_bend) {
+  const auto begins_at = [&](std::size_t first) {
+    return corners.begin() + static_cast<std::ptrdiff_t>(first);
+  };
+  std::size_t best = corners.size();
+  double highest = -1.0;
+  for (std::size_t first = 0; first < corners.size(); ++first) {
+    double low = std::numeric_limits<double>::max();
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      const Vec<3>&a = at[corners[0]], &b = at[corners[i]], &c = at[corners[i + 1]];
+      const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+      low = std::min(low, norm(cross(b - a, c - a)) / longest);
+    }
+    if (low > highest && bend(at, corners) <= largest_bend) {
+      highest = low;
+      best = first;
+    }
+    std::ranges::rotate(corners, begins_at(1));
+  }
+  if (best == corners.size()) return false;
+  std::ranges::rotate(corners, begins_at(best));
+  return true;
+}
+
+double flatness(const Complex& complex, std::size_t cell, double size) {
+  const auto& at = complex.vertices;
+  const Vec<3>* first = nullptr;
+  Vec<3> moment{};
+  double all = 0.0;
+  for_each_triangle(complex, cell, [&](int a, int b, int c) {
+    if (first == nullptr) first = &at[a];
+    const Vec<3> x = at[a] - *first, y = at[b] - *first, z = at[c] - *first;
+    const double six = dot(x, cross(y, z));
+    moment += (x + y + z) * (0.25 * six);
+    all += six;
+  });
+  const Vec<3> centroid = *first + moment * (1.0 / all);
+  double sum = 0.0;
+  for_each_triangle(complex, cell, [&](int a, int b, int c) {
+    const Vec<3> x = at[a] - centroid, y = at[b] - centroid, z = at[c] - centroid;
+    const Vec<3> yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+    const double six = dot(x, yz);  // six times the volume, twice the surface: r is their quotient
+    const double surface = norm(yz) + norm(zx) + norm(xy) + norm(yz + zx + xy);
+    const double flat = size * surface / six;
+    sum += six > 0.0 ? six * (flat * flat) * (flat * flat) : std::numeric_limits<double>::infinity();
+  });
+  return sum / (6.0 * size * size * size);
 }
 
 double volume(const Complex& complex, std::size_t cell) {
@@ -64,6 +127,8 @@ void require_valid(const Complex& complex, const Prism& body, const std::string&
     if (vertices.size() + complex.cells[cell].size() != edges.size() + 2) fail(cell, "is not simple");
     const double its = volume(complex, cell);
     if (!(its > 0.0)) fail(cell, "has no volume");
+    if (!std::isfinite(flatness(complex, cell, 1.0)))
+      fail(cell, "turns a triangle of a face away from its centroid, so that it cannot be cut into zones");
     filled += its;
   }
   if (!(std::abs(filled - body.volume()) <= kVolumeError * body.volume()))

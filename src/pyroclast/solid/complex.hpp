@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,27 @@ void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
 /// face it is that of its mean plane.
 Vec<3> area_vector(const Complex& complex, const CellFace& face);
 
+/// Returns the bend of a face, rad: the largest angle between a triangle of its fan and its mean plane.
+/// \param at       places of vertices
+/// \param corners  vertices of the face
+double bend(const std::vector<Vec<3>>& at, const std::vector<int>& corners);
+
+/// Lets a face begin with the corner whose fan has the highest lowest triangle. Returns false where each fan
+/// is bent by more than `largest_bend`, rad.
+bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, double largest_bend);
+
+/// Returns how flat the zones of a cell are: the sum over zones of volume / r^4, in units of `size`, where r
+/// is the radius of the ball in the zone; infinite where a zone has no volume. Stiffness, and with it the
+/// mass of density scaling, goes with volume / r^2; the steps of real mass and of heat with the least r. The
+/// fourth power stands between both.
+double flatness(const Complex& complex, std::size_t cell, double size);
+
 /// Returns the volume of a cell, m³.
 double volume(const Complex& complex, std::size_t cell);
 
 /// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
-/// each vertex of a face stands once on it, and the volumes of all cells fill that of the body to 1e-9.
+/// each vertex of a face stands once on it, each zone of a cell has a volume, and the volumes of all cells
+/// fill that of the body to 1e-9.
 void require_valid(const Complex& complex, const Prism& body, const std::string& what);
 
 /// Cell cut into zones.

@@ -108,8 +108,6 @@ class Joiner {
  public:
   Joiner(std::vector<RawCell>& cells, const Prism& body) : cells_(cells), body_(body) {}
 
-  std::vector<int> planes;  ///< plane of each face; -1 within the body
-
   LaguerreComplex join() {
     number_vertices();
     result_.complex.cells.resize(cells_.size());
@@ -171,8 +169,8 @@ class Joiner {
       if (beyond >= 0) waiting_[key(cell, beyond)] = number;
       const int plane = beyond >= 0 ? -1 : kFirstPlane - beyond,
                 side = plane < 0 ? -1 : body_.planes()[plane].side;
-      turn_to_best_fan(loop);
-      planes.push_back(plane);
+      turn_to_best_fan(result_.complex.vertices, loop, std::numeric_limits<double>::infinity());
+      result_.plane.push_back(plane);
       complex.faces.push_back({std::move(loop), cell, -1, side});
       complex.cells[cell].push_back(number);
     }
@@ -186,29 +184,6 @@ class Joiner {
     if (first == other.end()) return false;
     std::ranges::rotate(other, first);
     return loop == other;
-  }
-
-  /// Lets a face begin with the corner whose fan has the highest lowest triangle.
-  void turn_to_best_fan(std::vector<int>& loop) const {
-    const auto& at = result_.complex.vertices;
-    const auto lowest = [&](std::size_t first) {
-      double low = std::numeric_limits<double>::max();
-      for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-        const Vec<3>&a = at[loop[first]], &b = at[loop[(first + i) % loop.size()]],
-              &c = at[loop[(first + i + 1) % loop.size()]];
-        const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-        low = std::min(low, norm(cross(b - a, c - a)) / longest);
-      }
-      return low;
-    };
-    std::size_t best = 0;
-    double highest = -1.0;
-    for (std::size_t first = 0; first < loop.size(); ++first)
-      if (const double low = lowest(first); low > highest) {
-        highest = low;
-        best = first;
-      }
-    std::ranges::rotate(loop, loop.begin() + static_cast<std::ptrdiff_t>(best));
   }
 
   std::vector<RawCell>& cells_;
@@ -250,7 +225,7 @@ LaguerreComplex laguerre_complex(const SolidSeeds& seeds, const Prism& body, Tea
   LaguerreComplex result = joiner.join();
   const Spacings spacings(seeds, body);
   for (Vec<3>& v : result.complex.vertices) v = spacings.in_metres(v);
-  snap(result.complex, body, joiner.planes);
+  snap(result.complex, body, result.plane);
   return result;
 }
 

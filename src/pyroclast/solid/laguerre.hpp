@@ -11,6 +11,7 @@ namespace pyroclast::solid {
 /// Complex, or the seeds that prevent it.
 struct LaguerreComplex {
   Complex complex;          ///< cell i belongs to seed i; complete only when `broken` is empty
+  std::vector<int> plane;   ///< plane of the body on which each face lies; -1 within it
   std::vector<int> broken;  ///< seeds whose cell is empty or does not match its neighbours, ascending
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -71,38 +72,69 @@ void require_numbers(const std::vector<std::vector<int>>& lists, const char* ite
   }
 }
 
-/// Returns the mean of the places of some vertices.
-Vec<3> mean_place(const Complex& complex, const std::vector<int>& vertices) {
-  Vec<3> sum{};
-  for (const int v : vertices) sum += complex.vertices[v];
-  return sum * (1.0 / static_cast<double>(vertices.size()));
+/// Tells for each face of a cell whether it goes counter-clockwise seen from outside. A face that shares an
+/// edge with one before walks it the other way; then the volume tells in which sense all go.
+std::vector<bool> outward_faces(const Complex& complex, std::size_t cell) {
+  const auto& faces = complex.cells[cell];
+  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, bool>>> at_edge;  // face, walks it upwards
+  const auto for_each_edge = [&](std::size_t i, auto f) {
+    const auto& loop = complex.faces[faces[i]].corners;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const int from = loop[k], to = loop[(k + 1) % loop.size()];
+      f(at_edge[std::minmax(from, to)], from < to);
+    }
+  };
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for_each_edge(i, [i](auto& its, bool is_up) { its.emplace_back(i, is_up); });
+  std::vector<bool> is_outward(faces.size(), true), is_known(faces.size());
+  std::vector<std::size_t> next{0};
+  is_known[0] = true;
+  while (!next.empty()) {
+    const std::size_t i = next.back();
+    next.pop_back();
+    for_each_edge(i, [&](const auto& its, bool is_up) {
+      for (const auto& [other, is_its_up] : its) {
+        if (is_known[other]) continue;
+        is_known[other] = true;
+        is_outward[other] = is_outward[i] == (is_its_up != is_up);
+        next.push_back(other);
+      }
+    });
+  }
+  double filled = 0.0;
+  const Vec<3>& origin = complex.vertices[complex.faces[faces[0]].corners[0]];
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto& loop = complex.faces[faces[i]].corners;
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
+      const Vec<3> a = complex.vertices[loop[0]] - origin, b = complex.vertices[loop[k]] - origin,
+                   c = complex.vertices[loop[k + 1]] - origin;
+      filled += dot(a, cross(b, c)) * (is_outward[i] ? 1.0 : -1.0);
+    }
+  }
+  if (filled < 0.0) is_outward.flip();
+  return is_outward;
 }
 
 /// Finds the cells on both sides of each face, and turns the faces of the surface outwards.
 void find_neighbours(Complex& complex) {
-  std::vector<std::vector<int>> cells_of(complex.faces.size());
-  std::vector<Vec<3>> middle;
+  std::vector<std::vector<std::pair<int, bool>>> cells_of(complex.faces.size());
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
-    Vec<3> sum{};
-    for (const int f : complex.cells[cell]) {
-      cells_of[f].push_back(static_cast<int>(cell));
-      sum += mean_place(complex, complex.faces[f].corners);
-    }
-    middle.push_back(sum * (1.0 / static_cast<double>(complex.cells[cell].size())));
+    const auto is_outward = outward_faces(complex, cell);
+    for (std::size_t i = 0; i < is_outward.size(); ++i)
+      cells_of[complex.cells[cell][i]].emplace_back(static_cast<int>(cell), is_outward[i]);
   }
   for (std::size_t f = 0; f < complex.faces.size(); ++f) {
     CellFace& face = complex.faces[f];
     const auto& cells = cells_of[f];
     if (cells.empty() || cells.size() > 2)
       throw Error(fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", f, cells.size()));
-    const Vec<3> from_first = mean_place(complex, face.corners) - middle[cells[0]];
-    const bool is_of_first = dot(area_vector(complex, face), from_first) > 0.0;
+    const auto [first, is_of_first] = cells[0];
     if (cells.size() == 1) {
-      face.inner = cells[0];
+      face.inner = first;
       if (!is_of_first) std::reverse(face.corners.begin() + 1, face.corners.end());
     } else {
-      face.inner = cells[is_of_first ? 0 : 1];
-      face.outer = cells[is_of_first ? 1 : 0];
+      face.inner = cells[is_of_first ? 0 : 1].first;
+      face.outer = cells[is_of_first ? 1 : 0].first;
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -13,6 +14,7 @@
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/solid/laguerre.hpp"
+#include "pyroclast/solid/regularisation.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/placement.hpp"
 
@@ -67,15 +69,23 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.
 Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random& random, Team* team,
-                   int& seeds_redrawn) {
+                   CellMetrics& done) {
   SolidSeeds seeds = spaced_seeds(body, p.count, p.radius_spread, random);
+  const std::string what = fmt::format("Tessellation of {} blocks", p.count);
   for (int round = 0; round < kMostRounds; ++round) {
     LaguerreComplex result = laguerre_complex(seeds, body, team);
     if (result.broken.empty()) {
-      require_valid(result.complex, body, fmt::format("Tessellation of {} blocks", p.count));
+      require_valid(result.complex, body, what);
+      if (p.shortest_edge > 0.0) {
+        const auto regular =
+            regularise(result.complex, body, result.plane, {p.shortest_edge, p.largest_bend});
+        done.vertices_merged = regular.vertices_merged;
+        done.edges_left_short = regular.edges_left_short;
+        require_valid(result.complex, body, what);
+      }
       return std::move(result.complex);
     }
-    seeds_redrawn += static_cast<int>(result.broken.size());
+    done.seeds_redrawn += static_cast<int>(result.broken.size());
     redraw(seeds, result.broken, body, random);
   }
   throw Error(
@@ -131,7 +141,11 @@ CellMetrics measure(const Complex& complex, const Prism& body) {
   for (const CellFace& face : complex.faces) {
     const auto corners = static_cast<int>(face.corners.size());
     zones += static_cast<std::size_t>(corners - 2) * (face.outer >= 0 ? 2 : 1);
-    if (face.outer >= 0) metrics.most_corners = std::max(metrics.most_corners, corners);
+    if (face.outer >= 0) {
+      metrics.most_corners = std::max(metrics.most_corners, corners);
+      metrics.largest_bend =
+          std::max(metrics.largest_bend, bend(complex.vertices, face.corners) * 180.0 / std::numbers::pi);
+    }
     for (int i = 0; i < corners; ++i)
       metrics.shortest_edge = std::min(
           metrics.shortest_edge,
@@ -185,7 +199,8 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   specimen.phases = specimen::phases(p);
   const int matrix = place_in(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
-  specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics.seeds_redrawn);
+  CellMetrics done;
+  specimen.complex = tessellate(p.blocks, body, block_random, team, done);
   const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
   specimen.covered_fraction = superposed.covered_fraction;
   std::vector<double> volumes;
@@ -198,9 +213,10 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
     if (specimen.phase.back() != matrix) specimen.fraction_superposed += volumes.back() / body.volume();
   }
   specimen.classes = classes_of(kinds, specimen, superposed.stone, volumes);
-  const int redrawn = specimen.metrics.seeds_redrawn;
   specimen.metrics = measure(specimen.complex, body);
-  specimen.metrics.seeds_redrawn = redrawn;
+  specimen.metrics.vertices_merged = done.vertices_merged;
+  specimen.metrics.edges_left_short = done.edges_left_short;
+  specimen.metrics.seeds_redrawn = done.seeds_redrawn;
   return specimen;
 }
 

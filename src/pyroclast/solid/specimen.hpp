@@ -28,6 +28,9 @@ struct CellMetrics {
   int lowest_zone_cell = -1;     ///< cell of this zone
   double zones_per_block = 0.0;  ///< mean number of zones
   int most_corners = 0;          ///< most corners of a face between blocks
+  double largest_bend = 0.0;     ///< largest bend of a face, see bend(); degrees
+  int vertices_merged = 0;       ///< vertices that became one with another
+  int edges_left_short = 0;      ///< edges that are shorter than asked for
   int seeds_redrawn = 0;         ///< seeds drawn anew because their cell was empty or matched no neighbour
 };
 
@@ -49,11 +52,12 @@ struct SolidSpecimen {
 /// Makes a specimen by gradation, placement, tessellation and superposition, in this order, as in the plane
 /// but with balls, by volume. Throws Error when a parameter is out of range, the aggregates do not fit, the
 /// placed fraction is off by more than 0.01, or no tessellation can be made.
-/// \param parameters  parameters, whose region and shortest edge are not read
+/// \param parameters  parameters, whose region is not read
 /// \param team        team that shares the cells out; without a team the calling thread works alone
 SolidSpecimen make_specimen(const specimen::SpecimenParameters& parameters, const Prism& body,
                             Team* team = nullptr);
 
+/// Measures blocks. What has been done to them stays 0.
 CellMetrics measure(const Complex& complex, const Prism& body);
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.

@@ -66,6 +66,8 @@ void require_valid(const FibreParameters& p) {
 void require_valid(const BlockParameters& p) {
   require(p.shortest_edge >= 0.0 && p.shortest_edge <= 0.5, "The shortest edge", p.shortest_edge,
           "0 to 0.5 of the mean edge");
+  require(p.largest_bend >= 0.0 && p.largest_bend <= kMostBend, "The largest bend", p.largest_bend,
+          "0 to pi / 6");
   if (p.tessellation && !p.phases.empty() && p.phase.size() != p.tessellation->cells.size())
     throw Error(fmt::format("The phases of {} blocks are known; allowed are those of all {}.", p.phase.size(),
                             p.tessellation->cells.size()));

@@ -124,6 +124,10 @@ struct Numbering {
   std::string cell(std::size_t number) const;
 };
 
+/// Largest bend that may be allowed to the faces between blocks of a solid, rad: triangles of a face that is
+/// bent by more look different ways.
+inline constexpr double kMostBend = std::numbers::pi / 6.0;
+
 /// Tessellation asked for.
 struct BlockParameters {
   int count = 0;  ///< number of blocks, with the finer ones
@@ -137,6 +141,7 @@ struct BlockParameters {
   /// True where blocks follow the surfaces of grains, by mirrored seeds; then nothing is superposed but
   /// fibres.
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
+  double largest_bend = 0.0;   ///< of a face between blocks of a solid, in [0, kMostBend], rad
   /// Tessellation of the region, made elsewhere and still to be regularised; then only `shortest_edge`
   /// counts.
   std::optional<Tessellation> tessellation;

@@ -1,0 +1,390 @@
+#include "pyroclast/solid/regularisation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "pyroclast/base/sort_unique.hpp"
+
+namespace pyroclast::solid {
+
+namespace {
+
+/// Rounds of merges, after each of which vertices move; a third one merges hardly any more.
+constexpr int kRounds = 3;
+/// Moves of each vertex after the merges of a round; further ones make zones hardly rounder.
+constexpr int kMoves = 5;
+/// First way by which a vertex moves, and the shortest one, in sizes of a block. Ways are halved.
+constexpr double kFirstWay = 0.1, kShortestWay = 1e-3;
+/// A vertex whose zones become rounder by less in a move is near its best place, so that its way is halved.
+constexpr double kLittle = 0.02;
+/// Cosine of the angle to a plane from which on an axis tells no way along it.
+constexpr double kAcross = 0.3;
+/// Share of its flatness by which a fan must be better than another, beyond rounding.
+constexpr double kRounding = 1e-9;
+
+/// Edge of a complex that is too short.
+struct ShortEdge {
+  std::array<int, 2> ends;  ///< vertices, ascending
+  double length;            ///< m
+};
+
+/// Complex whose vertices merge and move. Faces that have vanished have no corners until `clean`.
+class CellRegulariser {
+ public:
+  CellRegulariser(Complex& complex, const Prism& body, const std::vector<int>& plane,
+                  const RegularCells& asked)
+      : complex_(complex),
+        body_(body),
+        asked_(asked),
+        size_(std::cbrt(body.volume() / static_cast<double>(complex.cells.size()))),
+        planes_(complex.vertices.size()),
+        faces_at_(complex.vertices.size()),
+        way_(complex.vertices.size(), kFirstWay * size_) {
+    for (std::size_t f = 0; f < complex.faces.size(); ++f)
+      for (const int v : complex.faces[f].corners) {
+        faces_at_[v].push_back(static_cast<int>(f));
+        if (plane[f] >= 0) planes_[v].push_back(plane[f]);
+      }
+    for (auto& planes : planes_) sort_unique(planes);
+    for (std::size_t cell = 0; cell < complex.cells.size(); ++cell)
+      flatness_.push_back(flatness(complex, cell, size_));
+  }
+
+  RegularisedCells run() {
+    RegularisedCells done;
+    for (int round = 0; round < kRounds; ++round) {
+      done.vertices_merged += merge_all();
+      for (int i = 0; i < kMoves; ++i) {
+        for (std::size_t f = 0; f < complex_.faces.size(); ++f) turn(complex_.faces[f]);
+        for (int v = 0; v < static_cast<int>(faces_at_.size()); ++v) move(v);
+      }
+    }
+    done.edges_left_short = static_cast<int>(short_edges().size());
+    clean();
+    return done;
+  }
+
+ private:
+  /// Merges short edges and small faces as long as one can be merged. Returns the number of vertices that
+  /// have gone.
+  int merge_all() {
+    int gone = 0;
+    for (bool changed = true; changed;) {
+      const int before = gone;
+      for (const ShortEdge& edge : short_edges())
+        if (merge({edge.ends.begin(), edge.ends.end()})) ++gone;
+      for (const CellFace& face : complex_.faces) {
+        if (!is_small(face.corners)) continue;
+        const std::vector<int> corners = face.corners;
+        if (merge(corners)) gone += static_cast<int>(corners.size()) - 1;
+      }
+      changed = gone > before;
+    }
+    return gone;
+  }
+
+  /// Sets the limit from the mean of the edges as they are now. Returns the edges that are too short,
+  /// shortest first.
+  std::vector<ShortEdge> short_edges() {
+    std::vector<std::array<int, 2>> edges;
+    for (const CellFace& face : complex_.faces)
+      for (std::size_t i = 0; i < face.corners.size(); ++i) {
+        const auto [low, high] = std::minmax(face.corners[i], face.corners[(i + 1) % face.corners.size()]);
+        edges.push_back({low, high});
+      }
+    sort_unique(edges);
+    std::vector<ShortEdge> found;
+    double sum = 0.0;
+    for (const auto& ends : edges) {
+      found.push_back({ends, norm(at(ends[1]) - at(ends[0]))});
+      sum += found.back().length;
+    }
+    shortest_ = asked_.shortest_edge * sum / static_cast<double>(edges.size());
+    std::erase_if(found, [this](const ShortEdge& edge) { return edge.length >= shortest_; });
+    std::ranges::stable_sort(found, {}, &ShortEdge::length);
+    return found;
+  }
+
+  /// Tells whether the corners of a face are nearer to each other than an edge may be short.
+  bool is_small(const std::vector<int>& corners) const {
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (norm(at(corners[i]) - at(corners[j])) >= shortest_) return false;
+    return !corners.empty();
+  }
+
+  /// Merges vertices into the first of them, at the place where zones become roundest. Returns false, and
+  /// changes nothing, where none is allowed.
+  bool merge(const std::vector<int>& group) {
+    if (std::ranges::any_of(group, [this](int v) { return faces_at_[v].empty(); })) return false;
+    std::vector<int> planes, faces;
+    for (const int v : group) {
+      planes.insert(planes.end(), planes_[v].begin(), planes_[v].end());
+      faces.insert(faces.end(), faces_at_[v].begin(), faces_at_[v].end());
+    }
+    sort_unique(planes);
+    sort_unique(faces);
+    const std::vector<Vec<3>> places = places_of(group, planes);
+    if (places.empty()) return false;
+    const std::vector<int> cells = cells_of(faces);
+    const auto before = loops_of(faces);
+    const int kept = group.front();
+    const Vec<3> place_before = at(kept);
+    if (!contract(group, faces) || !std::ranges::all_of(cells, [this](int cell) { return is_ball(cell); }) ||
+        !put_best(kept, places, faces, cells)) {
+      complex_.vertices[kept] = place_before;
+      put(faces, before);
+      return false;
+    }
+    planes_[kept] = planes;
+    for (const int v : group) faces_at_[v].clear();
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (const CellFace& face = complex_.faces[faces[i]]; face.corners.empty()) {
+        std::erase(complex_.cells[face.inner], faces[i]);
+        if (face.outer >= 0) std::erase(complex_.cells[face.outer], faces[i]);
+        for (const int v : before[i]) std::erase(faces_at_[v], faces[i]);
+      } else {
+        faces_at_[kept].push_back(faces[i]);
+      }
+    }
+    for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+    return true;
+  }
+
+  /// Returns the places where vertices may merge: on all planes of the body on which any of them lies.
+  std::vector<Vec<3>> places_of(const std::vector<int>& group, const std::vector<int>& planes) const {
+    std::vector<Vec<3>> places;
+    for (const int v : group)
+      if (planes_[v] == planes) places.push_back(at(v));
+    if (places.size() == 2 && group.size() == 2) {
+      const Vec<3> from = places[0], edge = places[1] - places[0];
+      for (const double share : {0.25, 0.5, 0.75}) places.push_back(from + share * edge);
+    } else if (places.size() > 1) {
+      Vec<3> sum{};
+      for (const Vec<3>& place : places) sum += place;
+      places.push_back(sum * (1.0 / static_cast<double>(places.size())));
+    }
+    return places;
+  }
+
+  /// Lets the first of some vertices take the places of all in the corners of faces. Faces with two corners
+  /// left vanish. Returns false where a face would meet itself.
+  bool contract(const std::vector<int>& group, const std::vector<int>& faces) {
+    const int kept = group.front();
+    for (const int f : faces) {
+      auto& loop = complex_.faces[f].corners;
+      for (int& v : loop)
+        if (std::ranges::find(group, v) != group.end()) v = kept;
+      loop.erase(std::unique(loop.begin(), loop.end()), loop.end());  // Clang 14 cannot do ranges::unique
+      while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+      if (std::ranges::count(loop, kept) > 1) return false;
+      if (loop.size() < 3) loop.clear();
+    }
+    return true;
+  }
+
+  /// Tells whether a cell has four faces, an opposite edge for each edge, and the Euler number of a ball.
+  bool is_ball(int cell) {
+    auto& edges = edges_;
+    edges.clear();
+    int faces = 0;
+    for (const int f : complex_.cells[cell]) {
+      const auto& [loop, inner, outer, side] = complex_.faces[f];
+      if (!loop.empty()) ++faces;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const int from = loop[i], to = loop[(i + 1) % loop.size()];
+        edges.push_back(inner == cell ? std::array{from, to} : std::array{to, from});
+      }
+    }
+    std::ranges::sort(edges);
+    int vertices = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const auto [from, to] = edges[i];
+      if (i == 0 || from != edges[i - 1][0]) ++vertices;
+      if (i > 0 && edges[i] == edges[i - 1]) return false;
+      if (!std::ranges::binary_search(edges, std::array{to, from})) return false;
+    }
+    return faces >= 4 && vertices + faces == static_cast<int>(edges.size()) / 2 + 2;
+  }
+
+  /// Puts a vertex at the one of some places where the zones of cells become roundest, and turns the fans of
+  /// its faces for it. Returns false where no place makes them rounder than they were.
+  bool put_best(int vertex, const std::vector<Vec<3>>& places, const std::vector<int>& faces,
+                const std::vector<int>& cells) {
+    const auto contracted = loops_of(faces);
+    std::optional<Vec<3>> best;
+    std::vector<std::vector<int>> best_loops;
+    double least = known_flatness(cells);
+    for (const Vec<3>& place : places) {
+      complex_.vertices[vertex] = place;
+      put(faces, contracted);
+      if (!std::ranges::all_of(faces, [this](int f) { return turn_to_fan_allowed(complex_.faces[f]); }))
+        continue;
+      if (const double flat = flatness_up_to(least, cells); flat < least) {
+        least = flat;
+        best = place;
+        best_loops = loops_of(faces);
+      }
+    }
+    if (!best) return false;
+    complex_.vertices[vertex] = *best;
+    put(faces, best_loops);
+    return true;
+  }
+
+  bool turn_to_fan_allowed(CellFace& face) const {
+    if (face.corners.empty()) return true;
+    return turn_to_best_fan(complex_.vertices, face.corners,
+                            face.outer < 0 ? std::numeric_limits<double>::infinity() : asked_.largest_bend);
+  }
+
+  bool is_bent_too_far(const CellFace& face) const {
+    return face.outer >= 0 && bend(complex_.vertices, face.corners) > asked_.largest_bend;
+  }
+
+  /// Turns a face to the fan that makes zones roundest.
+  void turn(CellFace& face) {
+    auto& loop = face.corners;
+    if (loop.size() < 4) return;
+    std::vector<int> cells{face.inner};
+    if (face.outer >= 0) cells.push_back(face.outer);
+    double least = known_flatness(cells) * (1.0 - kRounding);
+    std::vector<int> best;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      if (i > 0 && !is_bent_too_far(face)) {
+        if (const double flat = flatness_up_to(least, cells); flat < least) {
+          least = flat;
+          best = loop;
+        }
+      }
+      std::ranges::rotate(loop, loop.begin() + 1);
+    }
+    if (best.empty()) return;
+    loop = best;
+    for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+  }
+
+  /// Moves a vertex along the planes of the body on which it lies, where that makes zones rounder.
+  void move(int vertex) {
+    if (faces_at_[vertex].empty() || way_[vertex] < kShortestWay * size_) return;
+    const std::vector<int> cells = cells_of(faces_at_[vertex]);
+    const double before = known_flatness(cells);
+    double least = before;
+    for (const Vec<3>& along : ways_of(vertex))
+      for (const double way : {way_[vertex], -way_[vertex]}) {
+        const Vec<3> place = at(vertex);
+        complex_.vertices[vertex] = place + along * way;
+        const bool is_allowed = std::ranges::none_of(
+            faces_at_[vertex], [this](int f) { return is_bent_too_far(complex_.faces[f]); });
+        if (const double flat = is_allowed ? flatness_up_to(least, cells) : least; flat < least) {
+          least = flat;
+          break;
+        }
+        complex_.vertices[vertex] = place;
+      }
+    if (least > (1.0 - kLittle) * before) way_[vertex] *= 0.5;
+    if (least < before)
+      for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+  }
+
+  /// Returns the ways in which a vertex may move: the axes, as far as they lie along its planes.
+  std::vector<Vec<3>> ways_of(int vertex) const {
+    const auto& planes = planes_[vertex];
+    std::vector<Vec<3>> ways;
+    if (planes.size() > 2) return ways;
+    const auto normal = [&](std::size_t i) { return body_.planes()[planes[i]].normal; };
+    for (int d = 0; d < 3; ++d) {
+      Vec<3> way{};
+      way[d] = 1.0;
+      if (planes.size() == 1) way -= normal(0) * dot(normal(0), way);
+      if (planes.size() == 2) {
+        const Vec<3> line = cross(normal(0), normal(1));
+        way = line * (dot(line, way) / dot(line, line));
+      }
+      if (const double length = norm(way); length > kAcross) ways.push_back(way * (1.0 / length));
+    }
+    return ways;
+  }
+
+  std::vector<int> cells_of(const std::vector<int>& faces) const {
+    std::vector<int> cells;
+    for (const int f : faces)
+      for (const int cell : {complex_.faces[f].inner, complex_.faces[f].outer})
+        if (cell >= 0) cells.push_back(cell);
+    sort_unique(cells);
+    return cells;
+  }
+
+  double known_flatness(const std::vector<int>& cells) const {
+    double sum = 0.0;
+    for (const int cell : cells) sum += flatness_[cell];
+    return sum;
+  }
+
+  /// Returns the flatness of cells, or of the first of them when it has come to a limit.
+  double flatness_up_to(double limit, const std::vector<int>& cells) const {
+    double sum = 0.0;
+    for (const int cell : cells)
+      if (sum += flatness(complex_, cell, size_); !(sum < limit)) break;
+    return sum;
+  }
+
+  std::vector<std::vector<int>> loops_of(const std::vector<int>& faces) const {
+    std::vector<std::vector<int>> loops;
+    for (const int f : faces) loops.push_back(complex_.faces[f].corners);
+    return loops;
+  }
+  void put(const std::vector<int>& faces, const std::vector<std::vector<int>>& loops) {
+    for (std::size_t i = 0; i < faces.size(); ++i) complex_.faces[faces[i]].corners = loops[i];
+  }
+
+  /// Takes out the vertices and faces that have gone.
+  void clean() {
+    std::vector<int> vertex(complex_.vertices.size(), -1), number(complex_.faces.size(), -1);
+    std::vector<Vec<3>> vertices;
+    std::vector<CellFace> faces;
+    for (std::size_t v = 0; v < vertex.size(); ++v)
+      if (!faces_at_[v].empty()) {
+        vertex[v] = static_cast<int>(vertices.size());
+        vertices.push_back(complex_.vertices[v]);
+      }
+    for (std::size_t f = 0; f < number.size(); ++f)
+      if (!complex_.faces[f].corners.empty()) {
+        number[f] = static_cast<int>(faces.size());
+        faces.push_back(std::move(complex_.faces[f]));
+        for (int& v : faces.back().corners) v = vertex[v];
+      }
+    for (auto& cell : complex_.cells)
+      for (int& f : cell) f = number[f];
+    complex_.vertices = std::move(vertices);
+    complex_.faces = std::move(faces);
+  }
+
+  const Vec<3>& at(int v) const { return complex_.vertices[v]; }
+
+  Complex& complex_;
+  const Prism& body_;
+  RegularCells asked_;
+  double size_;                             ///< of a block, m
+  double shortest_ = 0.0;                   ///< limit of edges, m
+  std::vector<std::vector<int>> planes_;    ///< planes of the body on which each vertex lies, ascending
+  std::vector<std::vector<int>> faces_at_;  ///< faces at each vertex; none: merged into another
+  std::vector<double> way_;                 ///< by which each vertex moves next, m
+  std::vector<double> flatness_;            ///< of each cell
+  std::vector<std::array<int, 2>> edges_;   ///< scratch of is_ball
+};
+
+}  // namespace
+
+RegularisedCells regularise(Complex& complex, const Prism& body, const std::vector<int>& plane,
+                            const RegularCells& asked) {
+  return CellRegulariser(complex, body, plane, asked).run();
+}
+
+}  // namespace pyroclast::solid

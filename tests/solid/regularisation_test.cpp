@@ -1,0 +1,171 @@
+#include "pyroclast/solid/regularisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "pyroclast/solid/laguerre.hpp"
+#include "pyroclast/solid/specimen.hpp"
+
+namespace pyroclast::solid {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr RegularCells kAsked{.shortest_edge = 0.35, .largest_bend = 20.0 * kDegree};
+
+struct Cells {
+  Complex raw, merged;
+  RegularisedCells done;
+};
+
+Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked = kAsked) {
+  Random random(3);
+  const LaguerreComplex made = laguerre_complex(spaced_seeds(body, count, 0.3, random), body);
+  Cells cells{made.complex, made.complex, {}};
+  cells.done = regularise(cells.merged, body, made.plane, asked);
+  return cells;
+}
+
+double mean_flatness(const Complex& complex, const Prism& body) {
+  const auto count = static_cast<double>(complex.cells.size());
+  double sum = 0.0;
+  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell)
+    sum += flatness(complex, cell, std::cbrt(body.volume() / count));
+  return sum / count;
+}
+
+// Promise: hardly an edge stays short, the lowest zone becomes much higher, faces bend by no more than asked,
+// and what is told is so.
+TEST(Regularisation, RemovesShortEdgesAndFlatZones) {
+  for (const Prism& body : bodies()) {
+    const Cells cells = raw_and_merged(body, 300);
+    const CellMetrics before = measure(cells.raw, body), after = measure(cells.merged, body);
+    EXPECT_EQ(cells.raw.vertices.size() - cells.merged.vertices.size(),
+              static_cast<std::size_t>(cells.done.vertices_merged));
+    EXPECT_LE(cells.done.edges_left_short, 15);  // of some 2,000
+    EXPECT_GT(after.shortest_edge, 20.0 * before.shortest_edge);
+    EXPECT_GT(after.lowest_zone, 20.0 * before.lowest_zone);
+    EXPECT_LT(after.zones_per_block, 0.75 * before.zones_per_block);
+    EXPECT_LE(after.most_corners, before.most_corners);  // a merge never adds a corner to a face
+    EXPECT_LT(mean_flatness(cells.merged, body), 1e-3 * mean_flatness(cells.raw, body));
+    EXPECT_LE(after.largest_bend, 20.0 + 1e-9);
+    EXPECT_GT(after.largest_bend, 15.0);  // the bound is used
+  }
+}
+
+// Promise: merged cells fill the body, are closed, and keep the area of each of its sides, to round-off.
+TEST(Regularisation, KeepsTheBodyAndItsSides) {
+  for (const Prism& body : bodies()) {
+    const Cells cells = raw_and_merged(body, 300);
+    require_valid(cells.merged, body, "merged cells");
+    double filled = 0.0;
+    for (std::size_t cell = 0; cell < cells.merged.cells.size(); ++cell) {
+      filled += volume(cells.merged, cell);
+      Vec<3> sum{};
+      double area = 0.0;
+      for (const int f : cells.merged.cells[cell]) {
+        const CellFace& face = cells.merged.faces[f];
+        sum += area_vector(cells.merged, face) * (face.inner == static_cast<int>(cell) ? 1.0 : -1.0);
+        area += norm(area_vector(cells.merged, face));
+      }
+      EXPECT_LT(norm(sum), 1e-12 * area);
+      const ZonedCell zoned = zone_cell(cells.merged, cell);
+      const auto& x = zoned.gridpoints;
+      for (const auto& [a, b, c, d] : zoned.zones)
+        EXPECT_GT(dot(cross(x[b] - x[a], x[c] - x[a]), x[d] - x[a]), 0.0);
+    }
+    EXPECT_NEAR(filled, body.volume(), 1e-12 * body.volume());
+    std::vector<Vec<3>> before(body.sides().size()), after = before;
+    for (const CellFace& face : cells.raw.faces)
+      if (face.side >= 0) before[face.side] += area_vector(cells.raw, face);
+    for (const CellFace& face : cells.merged.faces) {
+      if (face.side < 0) continue;
+      after[face.side] += area_vector(cells.merged, face);
+      EXPECT_LT(bend(cells.merged.vertices, face.corners), 1e-6);
+      for (const int v : face.corners)
+        EXPECT_NEAR(body.distance(cells.merged.vertices[v]), 0.0, 1e-12 * body.high()[1]);
+    }
+    for (std::size_t side = 0; side < before.size(); ++side)
+      EXPECT_LT(norm(after[side] - before[side]), 1e-12 * body.high()[1] * body.high()[1]);
+  }
+}
+
+// Promise: a stretch of a side, such as the rim under a seat, keeps its ends.
+TEST(Regularisation, KeepsStretchesOfSides) {
+  const double radius = 0.05;
+  const std::vector<double> ends{-0.6 * std::numbers::pi, -0.4 * std::numbers::pi};
+  auto corners = specimen::circle_corners({{radius, radius}}, 2.0 * radius, 0.01, ends);
+  std::vector<std::string> sides;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec<2> middle = 0.5 * (corners[i] + corners[(i + 1) % corners.size()]);
+    sides.push_back(middle[1] < 0.01 * radius ? "seat" : "rim");
+  }
+  const Prism body(specimen::Region::polygon(corners, sides), Prism::Axis::z, 0.04);
+  const Cells cells = raw_and_merged(body, 250);
+  std::vector<double> before(body.sides().size()), after = before;
+  for (const CellFace& face : cells.raw.faces)
+    if (face.side >= 0) before[face.side] += norm(area_vector(cells.raw, face));
+  for (const CellFace& face : cells.merged.faces)
+    if (face.side >= 0) after[face.side] += norm(area_vector(cells.merged, face));
+  for (std::size_t side = 0; side < before.size(); ++side)
+    EXPECT_NEAR(after[side], before[side], 1e-12 * before[side]) << body.sides()[side];
+}
+
+// Promise: a smaller bound of the bend is kept too, and leaves more edges short.
+TEST(Regularisation, BendsNoFaceByMoreThanAsked) {
+  const Prism body = cuboid(0.1, 0.1, 0.1);
+  int left = -1;
+  for (const double degrees : {20.0, 10.0, 5.0, 0.0}) {
+    const Cells cells = raw_and_merged(body, 200, {0.35, degrees * kDegree});
+    require_valid(cells.merged, body, "merged cells");
+    EXPECT_LE(measure(cells.merged, body).largest_bend, degrees + 1e-5);
+    EXPECT_GT(cells.done.edges_left_short, left);
+    left = cells.done.edges_left_short;
+  }
+}
+
+TEST(Regularisation, IsTheSameForAnyNumberOfThreads) {
+  specimen::SpecimenParameters p;
+  p.seed = 2;
+  p.blocks.count = 200;
+  p.blocks.radius_spread = 0.3;
+  p.blocks.shortest_edge = 0.35;
+  p.blocks.largest_bend = 0.3;
+  p.aggregates.phase = p.matrix;
+  const Prism body = cylinder(0.1, 0.2);
+  const SolidSpecimen alone = make_specimen(p, body);
+  EXPECT_GT(alone.metrics.vertices_merged, 0);
+  Team team(3);
+  const SolidSpecimen shared = make_specimen(p, body, &team);
+  EXPECT_TRUE(shared.complex.vertices == alone.complex.vertices);
+  EXPECT_TRUE(shared.complex.cells == alone.complex.cells);
+}
+
+// Promise: the bend of a square with a corner lifted is the angle between its triangles and its mean plane.
+TEST(Bend, IsTheLargestAngleToTheMeanPlane) {
+  const double lift = 0.3;
+  const std::vector<Vec<3>> at{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, lift}}, {{0, 1, 0}}};
+  // the diagonal from the lifted corner: normals (0, -lift, 1) and (-lift, 0, 1), mean (-lift/2, -lift/2, 1)
+  const double cosine = (lift * lift / 2 + 1) / std::sqrt((lift * lift + 1) * (lift * lift / 2 + 1));
+  EXPECT_NEAR(bend(at, {0, 1, 2, 3}), std::acos(cosine), 1e-12);
+  EXPECT_EQ(bend(at, {0, 1, 2}), 0.0);
+  std::vector<int> corners{0, 1, 2, 3};
+  EXPECT_FALSE(turn_to_best_fan(at, corners, 0.5 * std::acos(cosine)));
+  EXPECT_TRUE(turn_to_best_fan(at, corners, 1.0));
+}
+
+// Promise: a cube's zones have r = 3 V / S, each 1/12 of the cube under half of a face.
+TEST(Flatness, OfACubeIsThatOfItsZones) {
+  const Prism body = cuboid(1.0, 1.0, 1.0);
+  const Complex cube = laguerre_complex({{{{0.5, 0.5, 0.5}}}, {0.5}}, body).complex;
+  const double surface = 0.5 + 3.0 * std::sqrt(2.0) / 4.0, radius = 3.0 / 12.0 / surface;
+  EXPECT_NEAR(flatness(cube, 0, 1.0), std::pow(radius, -4.0), 1e-9);
+  EXPECT_NEAR(flatness(cube, 0, 2.0), 2.0 * std::pow(radius, -4.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace pyroclast::solid
