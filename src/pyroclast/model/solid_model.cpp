@@ -182,6 +182,12 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
   name_contacts(model, "specimen", 0);
   add_bearings(false);
 
+  // a block may touch a side in an edge or a corner alone
+  std::vector<std::vector<int>> gridpoints_at(complex.vertices.size());
+  for (std::size_t cell = 0; cell < vertices.size(); ++cell)
+    for (std::size_t i = 0; i < vertices[cell].size(); ++i)
+      gridpoints_at[vertices[cell][i]].push_back(
+          model.block_gridpoints[first_block + static_cast<int>(cell)] + static_cast<int>(i));
   for (const std::string& side : sides) model.sets[side];
   const bool has_quarters = specimen.body.axis() == solid::Prism::Axis::y;
   std::vector<std::string> of_sides;
@@ -196,7 +202,8 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
     if (has_quarters && sides[side] == "rim")
       names.emplace_back(quarter_of(solid::area_vector(complex, complex.faces[f])));
     for (const std::string& name : names) {
-      model.sets[name].insert(model.sets[name].end(), its.begin(), its.end());
+      auto& set = model.sets[name];
+      for (const int v : corners) set.insert(set.end(), gridpoints_at[v].begin(), gridpoints_at[v].end());
       if (std::ranges::find(of_sides, name) == of_sides.end()) of_sides.push_back(name);
     }
     for (std::size_t i = 0; i < bearings.size(); ++i) {
@@ -208,7 +215,7 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
       name_contacts(model, bearings[i].name, first_contact);
     }
   }
-  // a corner of a block may belong to several faces
+  // a corner may belong to several faces
   for (const std::string& name : of_sides) sort_unique(model.sets[name]);
   return model;
 }
