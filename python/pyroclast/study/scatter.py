@@ -7,7 +7,7 @@ import csv
 import io
 import subprocess
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +50,8 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
         reasons = sorted({str(row["reason"]) for row in rows})
         raise Error(f"no seed gave a result: {'; '.join(reasons[:3])}")
     for line in _lines(found, len(rows)):
+        say(line)
+    for line in _warnings([run.summary for run in _runs(study, rows)]):
         say(line)
     write_text(out / "scatter.csv", _table(found))
     say(f"table           {out / 'scatter.csv'}; the runs: {out / 'table.csv'}")
@@ -123,6 +125,24 @@ def _digits(s: ensemble.Summary) -> int:
     return int(np.clip(2 + np.floor(np.log10(abs(s.mean))) - np.floor(np.log10(half)), 1, 6))
 
 
+def _warnings(summaries: Sequence[Mapping[str, Any]]) -> list[str]:
+    """A line for each kind of warning: of how many specimens, and how the first of them says it.
+
+    Warnings are of one kind where they are alike up to the first colon; numbers stand behind it.
+    """
+    kinds: dict[str, list[str]] = {}
+    for summary in summaries:
+        told = [*summary.get("warnings", []), *(w for stage in summary["stages"] for w in stage.get("warnings", []))]
+        for head, text in {text.partition(":")[0]: text for text in reversed(told)}.items():
+            kinds.setdefault(head, []).append(text)
+    return [f"warning         {len(texts)} of {len(summaries)} specimens: {texts[0]}" for texts in kinds.values()]
+
+
+def _runs(study: Study, rows: Sequence[dict[str, Any]]) -> list[Results]:
+    """Runs that came to an end."""
+    return [Results(study.setup.folder / "runs" / str(row["run"])) for row in rows if row["state"] in ("done", "no value")]
+
+
 def _table(found: dict[str, ensemble.Summary]) -> str:
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
@@ -135,15 +155,14 @@ def _table(found: dict[str, ensemble.Summary]) -> str:
 def _draw(study: Study, rows: Sequence[dict[str, Any]], found: dict[str, ensemble.Summary], out: Path,
           options: argparse.Namespace, say: Callable[[str], None]) -> None:
     """The curves of all seeds with their band, and all pictures of the specimen in the middle."""
-    runs = [Results(study.setup.folder / "runs" / str(row["run"])) for row in rows if row["state"] in ("done", "no value")]
     try:
-        say(f"figure          {save(compare_seeds(runs), out / 'figures' / 'seeds.png')}")
+        say(f"figure          {save(compare_seeds(_runs(study, rows)), out / 'figures' / 'seeds.png')}")
     except Error as error:
         say(f"no band         {error}")
     name = next((key for key in _HEADLINE if key in found), next(iter(found)))
     known = sorted((float(row[name]), int(row["seed"])) for row in rows if row[name] is not None)
     seed = known[(len(known) - 1) // 2][1]
-    say(f"median          seed {seed}, by {name}: its pictures are in {out / 'median/figures'}")
+    say(f"median          seed {seed}, by {name}: runs again for its pictures, {out / 'median/figures'}")
     words = [options.program, "run", str(Path(options.study)), "--of-study", "--seed", str(seed), "--out", str(out / "median"),
              "--overwrite", "--quiet"]
     for change in options.set or []:
