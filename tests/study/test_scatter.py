@@ -64,7 +64,7 @@ class Seeds(StudyTest):
         self.assertTrue(all(row["E_GPa"] for row in rows))
         self.assertRegex(done.stdout, "(?m)^2 of 2 runs$")
         self.assertNotIn("without a value", done.stdout)
-        self.assertRegex(done.stdout, "(?m)^warning         2 of 2 specimens: no f_c: the stage ended before a peak")
+        self.assertRegex(done.stdout, "(?m)^warning         2 of 2 runs: no f_c: the stage ended before a peak")
 
     def test_a_deck_in_error_is_told_as_by_a_single_run(self):
         for words in (("--set", "blocks.cuont=60"), ("--set", "blocks.count=-1")):

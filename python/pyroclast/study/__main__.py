@@ -79,6 +79,8 @@ def _run(options: argparse.Namespace) -> int:
         reasons = {str(row["reason"]) for row in study.rows()}
         print(f"error: no run gave a value: {'; '.join(sorted(reasons)[:3])}", file=sys.stderr)
         return 1
+    for line in study.warnings():
+        say(f"warning         {line}")
     is_met = _say_best(study, say) if study.setup.method.kind in WITH_A_BEST else True
     say(f"to draw it      pyroclast study report {options.study}")
     return 0 if is_met else 1

@@ -37,6 +37,7 @@ WITH_A_BEST = ("calibrate", "secant")
 
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
+_FEW = 30  # runs of which each is told when it is done
 _PROGRESS = 1.0  # s between two lines of progress
 _BEGINS_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # in a cell of a spreadsheet
 
@@ -319,7 +320,7 @@ class _Progress:
         self._done += 1
         has_value = any(value is not None for value, _ in result.outputs.values())
         self._failed += result.state in FAILED and not has_value
-        if time.monotonic() - self._last > _PROGRESS:
+        if self._total <= _FEW or time.monotonic() - self._last > _PROGRESS:
             self.end()
 
     def end(self) -> None:

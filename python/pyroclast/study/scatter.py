@@ -7,7 +7,7 @@ import csv
 import io
 import subprocess
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +51,8 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
         raise Error(f"no seed gave a result: {'; '.join(reasons[:3])}")
     for line in _lines(found, len(rows)):
         say(line)
-    for line in _warnings([run.summary for run in _runs(study, rows)]):
-        say(line)
+    for line in study.warnings():
+        say(f"warning         {line}")
     write_text(out / "scatter.csv", _table(found))
     say(f"table           {out / 'scatter.csv'}; the runs: {out / 'table.csv'}")
     if not options.no_figures:
@@ -123,19 +123,6 @@ def _digits(s: ensemble.Summary) -> int:
     if not np.isfinite(half) or half <= 0.0 or s.mean == 0.0:
         return 4
     return int(np.clip(2 + np.floor(np.log10(abs(s.mean))) - np.floor(np.log10(half)), 1, 6))
-
-
-def _warnings(summaries: Sequence[Mapping[str, Any]]) -> list[str]:
-    """A line for each kind of warning: of how many specimens, and how the first of them says it.
-
-    Warnings are of one kind where they are alike up to the first colon; numbers stand behind it.
-    """
-    kinds: dict[str, list[str]] = {}
-    for summary in summaries:
-        told = [*summary.get("warnings", []), *(w for stage in summary["stages"] for w in stage.get("warnings", []))]
-        for head, text in {text.partition(":")[0]: text for text in reversed(told)}.items():
-            kinds.setdefault(head, []).append(text)
-    return [f"warning         {len(texts)} of {len(summaries)} specimens: {texts[0]}" for texts in kinds.values()]
 
 
 def _runs(study: Study, rows: Sequence[dict[str, Any]]) -> list[Results]:

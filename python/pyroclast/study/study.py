@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import signal
 import sys
@@ -132,6 +133,20 @@ class Study:
     def count_values(self) -> int:
         """Runs that gave a value of every output."""
         return self._driver().count_values()
+
+    def warnings(self) -> list[str]:
+        """Warnings of the runs whose summaries are kept: of each kind how many runs have it, and how the first says it.
+
+        Warnings are of one kind where they are alike up to the first colon; numbers stand behind it.
+        """
+        kinds: dict[str, list[str]] = {}
+        files = [self.setup.folder / "runs" / str(row["run"]) / "summary.json" for row in self.rows()]
+        summaries = [json.loads(file.read_text(encoding="utf-8")) for file in files if file.exists()]
+        for summary in summaries:
+            told = [*summary.get("warnings", []), *(w for s in summary.get("stages", []) for w in s.get("warnings", []))]
+            for head, text in {text.partition(":")[0]: text for text in reversed(told)}.items():
+                kinds.setdefault(head, []).append(text)
+        return [f"{len(texts)} of {len(summaries)} runs: {texts[0]}" for texts in kinds.values()]
 
     def count_begun(self) -> int:
         """Runs that are under way or were broken off: begun, without a result."""

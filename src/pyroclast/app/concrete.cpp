@@ -60,6 +60,7 @@ struct Found {
 /// Concrete as it is asked for, SI.
 struct Asked {
   double strength = 0.0, modulus = 0.0, fraction = 0.0, width = 0.0, height = 0.0, d_min = 0.0, d_max = 0.0;
+  double coarse = 1.0;  ///< share of the stones that is larger than d_min
   const Rock* rock = nullptr;
   specimen::GradingCurve passing;  ///< empty: Fuller's curve
   std::optional<double> hot;       ///< °C
@@ -132,8 +133,8 @@ Asked asked_of(const ConcreteOptions& o) {
     a.fraction = quantity_of("--fraction", o.fraction, unit::dimensionless, 0.0, 0.6);
   } else {
     const double mass = quantity_of("--stones", o.stones, unit::density, 0.0, 3000.0);
-    const double coarse = a.passing.sizes.empty() ? 1.0 : 1.0 - specimen::share_at(a.passing, a.d_min);
-    a.fraction = mass / a.rock->density.value * coarse;
+    if (!a.passing.sizes.empty()) a.coarse = 1.0 - specimen::share_at(a.passing, a.d_min);
+    a.fraction = mass / a.rock->density.value * a.coarse;
     if (a.fraction > 0.6)
       throw Error(
           fmt::format("--stones \"{}\": {:.2f} of the volume would be coarse aggregate; at most 0.6 can be "
@@ -302,9 +303,10 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"FRACTION_SOURCE",
        o.stones.empty()
            ? "              # area of coarse aggregate over area of the specimen"
-           : fmt::format("  # {} of stones, {:g} kg/m3 their density; a section has the share of the "
-                         "volume (Delesse)",
-                         o.stones, a.rock->density.value)},
+           : fmt::format(
+                 "  # {:.3g} of {} of stones, {:g} kg/m3 their density; a section has the share of the "
+                 "volume (Delesse)",
+                 a.coarse, o.stones, a.rock->density.value)},
       {"GRADING", grading(a)},
       {"BLOCKS", std::to_string(found.blocks)},
       {"SIZE", fmt::format("{:.2g}", 1e3 * size)},
