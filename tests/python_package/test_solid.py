@@ -294,9 +294,10 @@ class WithoutShortEdges(unittest.TestCase):
         self.addCleanup(shutil.rmtree, place)
         deck = pyroclast.Deck(CASES / "starter_3d.toml")
         deck["blocks"] = {"count": 150, "shortest_edge": 0.35, "largest_bend": "20 deg"}
-        deck["aggregates"].update(fraction=0.2, d_min="20 mm", sieves=[])
-        deck["stages[1]"].update(stop_strain=3e-4, ramp_time="2 ms", velocity="4 mm/s")
-        deck["output"].update(history_strain=2e-5, fields=False)
+        deck.update(aggregates={"fraction": 0.2, "d_min": "20 mm", "sieves": []},
+                    output={"history_strain": 2e-5, "fields": False})
+        for key, value in (("stop_strain", 6e-4), ("ramp_time", "2 ms"), ("velocity", "4 mm/s")):
+            deck[f"stages[1].{key}"] = value
         with pyroclast.Run(deck, out=place / "out", threads=1) as run:
             run.finish()
             made = run.specimen
