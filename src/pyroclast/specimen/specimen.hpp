@@ -157,10 +157,10 @@ struct Cells {
   Tessellation tessellation;
   std::vector<std::string> phases;  ///< phases that the blocks can have
   std::vector<int> phase;           ///< phase of each block, index into `phases`
-  /// Size that each block was to have, in the unit of the vertices, as Specimen has it; empty where blocks are
-  /// alike.
+  /// Size that each block was to have, in the unit of the vertices, as Specimen has it; empty where blocks
+  /// are alike.
   std::vector<double> size = {};
-  std::string origin = {};          ///< text that begins messages, such as the name of a file; may be empty
+  std::string origin = {};  ///< text that begins messages, such as the name of a file; may be empty
 };
 
 struct SpecimenParameters {
