@@ -122,17 +122,17 @@ class Views:
 
     @property
     def displacement(self) -> Array:
-        """(slots, 2), m."""
+        """(slots, dimension), m."""
         return self._core.view("displacement")
 
     @property
     def velocity(self) -> Array:
-        """(packs, 2, 8), m/s."""
+        """(packs, dimension, 8), m/s."""
         return self._core.view("velocity")
 
     @property
     def force(self) -> Array:
-        """(packs, 2, 8), N: sums of all forces."""
+        """(packs, dimension, 8), N: sums of all forces."""
         return self._core.view("force")
 
     @property
@@ -145,8 +145,8 @@ class Views:
 
 class Fields(Mapping[str, Array]):
     """Fields of gridpoints and zones now, by name with unit, `run.fields["stress_Pa"]`, or without,
-    `run.fields.stress`: (items,) numbers, (items, 2) vectors x and y, (items, 6) symmetric tensors xx, yy, zz, xy, yz,
-    xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/lookup/fields.md lists them.
+    `run.fields.stress`: (items,) numbers, (items, dimension) vectors x, y and of a solid z, (items, 6) symmetric
+    tensors xx, yy, zz, xy, yz, xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/lookup/fields.md lists them.
     """
 
     def __init__(self, core: _core.Session):
@@ -699,7 +699,7 @@ class Run:
 
     @property
     def position(self) -> Array:
-        """(gridpoints, 2), m: when the body was made."""
+        """(gridpoints, dimension), m: when the body was made."""
         return self._core.copied("position")
 
     @property

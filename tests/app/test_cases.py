@@ -63,7 +63,8 @@ class Cases(unittest.TestCase):
         self.assertLess(value, high)
 
     def test_each_completes_and_its_ledger_closes(self):
-        for case in ("biaxial", "brazilian", "direct_tension", "notched_beam", "ring_cooling", "wall_bent"):
+        for case in ("biaxial", "biaxial_3d", "brazilian", "compression_3d", "cube_3d", "direct_tension", "disc_3d",
+                     "notched_beam", "ring_cooling", "wall_bent"):
             with self.subTest(case):
                 summary = finished(case).summary
                 self.assertEqual([stage["outcome"] for stage in summary["stages"]],
@@ -96,6 +97,13 @@ class Cases(unittest.TestCase):
         self.assertGreater(cold_bonds, 1.02 * borne)
         self.assertGreater(finished("hot_strength", "materials.mortar.E=29.4 GPa").of("E_GPa"),
                            1.05 * as_it_stands.of("E_GPa"))
+
+    def test_a_plate_in_space_bears_its_stresses_in_their_ratio(self):
+        plate = finished("biaxial_3d")
+        self.assertAlmostEqual(plate.of("ratio"), 0.5, delta=0.01)
+        self.assert_between(20.0, -plate.of("f_1_MPa"), 60.0)
+        # free faces: the swelling is controlled, and grows evenly
+        self.assertGreater(plate.column("swelling_m")[-1], 0.0)
 
     def test_reactions_of_the_beam_bear_load_and_weight(self):
         run = finished("notched_beam")

@@ -532,6 +532,18 @@ class Creep(Case):
         area[run.block_material[run.zone_block] == len(run.material_names) - 1] = 0.0
         return (field * area[:, None]).sum(axis=0) / area.sum()
 
+    def test_a_half_goes_on_from_a_checkpoint(self):
+        folder = self.folder()
+        whole = pyroclast.Run(deck(specimen__symmetry=["left"]), out=folder / "whole", threads=1).finish()
+        run = pyroclast.Run(deck(specimen__symmetry=["left"]), out=folder / "run", threads=1)
+        run.until(strain=1e-4)
+        run.checkpoint()
+        run.close()
+        run = pyroclast.Run.resume(folder / "run", threads=1).finish()
+        self.assertEqual(history(folder / "whole"), history(folder / "run"))
+        self.assertEqual(abs(run.fields.displacement[run.sets["left_symmetry"], 0]).max(), 0.0)
+        self.assertEqual(run.outcome, whole.outcome)
+
     def test_what_crept_is_the_strain_of_the_load_in_arrays_and_fields_and_after_a_resume(self):
         folder = self.folder()
         whole = pyroclast.Run(self.creeping(), out=folder / "whole", threads=1)

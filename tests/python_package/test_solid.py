@@ -322,5 +322,30 @@ class WithoutShortEdges(unittest.TestCase):
             self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
 
 
+class Script(unittest.TestCase):
+    """A run of a solid in this process."""
+
+    def test_arrays_have_three_coordinates(self):
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        deck["blocks.count"], deck["aggregates.fraction"] = 60, 0
+        run = pyroclast.Run(deck, threads=1)
+        run.until(steps=100)
+        gridpoints, zones = len(run.position), len(run.zones)
+        self.assertEqual((run.position.shape, run.zones.shape), ((gridpoints, 3), (zones, 4)))
+        for name, shape in (("displacement", (gridpoints, 3)), ("velocity", (gridpoints, 3)), ("stress_Pa", (zones, 6))):
+            self.assertEqual(run.fields[name].shape, shape, name)
+        self.assertEqual(run.views.displacement.shape[1:], (3,))
+        np.testing.assert_array_equal(run.views.displacement[run.slot], run.fields.displacement)
+        contacts = run.contacts()
+        self.assertLessEqual({"z_m", "area_m2"}, set(contacts))
+        self.assertEqual([cells.type for cells in run.to_meshio().cells], ["tetra"])
+        twin = run.copy()
+        for going in (run, twin):
+            going.drive("rim_left", pressure="1 MPa")
+            going.until(steps=100)
+        self.assertGreater(run.fields.displacement[run.sets["rim_left"], 0].mean(), 0.0)
+        np.testing.assert_array_equal(run.fields.displacement, twin.fields.displacement)
+
+
 if __name__ == "__main__":
     unittest.main()

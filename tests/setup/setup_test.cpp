@@ -126,9 +126,9 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
     EXPECT_NE(said.front().find(slip.said), std::string::npos) << said.front();
   }
   for (const char* name :
-       {"biaxial", "brazilian", "compression", "cyclic", "delamination_heat", "direct_tension",
-        "fire_one_side", "hot_compression", "notched_beam", "restrained_heating", "ring_cooling", "starter",
-        "thermal_wall", "transient_heating", "wall_bent"})
+       {"biaxial", "biaxial_3d", "brazilian", "compression", "cube_3d", "cyclic", "delamination_heat",
+        "direct_tension", "disc_3d", "fire_one_side", "hot_compression", "notched_beam", "restrained_heating",
+        "ring_cooling", "starter", "thermal_wall", "transient_heating", "wall_bent"})
     for (const auto& said : warned(shipped_case(name))) ADD_FAILURE() << name << ": " << said;
   EXPECT_EQ(warned(shipped_case("residual_capacity")).size(), 1u);  // properties come back on cooling
 }

@@ -89,6 +89,17 @@ class Converge(StudyTest):
                          ["stages[2].control.rate", "stages[2].duration"])
         self.assertNotIn("half the exchange step", beam)
 
+    def test_half_the_size_is_eight_times_the_blocks_of_a_solid(self):
+        solid = tomllib.loads((CASES / "starter_3d.toml").read_text())
+        found = {v.name: v.changes for v in converge.variants_of(solid)}
+        self.assertEqual(found["half the block size"][0], f"blocks.count={8 * solid['blocks']['count']}")
+        del solid["specimen"]["shape"]
+        solid["specimen"]["depth"] = "0.1 m"
+        self.assertEqual({v.name: v.changes for v in converge.variants_of(solid)}, found)
+        solid["blocks"] = {"size": "8 mm"}
+        found = {v.name: v.changes for v in converge.variants_of(solid)}
+        self.assertEqual(found["double the block size"][0], 'blocks.size="16.0 mm"')
+
     def test_effects_are_those_of_students_intervals(self):
         before, after = np.array([10.0, 11.0, 12.0]), np.array([10.1, 11.3, 12.2])
         paired = converge.effect("f_c", converge.Variant("a", ()), before, after)

@@ -27,6 +27,7 @@ _AS_IT_STANDS = "as it stands"
 # Of a stage, by its kind: keys that say how fast it goes, and keys that say for how long.
 _RATES = {"compress": ("velocity", "fastest_velocity"), "drive": ("control.rate",)}
 _TIMES = {"drive": ("duration",)}
+_FEWEST_BLOCKS = 20
 
 
 @dataclass(frozen=True)
@@ -92,14 +93,24 @@ def variants_of(deck: Mapping[str, Any]) -> list[Variant]:
         variants.append(Variant("half the rate", (*_scaled(deck, rates, 0.5), *_scaled(deck, times, 2.0))))
     if increments := _found(deck, ["coupling.exchange_increment"]):
         variants.append(Variant("half the exchange step", _scaled(deck, increments, 0.5)))
-    blocks = deck.get("blocks", {})
-    if "count" in blocks:
-        steps = _found(deck, ["mechanics.time_step"])
-        for name, factor in (("half the block size", 0.5), ("double the block size", 2.0)):
-            count = round(blocks["count"] / factor**2)
-            if count >= 20:
-                variants.append(Variant(name, (f"blocks.count={count}", *_scaled(deck, steps, factor)), False))
+    steps = _found(deck, ["mechanics.time_step"])
+    for name, factor in (("half the block size", 0.5), ("double the block size", 2.0)):
+        if blocks := _blocks_of_size(deck, factor):
+            variants.append(Variant(name, (*blocks, *_scaled(deck, steps, factor)), False))
     return variants
+
+
+def _blocks_of_size(deck: Mapping[str, Any], factor: float) -> tuple[str, ...]:
+    """The change that makes blocks so many times as large; none where they were made elsewhere or are too few."""
+    if found := _found(deck, ["blocks.size"]):
+        return _scaled(deck, found, factor)
+    count = deck.get("blocks", {}).get("count", 0) / factor ** _dimension(deck)
+    return (f"blocks.count={round(count)}",) if count >= _FEWEST_BLOCKS else ()
+
+
+def _dimension(deck: Mapping[str, Any]) -> int:
+    specimen = deck.get("specimen", {})
+    return 3 if "depth" in specimen or specimen.get("shape") == "cylinder" else 2
 
 
 def _found(deck: Mapping[str, Any], paths: Sequence[str]) -> list[str]:

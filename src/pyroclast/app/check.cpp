@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include "pyroclast/app/open.hpp"
@@ -121,6 +123,9 @@ int check(const RunOptions& options) {
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());
+  if (!model.symmetry.empty())
+    fmt::print("symmetry        a plane at {}: forces, energies and cracks are those of this part alone\n",
+               fmt::join(model.symmetry | std::views::transform(&PlaneOfSymmetry::side), ", at "));
   if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));

@@ -30,6 +30,18 @@ struct Contact : Joint {
   std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit tangents, right-handed and orthogonal with `normal`
 };
 
+/// Plane across an axis behind which the mirror image of a body stands: a side of the specimen lies in it,
+/// and gridpoints there do not leave it.
+struct PlaneOfSymmetry {
+  std::string side;        ///< name of the side
+  int component = 0;       ///< component of a position across the plane
+  double at = 0.0;         ///< this component in the plane, m
+  std::string deck_place;  ///< place in the deck that asks for it, for messages
+
+  /// Returns the name of the set of gridpoints in the plane, those of bearings included.
+  std::string set() const { return side + "_symmetry"; }
+};
+
 /// Body of deformable blocks, as flat arrays. It holds geometry only: no state, no material parameters.
 ///
 /// Every block owns its gridpoints and zones, which stand together in the arrays. Consecutive blocks make a
@@ -60,6 +72,8 @@ struct Model {
 
   std::map<std::string, std::vector<int>, std::less<>> sets;          ///< gridpoints of each set, by name
   std::map<std::string, std::vector<int>, std::less<>> contact_sets;  ///< contacts of each set, by name
+
+  std::vector<PlaneOfSymmetry> symmetry;
 
   virtual int dimension() const = 0;  ///< Returns 2 or 3.
   /// Returns the place of a gridpoint in the reference configuration, m.

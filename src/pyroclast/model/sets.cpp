@@ -1,6 +1,7 @@
 #include "pyroclast/model/sets.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -16,6 +17,9 @@
 namespace pyroclast {
 
 namespace {
+
+/// Distance from a plane of symmetry that counts as none, over the size of the specimen.
+constexpr double kInPlane = 1e-9;
 
 /// Largest distance from a bound or a line at which a point is on it, in sizes of the model.
 constexpr double kOnBound = 1e-9;
@@ -193,6 +197,22 @@ void add_sets(Model& model, const std::vector<SetParameters>& sets) {
     auto members = chosen(items, within, asked.place, slack);
     if (members.empty()) fail("is empty: nothing lies there");
     all[asked.name] = std::move(members);
+  }
+}
+
+void add_symmetry(Model& model, const std::vector<PlaneOfSymmetry>& planes) {
+  const auto& specimen = model.set("specimen");
+  double size = 0.0;
+  for (const int g : specimen) size = std::max(size, norm(model.place(g) - model.place(specimen.front())));
+  for (const PlaneOfSymmetry& plane : planes) {
+    std::vector<int> its = model.set(plane.side);
+    for (int block = 0; block < model.block_count(); ++block)
+      if (model.is_of_bearing(block))
+        for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
+          if (std::abs(model.place(g)[plane.component] - plane.at) <= kInPlane * size) its.push_back(g);
+    sort_unique(its);
+    model.sets[plane.set()] = std::move(its);
+    model.symmetry.push_back(plane);
   }
 }
 

@@ -54,6 +54,9 @@ struct SetParameters {
 /// lies farther from the body than a block is wide.
 void add_sets(Model& model, const std::vector<SetParameters>& sets);
 
+/// Makes sides of the specimen planes of symmetry, each with its set of gridpoints, see PlaneOfSymmetry.
+void add_symmetry(Model& model, const std::vector<PlaneOfSymmetry>& planes);
+
 using NamedSets = decltype(Model::sets);
 
 /// Returns, for messages, the names of the sets that are not empty, "outline, specimen"; "none" where all are

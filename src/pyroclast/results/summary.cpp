@@ -395,11 +395,15 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
       simulation.moves() && simulation.motion().parameters().kinematics == Kinematics::small;
   if (const auto row = is_small ? large_jump(run, s) : std::nullopt)
     s.warnings.push_back(fmt::format(
-        "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: with "
-        "mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical temperatures 8 to "
-        "28 K (docs/validation/jumps.md)",
+        "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: {} (docs/validation/"
+        "jumps.md)",
         *history.cell(*row, "temperature_degC"),
-        simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : ""));
+        simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : "",
+        simulation.model().dimension() == 2
+            ? "with mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical "
+              "temperatures "
+              "8 to 28 K"
+            : "blocks that turn would be softer there, but those of a solid cannot turn yet"));
   return s;
 }
 

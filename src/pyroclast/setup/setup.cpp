@@ -21,6 +21,7 @@
 #include "pyroclast/setup/read_space.hpp"
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
+#include "pyroclast/setup/read_symmetry.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast {
@@ -140,6 +141,24 @@ void check_heated_sides(const Section& root, const Setup& setup) {
     const std::string& part = setup.heat.boundaries[i].faces.part;
     if (std::ranges::find(names, part) == names.end())
       sections[i].error("faces", fmt::format("must be one of {}; got \"{}\"", fmt::join(names, ", "), part));
+  }
+}
+
+/// Records an error for a boundary on a plane of symmetry.
+void check_heated_symmetry(const Section& root, const HeatConditions& heat,
+                           const std::vector<PlaneOfSymmetry>& symmetry) {
+  for (std::size_t i = 0; i < heat.boundaries.size(); ++i) {
+    const std::string& part = heat.boundaries[i].faces.part;
+    const Section boundary = root.section("heat").optional_sections("boundaries")[i];
+    if (part == HeatedFaces::kOutline && !symmetry.empty())
+      boundary.error("faces",
+                     fmt::format("\"outline\" has \"{}\", a plane of symmetry (specimen.symmetry), through "
+                                 "which no heat flows: name the other sides, a boundary each",
+                                 symmetry.front().side));
+    if (std::ranges::find(symmetry, part, &PlaneOfSymmetry::side) != symmetry.end())
+      boundary.error(
+          "faces",
+          fmt::format("no heat flows through \"{}\", a plane of symmetry (specimen.symmetry)", part));
   }
 }
 
@@ -372,6 +391,10 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
         setup);
   else
     read_resting(root, curves, setup);
+  const auto symmetry =
+      read_symmetry(root, setup.specimen, setup.moving ? setup.moving->bearings : std::vector<Bearing>());
+  if (root.ok()) check_heated_symmetry(root, setup.heat, symmetry);
+  if (setup.moving) setup.moving->symmetry = symmetry;
   setup.records = records;
   if (setup.moving) setup.moving->stress_free = read.stress_free;
   setup.curves = curves.curves();

@@ -17,6 +17,7 @@ struct MovingBody {
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
+  std::vector<PlaneOfSymmetry> symmetry;
   MechanicsParameters mechanics;
   int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
 };

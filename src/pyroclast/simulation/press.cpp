@@ -154,15 +154,23 @@ double Press::volume() const {
   return between_.area * between_.height;
 }
 
+/// Returns the plane of symmetry across a direction; null where there is none.
+const PlaneOfSymmetry* Press::symmetry_across(std::size_t direction) const {
+  for (const PlaneOfSymmetry& plane : motion_.model().symmetry)
+    if (plane.component == across_[direction]) return &plane;
+  return nullptr;
+}
+
 /// Returns the rise over the width of the line on which the specimen stands: the edge of the lower hull of
 /// its lower end that lies under the middle.
-double Press::rise_of_stand() const {
+double Press::rise_of_stand(std::size_t direction) const {
   struct Point {
     double across, up;  // position across the axis, and displacement along it
   };
   std::vector<Point> points;
   for (int g : set("bottom"))
-    points.push_back({motion_.model().place(g)[across_[0]], motion_.read().displacement(g)[between_.axis]});
+    points.push_back(
+        {motion_.model().place(g)[across_[direction]], motion_.read().displacement(g)[between_.axis]});
   std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.across, p.up); });
   const auto turns_left = [](const Point& a, const Point& b, const Point& c) {
     return (b.across - a.across) * (c.up - b.up) - (b.up - a.up) * (c.across - b.across) > 0.0;
@@ -206,19 +214,27 @@ Press::Clearances Press::clearances(const Up& up) const {
           motion_.totals().mean_displacement(summed("top_platen_face"))[between_.axis] - highest};
 }
 
-/// Returns the middle between the sides, m: about it an even motion turns and widens the specimen.
+/// Returns the middle between the sides, or a plane of symmetry, m: about it an even motion turns and widens
+/// the specimen.
 std::array<double, 2> Press::middle_across() const {
   std::array<double, 2> middle{};
   for (std::size_t d = 0; d < across_.size(); ++d)
-    middle[d] = 0.5 * (mean_position(motion_.model(), summed(between_.sides[d][0]), across_[d]) +
-                       mean_position(motion_.model(), summed(between_.sides[d][1]), across_[d]));
+    if (const PlaneOfSymmetry* const plane = symmetry_across(d))
+      middle[d] = plane->at;
+    else
+      middle[d] = 0.5 * (mean_position(motion_.model(), summed(between_.sides[d][0]), across_[d]) +
+                         mean_position(motion_.model(), summed(between_.sides[d][1]), across_[d]));
   return middle;
 }
 
 Press::EvenMotion Press::to_touch() const {
   std::array<double, 2> tilt{}, middle{};
-  if (across_.size() == 1) {
-    tilt[0] = -rise_of_stand();
+  if (!motion_.model().symmetry.empty()) {
+    for (std::size_t d = 0; d < across_.size(); ++d)
+      if (symmetry_across(d) == nullptr) tilt[d] = -rise_of_stand(d);
+    middle = middle_across();
+  } else if (across_.size() == 1) {
+    tilt[0] = -rise_of_stand(0);
     // This middle is not that of the motion, so the lift is off by the tilt times their distance: too little
     // to change results for it.
     middle[0] = mean_position(motion_.model(), specimen(), across_[0]);
@@ -323,6 +339,8 @@ void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_foll
 void Press::end_even_motion(bool platen_follows) {
   for (int g : set("specimen"))
     for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().release(g, i);
+  for (const PlaneOfSymmetry& plane : motion_.model().symmetry)
+    for (int g : set(plane.set())) motion_.constraints().prescribe_velocity(g, plane.component, 0.0);
   if (!platen_follows) return;
   for (int g : set("top_platen")) motion_.constraints().release(g, between_.axis);
 }

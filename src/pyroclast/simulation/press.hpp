@@ -89,7 +89,8 @@ class Press {
   double height() const { return between_.height; }
   double volume() const;  ///< Returns the volume of the specimen, m³.
   /// Returns the motion that sets the specimen down on the lower platen, and the upper platen on the
-  /// specimen. The specimen then stands on two points on either side of its middle, in 3D on three around it.
+  /// specimen. The specimen then stands on two points on either side of its middle, in 3D on three around it;
+  /// it tilts towards no plane of symmetry.
   EvenMotion to_touch() const;
   /// Returns the largest way that a gridpoint of the specimen goes in a motion without strain, m.
   double way(const EvenMotion& motion) const;
@@ -112,9 +113,10 @@ class Press {
   const GridpointSet& summed(std::string_view name) const { return summed_.find(name)->second; }
   double shortening(std::string_view top, std::string_view bottom) const;
   double widening(std::size_t direction) const;
-  double rise_of_stand() const;
+  double rise_of_stand(std::size_t direction) const;
   std::array<double, 2> slopes_of_stand() const;
   std::array<double, 2> middle_across() const;
+  const PlaneOfSymmetry* symmetry_across(std::size_t direction) const;
   struct Clearances {
     double below = 0.0, above = 0.0;
   };

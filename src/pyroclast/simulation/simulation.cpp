@@ -112,6 +112,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
         }
   show_cracks_to_heat();
   supports_ = std::make_unique<Supports>(*model_);
+  for (const PlaneOfSymmetry& plane : model_->symmetry) drive(plane.set(), plane.component, 0.0);
   loads_ = std::make_unique<Loads>(*motion_, body_size());
   for (const RecordParameters& record : records) records_.emplace_back(*model_, true, record);
   if (body.between_platens) press_ = std::make_unique<Press>(*motion_, *body.between_platens);

@@ -50,6 +50,11 @@ class RigidMotions {
 
 }  // namespace
 
+Supports::Supports(const Model& model) : model_(model), holders_(model.gridpoint_count()) {
+  for (const PlaneOfSymmetry& plane : model.symmetry)
+    hold(plane.set(), plane.component, {}, plane.deck_place);
+}
+
 /// Describes a motion that nothing hinders. A rigid motion has a velocity and a turn: two and one numbers in
 /// 2D, three and three in 3D. A gridpoint whose component is held gives one equation for them, scaled so that
 /// turns count by the size of the body. Motions are free where the equations leave some undetermined.
@@ -100,6 +105,12 @@ void Supports::hold(const std::string& set, int component, const HeldMotion& mot
 }
 
 void Supports::release(const std::string& set, int component, const std::string& place) {
+  for (const PlaneOfSymmetry& plane : model_.symmetry)
+    if (plane.set() == set && plane.component == component)
+      throw Error(
+          fmt::format("{}: set \"{}\" lies in a plane of symmetry ({}), which holds it along {} in the "
+                      "whole run",
+                      place, set, plane.deck_place, "xyz"[component]));
   if (held_.erase({set, component}) > 0) {
     count(set, component, -1);
     return;

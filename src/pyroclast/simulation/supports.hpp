@@ -32,7 +32,8 @@ struct HeldMotion {
 /// The class serves a run, and the check of its stages before it.
 class Supports {
  public:
-  explicit Supports(const Model& model) : model_(model), holders_(model.gridpoint_count()) {}
+  /// Holds what lies in the body's planes of symmetry.
+  explicit Supports(const Model& model);
 
   /// Lets a set take hold of a component, or go on holding it in another way. Throws Error, which names both
   /// places, where another set holds one of its gridpoints in an unlike way.
@@ -40,7 +41,7 @@ class Supports {
   /// \param place  place in the deck, for messages
   void hold(const std::string& set, int component, const HeldMotion& motion, const std::string& place);
   /// Lets a set release a component. Throws Error where the set does not hold the component: then another set
-  /// holds its gridpoints, or none does.
+  /// holds its gridpoints, or none does. Planes of symmetry release nothing.
   void release(const std::string& set, int component, const std::string& place);
   /// Brings a set that is driven to rest from now on.
   void halt(const std::string& set, int component);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "pyroclast/base/sort_unique.hpp"
+
 namespace pyroclast {
 
 template <int Dim>
@@ -53,6 +55,23 @@ void ZoneConduction<Dim>::set_nodes(const ThermalNodes& nodes) {
   auto next = begin_;
   for (std::size_t z = 0; z < zones_.size(); ++z)
     for (int i = 0; i <= Dim; ++i) corners_[next[zones_[z].node[i]]++] = {static_cast<int>(z), i};
+  list_neighbours();
+}
+
+template <int Dim>
+void ZoneConduction<Dim>::list_neighbours() {
+  neighbours_.clear();
+  neighbours_begin_.assign(1, 0);
+  std::vector<int> its;
+  for (int node = 0; node < node_count_; ++node) {
+    its.clear();
+    for (int c = begin_[node]; c < begin_[node + 1]; ++c)
+      for (const int other : zones_[corners_[c][0]].node)
+        if (other != node) its.push_back(other);
+    sort_unique(its);
+    neighbours_.insert(neighbours_.end(), its.begin(), its.end());
+    neighbours_begin_.push_back(static_cast<int>(neighbours_.size()));
+  }
 }
 
 template <int Dim>
@@ -108,11 +127,12 @@ typename ZoneConduction<Dim>::Uphill ZoneConduction<Dim>::uphill(int node) const
   Uphill sum;
   for (int c = begin_[node]; c < begin_[node + 1]; ++c) {
     const auto [zone, corner] = corners_[c];
-    for_each_pair([&, zone = zone, corner = corner](int pair, int i, int j) {
-      if (i != corner && j != corner) return;
-      const double in = i == corner ? uphill_[zone][pair] : -uphill_[zone][pair];
-      (in > 0.0 ? sum.in : sum.out) += std::abs(in);
-    });
+    const auto& flows = uphill_[zone];
+    for (const auto [pair, sign] : kPairsOf[corner]) {
+      const double in = sign * flows[pair];
+      sum.in += std::max(in, 0.0);
+      sum.out += std::max(-in, 0.0);
+    }
   }
   return sum;
 }
@@ -120,9 +140,8 @@ typename ZoneConduction<Dim>::Uphill ZoneConduction<Dim>::uphill(int node) const
 template <int Dim>
 Interval ZoneConduction<Dim>::around(int node, const std::vector<double>& temperature) const {
   Interval range = nothing();
-  for (int c = begin_[node]; c < begin_[node + 1]; ++c)
-    for (const int other : zones_[corners_[c][0]].node)
-      if (other != node) include(range, temperature[other]);
+  for (int i = neighbours_begin_[node]; i < neighbours_begin_[node + 1]; ++i)
+    include(range, temperature[neighbours_[i]]);
   return range;
 }
 

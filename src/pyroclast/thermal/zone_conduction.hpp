@@ -87,10 +87,19 @@ class ZoneConduction {
   };
 
   template <class Visit>
-  static void for_each_pair(Visit visit);
+  static constexpr void for_each_pair(Visit visit);
+  /// Pair of a zone's corners, seen from one of them: 1 from the first corner, -1 from the second.
+  struct SeenPair {
+    int pair;
+    double sign;
+  };
+  using PairsOfCorners = std::array<std::array<SeenPair, Dim>, Dim + 1>;
+  static constexpr PairsOfCorners pairs_of_corners();
+  static const PairsOfCorners kPairsOf;  ///< pairs of each corner
   /// Returns the gradients of all shape functions, 1/m.
   static std::array<Vec<Dim>, Dim + 1> gradients(const Zone& zone);
   double mean_temperature(const Zone& zone, const std::vector<double>& temperature) const;
+  void list_neighbours();
   template <class Conductivity>
   std::vector<double> gather_rows(Conductivity conductivity) const;
 
@@ -104,15 +113,31 @@ class ZoneConduction {
   std::vector<std::array<double, kPairs>> uphill_;    ///< heat into the first corner of each pair, W
   std::vector<int> begin_;                            ///< corners at node i: [i] to [i + 1]
   std::vector<std::array<int, 2>> corners_;           ///< zone and corner
+  std::vector<int> neighbours_begin_;                 ///< neighbours of node i: [i] to [i + 1]
+  std::vector<int> neighbours_;                       ///< nodes with which a node shares a zone
 };
 
 template <int Dim>
 template <class Visit>
-void ZoneConduction<Dim>::for_each_pair(Visit visit) {
+constexpr void ZoneConduction<Dim>::for_each_pair(Visit visit) {
   int pair = 0;
   for (int i = 0; i < Dim; ++i)
     for (int j = i + 1; j <= Dim; ++j) visit(pair++, i, j);
 }
+
+template <int Dim>
+constexpr typename ZoneConduction<Dim>::PairsOfCorners ZoneConduction<Dim>::pairs_of_corners() {
+  PairsOfCorners pairs{};
+  std::array<std::size_t, Dim + 1> next{};
+  for_each_pair([&](int pair, int i, int j) {
+    pairs[i][next[i]++] = {pair, 1.0};
+    pairs[j][next[j]++] = {pair, -1.0};
+  });
+  return pairs;
+}
+
+template <int Dim>
+constexpr typename ZoneConduction<Dim>::PairsOfCorners ZoneConduction<Dim>::kPairsOf = pairs_of_corners();
 
 template <int Dim>
 template <class Capacity>

@@ -1,0 +1,397 @@
+// Promise: what a deck says of supports, loads, records, sets, bearings and heat holds in a solid as in the
+// plane: whole runs of blocks of mortar beside closed forms.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "known.hpp"
+#include "pyroclast/model/sets.hpp"
+#include "pyroclast/results/summary.hpp"
+#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/run.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr double kWidth = 0.06, kHeight = 0.09, kDepth = 0.04;  // m
+constexpr double kConductivity = 1.5, kCapacity = 2.2e6;
+
+const std::string kCuboid = R"(title = "solid"
+[specimen]
+width = "60 mm"
+height = "90 mm"
+depth = "40 mm"
+seed = 1
+[blocks]
+count = 40
+radius_spread = 0.3
+)";
+const std::string kMortar = R"(
+[materials.mortar]
+density = "2200 kg/m3"
+)";
+const std::string kHot = "conductivity = \"1.5 W/(m K)\"\nspecific_heat = \"1000 J/(kg K)\"\n";
+
+/// Mortar that moves, with contacts that stay elastic at a tensile strength of 25 MPa.
+std::string moving(const std::string& f_t = "25 MPa", const std::string& c_o = "100 MPa",
+                   const std::string& G_f1 = "6 kN/m") {
+  return fmt::format(R"(E = "30 GPa"
+nu = 0.2
+[contacts]
+t_b = "1.6 mm"
+t_b_scaling = "block size"
+t_b_block_size = "3 mm"
+[contacts.mortar_mortar]
+f_t = "{}"
+G_f1 = "{}"
+f_cm = "1 GPa"
+beta = 0.05
+c_o = "{}"
+c_res = "1 MPa"
+phi = "34 deg"
+phi_res = "34 deg"
+G_f2 = "24 kN/m"
+[mechanics]
+mass = "scaled"
+time_step = "10 us"
+safety = 0.9
+local_damping = 0.8
+damping_form = "combined"
+gravity = "0 m/s2"
+)",
+                     f_t, G_f1, c_o);
+}
+
+std::string record(const char* name, const char* kind, const char* set, const std::string& more) {
+  return fmt::format("[[record]]\nname = \"{}\"\nkind = \"{}\"\nset = \"{}\"\n{}\n", name, kind, set, more);
+}
+
+/// Mean stresses along x, y and z, and how much the sides part.
+std::string stresses_and_openings() {
+  std::string all;
+  for (const char* axis : {"x", "y", "z"})
+    all += record(axis, "stress", "specimen", fmt::format("direction = \"{}\"", axis));
+  for (const auto& [name, from, to, axis] :
+       {std::array{"width", "left", "right", "x"}, std::array{"height", "bottom", "top", "y"},
+        std::array{"depth", "front", "back", "z"}})
+    all += record(name, "opening", from, fmt::format("other = \"{}\"\ndirection = \"{}\"", to, axis));
+  return all;
+}
+
+/// Three sides that slide on planes.
+const std::string kPlanes = R"([[stages.drives]]
+set = "bottom"
+hold = ["y"]
+[[stages.drives]]
+set = "left"
+hold = ["x"]
+[[stages.drives]]
+set = "front"
+hold = ["z"]
+)";
+const std::string kDriveToRest = R"([[stages]]
+kind = "drive"
+duration = "1 s"
+unbalanced_ratio = 1e-5
+look_interval = "10 ms"
+)";
+
+struct DoneDeck {
+  explicit DoneDeck(const std::string& text)
+      : setup(read_setup(Deck::parse(text, "deck.toml"), ".")),
+        simulation(make_simulation(setup, std::make_shared<Team>(1))),
+        run(*simulation, std::move(setup.stages)) {
+    EXPECT_TRUE(is_good(run.run()));
+  }
+  double last(const char* column) const {
+    return run.history().cell(run.history().row_count() - 1, column).value();
+  }
+  const Model& model() const { return simulation->model(); }
+
+  Setup setup;
+  std::unique_ptr<Simulation> simulation;
+  Run run;
+};
+
+// The mean stress of a body at rest follows from its loads alone, whatever its blocks.
+TEST(SolidDeckVerification, MeanStressesAreLoadsOverAreas) {
+  DoneDeck solid(kCuboid + kMortar + moving() + R"([[sets]]
+name = "patch"
+of = "faces"
+within = "back"
+box = [["10 mm", "10 mm", "40 mm"], ["60 mm", "80 mm", "40 mm"]]
+)" + stresses_and_openings() +
+                 record("pull", "force", "top", "direction = \"y\"") +
+                 record("reaction", "force", "bottom", "direction = \"-y\"") +
+                 record("push", "force", "patch", "direction = \"-z\"") +
+                 record("behind", "force", "front", "direction = \"z\"") + kDriveToRest + kPlanes +
+                 R"([[stages.drives]]
+set = "top"
+force = "4.8 kN"
+direction = [0, 1, 0]
+ramp_time = "20 ms"
+[[stages.drives]]
+set = "right"
+pressure = "3 MPa"
+ramp_time = "20 ms"
+)" + kDriveToRest +
+                 R"([[stages.drives]]
+set = "patch"
+pressure = "1 MPa"
+ramp_time = "20 ms"
+)");
+  const std::size_t loaded = solid.run.courses()[0].rows.last - 1;
+  const double stress = 4800.0 / (kWidth * kDepth) / 1e6;
+  expect_known({"Stress of a solid pulled along y", "force over area", "MPa"},
+               solid.run.history().cell(loaded, "y_MPa").value(), stress, 1e-3 * stress);
+  expect_known({"Stress of a solid under pressure", "the pressure", "MPa"},
+               solid.run.history().cell(loaded, "x_MPa").value(), -3.0, 3e-3);
+  EXPECT_NEAR(solid.run.history().cell(loaded, "z_MPa").value(), 0.0, 3e-3);
+  EXPECT_NEAR(solid.last("pull_N"), 4800.0, 1e-9);
+  EXPECT_NEAR(solid.last("reaction_N"), 4800.0, 1e-3 * 4800.0);
+  double area = 0.0;
+  for (const Face& face : faces_in(solid.model(), solid.model().set("patch"))) area += face.area;
+  EXPECT_NEAR(area, 0.05 * 0.07, 0.6 * 0.05 * 0.07);  // whole faces within the box
+  EXPECT_NEAR(solid.last("push_N"), 1e6 * area, 1e-9 * 1e6 * area);
+  EXPECT_NEAR(solid.last("behind_N"), 1e6 * area, 2e-3 * 1e6 * area);
+}
+
+TEST(SolidDeckVerification, ABodyExpandsFreely) {
+  DoneDeck solid(kCuboid + kMortar + "expansion = \"10e-6 1/K\"\n" + moving() + R"([heat]
+field = "uniform"
+initial = "20 degC"
+)" + stresses_and_openings() +
+                 record("T", "temperature", "specimen", "") +
+                 "[[stages]]\nkind = \"drive\"\nduration = \"100 us\"\n" + kPlanes + R"([[stages]]
+kind = "heat"
+to = "120 degC"
+rate = "1 K/min"
+[coupling]
+exchange_increment = "50 K"
+unbalanced_ratio = 1e-5
+platen_difference = "0.005 MPa"
+least_cycles = 200
+most_cycles = 20000
+failure_strain = 0.01
+)");
+  EXPECT_NEAR(solid.last("T_degC"), 120.0, 1e-9);
+  const double strain = 10e-6 * 100.0;
+  expect_known({"Expansion of a solid without loads: strain along x", "alpha dT", "1"},
+               solid.last("width_m") / kWidth, strain, 1e-3 * strain);
+  EXPECT_NEAR(solid.last("height_m") / kHeight, strain, 1e-3 * strain);
+  EXPECT_NEAR(solid.last("depth_m") / kDepth, strain, 1e-3 * strain);
+  // restrained it would be 30 MPa
+  for (const char* const stress : {"x_MPa", "y_MPa", "z_MPa"}) EXPECT_NEAR(solid.last(stress), 0.0, 0.01);
+}
+
+std::string boundary(const char* faces, const char* keys) {
+  return fmt::format("[[heat.boundaries]]\nfaces = \"{}\"\n{}\n", faces, keys);
+}
+
+/// Heat alone in the cuboid, until it is steady.
+std::string conducting(const std::string& boundaries) {
+  return kCuboid + kMortar + kHot + R"([heat]
+field = "conduction"
+initial = "20 degC"
+temperature_range = ["20 degC", "900 degC"]
+)" + boundaries +
+         R"([[stages]]
+kind = "conduct"
+duration = "10 h"
+interval = "1 h"
+steady_rate = "1e-7 K/s"
+[[probes]]
+name = "middle"
+x = "30 mm"
+y = "45 mm"
+z = "20 mm"
+[output]
+frame_interval = "10 h"
+)";
+}
+
+// A linear field is exact in any tetrahedra.
+TEST(SolidDeckVerification, HeatComesInByEveryKindOfBoundary) {
+  const std::string cold = boundary("front", "kind = \"temperature\"\ntemperature = \"100 degC\"");
+  {
+    DoneDeck wall(conducting(cold + boundary("back",
+                                             "kind = \"convection\"\ncoefficient = \"25 W/(m2 K)\"\n"
+                                             "gas_temperature = \"500 degC\"")));
+    const double flux = (500.0 - 100.0) / (kDepth / kConductivity + 1.0 / 25.0);
+    expect_known({"Solid between a prescribed temperature and a gas: temperature in the middle",
+                  "resistances in series", "K"},
+                 wall.last("probe_middle_degC"), 100.0 + flux * 0.5 * kDepth / kConductivity, 1e-4);
+  }
+  {
+    DoneDeck wall(conducting(cold + boundary("back", "kind = \"flux\"\nflux = \"2 kW/m2\"") +
+                             R"([[heat.boundaries]]
+faces = "box"
+box_low = ["60 mm", "0 mm"]
+box_high = ["60 mm", "90 mm"]
+kind = "adiabatic"
+)"));
+    EXPECT_NEAR(wall.last("probe_middle_degC"), 100.0 + 2000.0 * 0.5 * kDepth / kConductivity, 1e-4);
+    const double time = wall.last("heating_time_s");
+    EXPECT_NEAR(wall.last("heat_flux_J"), 2000.0 * kWidth * kHeight * time, 1e-9 * 2000.0 * time);
+  }
+  {
+    DoneDeck wall(conducting(cold + boundary("back",
+                                             "kind = \"radiation\"\nemissivity = 0.7\n"
+                                             "gas_temperature = \"800 degC\"")));
+    const double middle = wall.last("probe_middle_degC"),
+                 flux = 2.0 * (middle - 100.0) * kConductivity / kDepth;
+    const double face = 100.0 + 2.0 * (middle - 100.0);
+    const auto power = [](double t) { return std::pow(t + 273.15, 4); };
+    expect_known({"Solid that a gas radiates on: flux", "eps sigma (T_g^4 - T^4) of its face", "W/m2"}, flux,
+                 0.7 * 5.670374419e-8 * (power(800.0) - power(face)), 0.1);
+  }
+}
+
+// Promise: a hot solid moves by the temperatures that are handed over to it.
+TEST(SolidDeckVerification, AnExposedBodyExpandsByItsMeanTemperature) {
+  DoneDeck solid(kCuboid + kMortar + kHot + "expansion = \"10e-6 1/K\"\n" + moving() + R"([heat]
+field = "conduction"
+initial = "20 degC"
+)" +
+                 boundary("front",
+                          "kind = \"temperature\"\ntemperature = { table = [[\"0 s\", \"20 degC\"], "
+                          "[\"60 s\", \"120 degC\"], [\"2 h\", \"120 degC\"]] }") +
+                 stresses_and_openings() + "[[stages]]\nkind = \"drive\"\nduration = \"100 us\"\n" + kPlanes +
+                 R"([[stages]]
+kind = "expose"
+duration = "5 min"
+[coupling]
+exchange_increment = "50 K"
+unbalanced_ratio = 1e-4
+platen_difference = "0.01 MPa"
+least_cycles = 200
+most_cycles = 20000
+failure_strain = 0.01
+)");
+  const double rise = solid.last("temperature_degC") - 20.0;
+  EXPECT_GT(rise, 30.0);
+  EXPECT_LT(rise, 90.0);
+  // Stresses that temperatures over the depth leave have no mean, nor have their strains along it; blocks are
+  // a third of the depth.
+  EXPECT_NEAR(solid.last("depth_m") / kDepth, 10e-6 * rise, 0.04 * 10e-6 * rise);
+  for (const char* const stress : {"x_MPa", "y_MPa", "z_MPa"}) EXPECT_NEAR(solid.last(stress), 0.0, 0.05);
+}
+
+/// Records by which a pull that a gauge controls is told.
+const std::string kGauge = R"([[sets]]
+name = "below"
+box = [["0 mm", "10 mm"], ["60 mm", "25 mm"]]
+[[sets]]
+name = "above"
+box = [["0 mm", "65 mm"], ["60 mm", "80 mm"]]
+[[sets]]
+name = "between"
+of = "contacts"
+box = [["0 mm", "10 mm"], ["60 mm", "80 mm"]]
+)";
+
+// Promise: cracks of a solid have areas; an opening controls its load; work and formulas know its depth; and
+// nobody is told to let its blocks turn.
+TEST(SolidDeck, IsPulledInTwo) {
+  DoneDeck solid(kCuboid + kMortar + moving("2 MPa", "5 MPa", "60 N/m") + kGauge +
+                 record("load", "force", "top", "direction = \"y\"") +
+                 record("stretch", "opening", "below", "other = \"above\"\ndirection = \"y\"") +
+                 record("cracked", "crack_area", "between", "") +
+                 record("opened", "crack_opening", "between", "") + R"([[stages]]
+kind = "drive"
+duration = "1 s"
+look_interval = "1 ms"
+[stages.control]
+record = "stretch"
+rate = "0.2 mm/s"
+stiffness = "0.3 GN/m"
+response_time = "5 ms"
+)" + kPlanes + R"([[stages.drives]]
+set = "top"
+force = "2.4 kN"
+direction = [0, 1, 0]
+[[stages.until]]
+record = "load"
+share_of_peak = 0.3
+[[stages.results]]
+name = "P"
+kind = "peak"
+record = "load"
+[[stages.results]]
+name = "f_t"
+kind = "formula"
+formula = "P / 0.06 / thickness"
+unit = "MPa"
+)");
+  const Summary summary = summarize(solid.run);
+  const double area = kWidth * kDepth;
+  double f_t = 0.0;
+  for (const Result& result : summary.stages.at(0).report.results)
+    if (result.name == "f_t_MPa") f_t = std::get<double>(result.value);
+  for (const std::string& warning : summary.warnings)
+    EXPECT_EQ(warning.find("kinematics"), std::string::npos) << warning;
+  EXPECT_GT(f_t, 1.0);
+  EXPECT_LT(f_t, 4.0);
+  EXPECT_GT(solid.last("cracked_m2"), 0.5 * area);
+  EXPECT_GT(solid.last("opened_m"), 0.0);
+}
+
+// Promise: strips are prisms over all of the depth, and split a disc by the stress across it.
+TEST(SolidDeckVerification, ADiscIsSqueezedBetweenStrips) {
+  const std::string strip =
+      "[[bearings]]\nname = \"{0}\"\nat = [\"0 mm\", \"{1} mm\"]\nwidth = \"20 mm\"\nthickness = \"10 mm\"\n"
+      "contact = \"frictional\"\nfriction = 0.3\n";
+  DoneDeck solid(R"(title = "disc"
+[specimen]
+shape = "disc"
+diameter = "80 mm"
+depth = "40 mm"
+seed = 1
+[blocks]
+count = 150
+radius_spread = 0.3
+)" + kMortar + moving() +
+                 "[materials.platen]\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"7850 kg/m3\"\n" +
+                 fmt::format(fmt::runtime(strip), "lower", -40) +
+                 fmt::format(fmt::runtime(strip), "upper", 40) +
+                 R"([[sets]]
+name = "core"
+of = "blocks"
+box = [["-12 mm", "-12 mm"], ["12 mm", "12 mm"]]
+)" + record("load", "force", "lower_support", "direction = \"y\"") +
+                 record("across", "stress", "core", "direction = \"x\"") +
+                 record("along", "stress", "specimen", "direction = \"y\"") + R"([[stages]]
+kind = "drive"
+duration = "1 s"
+unbalanced_ratio = 1e-5
+[[stages.drives]]
+set = "lower_support"
+hold = ["x", "y", "z"]
+[[stages.drives]]
+set = "upper_support"
+hold = ["x", "z"]
+[[stages.drives]]
+set = "upper_support"
+force = "10 kN"
+direction = [0, -1]
+ramp_time = "20 ms"
+)");
+  EXPECT_NEAR(solid.last("load_N"), 1e4, 0.02 * 1e4);
+  // The mean stress along the load is the load times its way through the body, over the volume: from the
+  // middle of one seat, 0.8 mm below the rim, to that of the other.
+  const double volume = std::numbers::pi * 0.04 * 0.04 * 0.04;
+  const double stress = 1e4 * (0.08 - 2.0 * 0.0008) / volume / 1e6;
+  expect_known({"Disc between strips: mean stress along the load", "load times length over volume", "MPa"},
+               solid.last("along_MPa"), -stress, 0.02 * stress);
+  EXPECT_GT(solid.last("across_MPa"), 0.5 * 2.0 * 1e4 / (std::numbers::pi * 0.08 * 0.04) / 1e6);
+}
+
+}  // namespace
+}  // namespace pyroclast
