@@ -79,7 +79,7 @@ class Results(Case):
         kept = first.copy()
         strain = first.strain
         run.next()
-        with self.assertRaisesRegex(pyroclast.Error, "earlier look"):
+        with self.assertRaisesRegex(pyroclast.Error, "earlier sample"):
             first.strain
         self.assertEqual(kept.strain, strain)
 
