@@ -1,13 +1,15 @@
-"""Names of runs by what their decks differ in."""
+"""The values in which decks differ, and names of runs by them."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Union
 
 if TYPE_CHECKING:
     from .results import Results
+
+DeckPath = tuple[Union[str, int], ...]
 
 _MOST = 3  # differences that a name tells
 _TELL_NOTHING = ("title", "output")  # tables and keys that change no result
@@ -19,11 +21,11 @@ def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
 
     None where decks are missing, do not differ, differ in more than three values, or do not tell all runs apart.
     """
-    decks = [dict(_values(run.deck)) for run in runs]
+    decks = [{path: text for path, text in values_of(run.deck).items() if path[0] not in _TELL_NOTHING}
+             for run in runs]
     if not all(decks):
         return None
-    keys = list(dict.fromkeys(key for deck in decks for key in deck))
-    differing = [key for key in keys if len({deck.get(key) for deck in decks}) > 1]
+    differing = differing_keys(decks)
     if not 0 < len(differing) <= _MOST:
         return None
     words = _short(differing)
@@ -32,16 +34,30 @@ def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
     return names if len(set(names)) == len(names) else None
 
 
-def _values(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Path and text of each value of a deck."""
-    if path and path[0] in _TELL_NOTHING:
-        return
+def values_of(deck: Any) -> dict[DeckPath, str]:
+    """Text of each value of a deck, by its path: keys, and numbers of tables of a list."""
+    return dict(_values(deck))
+
+
+def differing_keys(decks: Sequence[dict[DeckPath, str]]) -> list[DeckPath]:
+    """Those whose values are not the same in all, or that some do not have; in the order of the decks."""
+    keys = dict.fromkeys(key for deck in decks for key in deck)
+    return [key for key in keys if len({deck.get(key) for deck in decks}) > 1]
+
+
+def written(path: DeckPath) -> str:
+    """A path as messages have it, such as "stages[1].duration"."""
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)
+    return text.removeprefix(".")
+
+
+def _values(node: Any, path: DeckPath = ()) -> Iterator[tuple[DeckPath, str]]:
     if isinstance(node, dict):
         for key, value in node.items():
             yield from _values(value, (*path, str(key)))
     elif isinstance(node, list) and any(isinstance(value, dict) for value in node):
         for number, value in enumerate(node):
-            yield from _values(value, (*path, str(number)))
+            yield from _values(value, (*path, number))
     else:
         yield path, _text(node)
 
@@ -51,11 +67,11 @@ def _text(value: Any) -> str:
         return "[" + ", ".join(map(_text, value)) + "]"
     if isinstance(value, bool):
         return str(value).lower()
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
-def _short(paths: Sequence[tuple[str, ...]]) -> list[str]:
+def _short(paths: Sequence[DeckPath]) -> list[str]:
     """Of each path its last word, with that before it where two have the same."""
     told = [path[:-1] if path[-1] in _PLAIN and len(path) > 1 else path for path in paths]
     lasts = Counter(path[-1] for path in told)
-    return [path[-1] if lasts[path[-1]] == 1 else " ".join(path[-2:]) for path in told]
+    return [str(path[-1]) if lasts[path[-1]] == 1 else " ".join(map(str, path[-2:])) for path in told]

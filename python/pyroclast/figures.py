@@ -285,24 +285,25 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("folder", type=Path, metavar="RUN_DIR")
     run.add_argument("--format", choices=_FORMATS, default="png")
     run.add_argument("--magnification", type=_positive, metavar="FACTOR",
-                     help="of displacements in fracture (default: chosen from the last frame, and stated)")
+                     help="magnification of displacements in fracture (default: from the last frame, and stated)")
     run.add_argument("--temperatures", type=_temperatures, metavar="T,T,...",
-                     help="°C, of the fracture patterns of a heated run (default: chosen from its frames)")
+                     help="temperatures of the fracture patterns of a heated run, °C (default: from its frames)")
     run.add_argument("--out", type=Path, metavar="FOLDER",
-                     help="into this folder; the run's own is then only read (default: its figures/)")
+                     help="folder for the figures; the run is then read only (default: its figures/)")
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures, asked.out))
 
     plane = commands.add_parser("plane", help="a plane through a solid, with its cracks")
     plane.add_argument("folder", type=Path, metavar="RUN_DIR")
-    plane.add_argument("--axis", choices=("x", "y", "z"), default="z", help="across which it stands (default: z)")
+    plane.add_argument("--axis", choices=("x", "y", "z"), default="z", help="axis across the plane (default: z)")
     plane.add_argument("--at", type=_share, default=0.5, metavar="SHARE",
-                       help="of the specimen's size along that axis (default: 0.5)")
-    plane.add_argument("--magnification", type=_positive, default=1.0, metavar="FACTOR", help="of displacements")
-    plane.add_argument("--frame", type=int, metavar="NUMBER", help="of the run (default: its last)")
+                       help="place of the plane, as a share of the specimen's size along the axis (default: 0.5)")
+    plane.add_argument("--magnification", type=_positive, default=1.0, metavar="FACTOR",
+                       help="magnification of displacements")
+    plane.add_argument("--frame", type=int, metavar="NUMBER", help="frame of the run (default: the last)")
     plane.add_argument("--format", choices=_FORMATS, default="png")
     plane.add_argument("--out", type=Path, metavar="FOLDER",
-                       help="into this folder; the run's own is then only read (default: its figures/)")
+                       help="folder for the figures; the run is then read only (default: its figures/)")
     plane.set_defaults(draw=lambda asked: draw_plane(asked.folder, asked.axis, asked.at, asked.format,
                                                      asked.magnification, asked.frame, asked.out))
 
@@ -316,21 +317,21 @@ def parser() -> argparse.ArgumentParser:
     comparison = commands.add_parser("compare", help="curves of several runs in one figure")
     comparison.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
     comparison.add_argument("--out", type=Path, required=True, metavar="FILE")
-    comparison.add_argument("--what", choices=KINDS, help="default: what the runs have in common")
+    comparison.add_argument("--what", choices=KINDS, help="kind of curve (default: the first that all runs have)")
     comparison.set_defaults(draw=lambda asked: draw_comparison(asked.folders, asked.out, asked.what))
 
     patterns = commands.add_parser("levels", help="fracture patterns of several heated runs, a row for each")
     patterns.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
     patterns.add_argument("--out", type=Path, required=True, metavar="FILE")
     patterns.add_argument("--temperatures", type=_temperatures, default=LEVEL_TEMPERATURES, metavar="T,T,...",
-                          help="°C, of the columns before the last frame (default: 300,400,500,600)")
+                          help="temperatures of the columns before the last frame, °C (default: 300,400,500,600)")
     patterns.add_argument("--magnification", type=_positive, metavar="FACTOR",
-                          help="of displacements (default: chosen from the last frames, and stated)")
+                          help="magnification of displacements (default: from the last frames, and stated)")
     patterns.set_defaults(draw=lambda asked: draw_levels(asked.folders, asked.out, asked.temperatures,
                                                          asked.magnification))
     for command in commands.choices.values():
         command.add_argument("--width", type=_width, metavar="LENGTH",
-                             help="of the figures, such as 90mm, with all text of 8 pt and legends in the axes "
+                             help="width of the figures, such as 90mm, with all text of 8 pt and legends in the axes "
                                   "(default: a page of two columns, 183mm)")
     return parser
 

@@ -300,6 +300,15 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
     return numbers
 
 
+def names_in(path: Path, group: str) -> list[str]:
+    """Names in a group of an HDF5 file; raises Error as `open_hdf`, and when there is no such group."""
+    with open_hdf(path) as file:
+        inner = file.get(group)
+        if not isinstance(inner, h5py.Group):
+            raise Error(f"{path}: has no group /{group}")
+        return list(inner)
+
+
 def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
     """All of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape."""
     with open_hdf(path) as file:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +17,7 @@ from .errors import Error
 
 _COLUMNS = ("property", "unit", "temperature_degC", "value", "ratio_to_20_degC")
 _SOLID_COLOURS = (style.VERMILLION, style.BLUE, style.GREEN, style.PURPLE, style.ORANGE)
-_SYMBOLS = {"f_t": "$f_t$", "f_cm": "$f_{cm}$", "c_o": "$c_o$", "c_res": "$c_{res}$", "G_f1": "$G_{f1}$",
-            "G_f2": "$G_{f2}$"}
+_STRENGTHS = ("f_t", "f_cm", "c_o", "c_res", "G_f1", "G_f2")
 _COLOURS = (style.BLACK, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.VERMILLION)
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))
 _MEGA = 1e6
@@ -59,26 +58,74 @@ def read_properties(path: Path) -> dict[str, Property]:
             for name, entries in rows.items()}
 
 
+@dataclass(frozen=True)
+class PropertyLine:
+    label: str
+    curve: Property
+    shown: np.ndarray  #: (rows,) in the unit of the panel
+
+
+@dataclass(frozen=True)
+class PropertyPanel:
+    """Curves of one kind of property."""
+
+    title: str
+    label: str  #: of the values, with their unit
+    lines: list[PropertyLine]
+    is_of_contacts: bool = False
+    from_zero: bool = True
+
+
+def panels(table: Mapping[str, Property]) -> list[PropertyPanel]:
+    """One for each kind of property that the table holds."""
+    contact = _shown_contact(table)
+    found = [
+        PropertyPanel("Young's modulus", "Ratio to 20 °C [–]", _of_solids(table, "E", lambda p: p.ratio)),
+        PropertyPanel(f"Strengths and fracture energies, {contact.replace('_', '–')}", "Ratio to 20 °C [–]",
+              list(_strengths(table, contact)), is_of_contacts=True),
+        PropertyPanel("Free thermal strain since 20 °C", "Strain, elongation positive [10⁻³]",
+              _of_solids(table, "thermal_strain", lambda p: style.PER_MILLE * p.value), from_zero=False),
+        PropertyPanel("Creep strain on heating at a stress of f_c", "Strain [10⁻³]",
+              _of_solids(table, "creep.strain", lambda p: style.PER_MILLE * p.value)),
+        PropertyPanel("Thermal conductivity", "γ [W/(m K)]", _of_solids(table, "conductivity", lambda p: p.value)),
+        PropertyPanel("Heat capacity", "ρc [MJ/(m³ K)]", _of_solids(table, "heat_capacity", lambda p: p.value / _MEGA))]
+    return [panel for panel in found if panel.lines]
+
+
 @style.in_style
 def properties(table: Mapping[str, Property]) -> Figure:
-    """One panel for each kind of property that the table holds."""
-    panels: list[Callable[[Axes, Mapping[str, Property]], None]] = [_modulus, _strengths, _thermal_strain]
-    if any(f"materials.{solid}.conductivity" in table for solid in _solids(table)):
-        panels.append(_conductivity)
-    if any(f"materials.{solid}.heat_capacity" in table for solid in _solids(table)):
-        panels.append(_heat_capacity)
+    """One panel for each kind of property that the table holds. Raises Error where it holds none of a kind."""
+    shown = panels(table)
+    if not shown:
+        raise Error(f"no property of the table has a panel: {', '.join(table)}")
     across = 1 if style.page().is_column else 2
-    rows = -(-len(panels) // across)
+    rows = -(-len(shown) // across)
     figure = style.new_figure(2.5 * rows)
     all_axes = figure.subplots(rows, across, squeeze=False, sharex=True).ravel()
-    for axes, draw in zip(all_axes, panels):
-        draw(axes, table)
+    for axes, panel in zip(all_axes, shown):
+        _draw(axes, panel)
         style.draw_own_legend(axes)
         axes.tick_params(labelbottom=True)
         axes.set_xlabel("Temperature [°C]")
-    for axes in all_axes[len(panels):]:
+    for axes in all_axes[len(shown):]:
         axes.axis("off")
     return figure
+
+
+def _draw(axes: Axes, panel: PropertyPanel) -> None:
+    colours = _COLOURS if panel.is_of_contacts else _SOLID_COLOURS
+    for number, line in enumerate(panel.lines):  # dashed where the second would hide the first
+        axes.plot(line.curve.temperature, line.shown, color=colours[number % len(colours)],
+                  linestyle=_DASHES[number % len(_DASHES)], label=_symbols(line.label))
+    axes.set_title(_symbols(panel.title))
+    axes.set_ylabel(panel.label)
+    if panel.from_zero:
+        axes.set_ylim(bottom=0.0)
+
+
+def _symbols(text: str) -> str:
+    """Words such as f_cm as formulas."""
+    return re.sub(r"\b([A-Za-z])_(\w+)\b", r"$\1_{\2}$", text)
 
 
 def _solids(table: Mapping[str, Property]) -> list[str]:
@@ -93,63 +140,28 @@ def _shown_contact(table: Mapping[str, Property]) -> str:
     return "mortar_mortar" if "mortar_mortar" in names or not names else names[-1]
 
 
-def _modulus(axes: Axes, table: Mapping[str, Property]) -> None:
-    _draw_solids(axes, table, "E", lambda p: p.ratio)
-    axes.set_title("Young's modulus")
-    axes.set_ylabel("Ratio to 20 °C [–]")
-    axes.set_ylim(bottom=0.0)
-
-
-def _strengths(axes: Axes, table: Mapping[str, Property]) -> None:
+def _strengths(table: Mapping[str, Property], contact: str) -> Iterator[PropertyLine]:
     """Properties with the same ratio share a line."""
-    contact = _shown_contact(table)
     groups: list[tuple[Property, list[str]]] = []
-    for key, symbol in _SYMBOLS.items():
+    for key in _STRENGTHS:
         curve = table.get(f"contacts.{contact}.{key}")
         if curve is None:
             continue
         for other, names in groups:
             if _same(curve, other):
-                names.append(symbol)
+                names.append(key)
                 break
         else:
-            groups.append((curve, [symbol]))
-    for number, (curve, names) in enumerate(groups):
-        axes.plot(curve.temperature, curve.ratio, color=_COLOURS[number % len(_COLOURS)],
-                  linestyle=_DASHES[number % len(_DASHES)], label=", ".join(names))
-    axes.set_title(f"Strengths and fracture energies, {contact.replace('_', '–')}")
-    axes.set_ylabel("Ratio to 20 °C [–]")
-    axes.set_ylim(bottom=0.0)
+            groups.append((curve, [key]))
+    for curve, names in groups:
+        yield PropertyLine(", ".join(names), curve, curve.ratio)
 
 
 def _same(a: Property, b: Property) -> bool:
     return np.array_equal(a.temperature, b.temperature) and np.allclose(a.ratio, b.ratio, rtol=1e-9, equal_nan=True)
 
 
-def _thermal_strain(axes: Axes, table: Mapping[str, Property]) -> None:
-    _draw_solids(axes, table, "thermal_strain", lambda p: style.PER_MILLE * p.value)
-    axes.set_title("Free thermal strain since 20 °C")
-    axes.set_ylabel("Strain, elongation positive [$10^{-3}$]")
-
-
-def _conductivity(axes: Axes, table: Mapping[str, Property]) -> None:
-    _draw_solids(axes, table, "conductivity", lambda p: p.value)
-    axes.set_title("Thermal conductivity")
-    axes.set_ylabel("$\\gamma$ [W/(m K)]")
-    axes.set_ylim(bottom=0.0)
-
-
-def _heat_capacity(axes: Axes, table: Mapping[str, Property]) -> None:
-    _draw_solids(axes, table, "heat_capacity", lambda p: p.value / _MEGA)
-    axes.set_title("Heat capacity")
-    axes.set_ylabel("$\\rho c$ [MJ/(m³ K)]")
-    axes.set_ylim(bottom=0.0)
-
-
-def _draw_solids(axes: Axes, table: Mapping[str, Property], key: str,
-                 shown: Callable[[Property], np.ndarray]) -> None:
-    """The phases, dashed where the second would hide the first."""
-    for dashes, solid, colour in zip(cycle(_DASHES), _solids(table), cycle(_SOLID_COLOURS)):
-        curve = table.get(f"materials.{solid}.{key}")
-        if curve is not None:
-            axes.plot(curve.temperature, shown(curve), color=colour, linestyle=dashes, label=solid)
+def _of_solids(table: Mapping[str, Property], key: str, shown: Callable[[Property], np.ndarray]) -> list[PropertyLine]:
+    """The phases that have the property."""
+    return [PropertyLine(solid, curve, shown(curve)) for solid in _solids(table)
+            if (curve := table.get(f"materials.{solid}.{key}")) is not None]

@@ -504,14 +504,15 @@ def _tell(what: object) -> None:
 
 def parser() -> argparse.ArgumentParser:
     """Reads the words behind `pyroclast watch`."""
-    parser = argparse.ArgumentParser(prog="pyroclast watch", description="Shows a run while it is computed.")
+    parser = argparse.ArgumentParser(prog="pyroclast watch",
+                                     description="Shows a run while another process computes it.")
     parser.add_argument("folder", type=Path, metavar="RUN", help="folder of a run")
-    parser.add_argument("--once", action="store_true", help="show what there is by now, and stop")
+    parser.add_argument("--once", action="store_true", help="show the present state, and stop")
     parser.add_argument("--on", choices=SCREENS,
-                        help="a window; the terminal, drawn anew in place; lines, a curve below the other; or nothing "
+                        help="a window; the terminal, in place; lines, one curve below the other; or nothing "
                              f"but {PICTURE} in the folder (default: what there is)")
     parser.add_argument("--out", type=Path, metavar="FILE",
-                        help=f"the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
+                        help=f"file for the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
     return parser
 
 

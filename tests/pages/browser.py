@@ -92,13 +92,12 @@ def begin() -> None:
     unittest.addModuleCleanup(browser.close)
 
 
-class PageTest(unittest.TestCase):
+class FolderTest(unittest.TestCase):
     """Has a folder of its own for pages and copies of runs."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
-        browser.console()
 
     def page_of(self, *folders: pathlib.Path) -> pathlib.Path:
         return write_page(folders, self.folder / "page.html")
@@ -107,6 +106,14 @@ class PageTest(unittest.TestCase):
         """Of a run, without files of these names."""
         return pathlib.Path(shutil.copytree(run, self.folder / name,
                                             ignore=shutil.ignore_patterns(*without, "checkpoints")))
+
+
+class PageTest(FolderTest):
+    """Opens pages in the browser."""
+
+    def setUp(self):
+        super().setUp()
+        browser.console()
 
     def assert_silent(self):
         self.assertEqual(browser.console(), [])

@@ -10,6 +10,8 @@ import shutil
 import tempfile
 import unittest
 
+import numpy as np
+
 import pyroclast
 from pyroclast.report.course import course_of
 from pyroclast.report.judging import BAD, DOUBT, GOOD, cards, verdict, worst
@@ -89,8 +91,18 @@ class Judging(unittest.TestCase):
     def test_without_a_strength_the_largest_stress_is_no_peak(self):
         for strength, label in ((33.33, "peak"), (None, "largest")):
             run = self.changed("starter", results={"f_c_MPa": strength})
-            found = {mark.id: mark.label for mark in marks(run, run.history["stress_MPa"])}
+            found = {mark.id: mark.label for mark in marks(run, run.history["stress_MPa"], None)}
             self.assertEqual(found["peak"], label)
+
+    def test_where_a_test_unloads_by_command_nothing_drops(self):
+        run = pyroclast.read(RUNS / "cyclic")
+        place = np.linspace(0.0, 4.0, run.history.rows)
+        strain = np.interp(place, [0.0, 1.0, 1.2, 2.0, 4.0], [0.0, 1.0, 0.8, 1.0, 2.0])
+        stress = np.interp(place, [0.0, 1.0, 1.2, 2.0, 3.0, 3.2, 4.0], [0.0, 10.0, 1.0, 10.0, 12.0, 10.0, 9.0])
+        row = {way: {mark.id: mark.row for mark in marks(run, stress, way * strain)} for way in (1.0, -1.0)}
+        self.assertTrue(3.0 < place[row[1.0]["drop"]] < 3.3)  # not from 1 to 1.2, where it falls four times as fast
+        self.assertEqual(row[1.0], row[-1.0])
+        self.assertNotIn("drop", {mark.id for mark in marks(run, stress, None)})
 
     def test_energies_lost_in_ways_of_their_own_are_told(self):
         run = pyroclast.read(RUNS / "anderberg_thelandersson")
@@ -109,7 +121,7 @@ class Judging(unittest.TestCase):
         broken = sum(history[name] for name in history.names if name.endswith("_broken"))
         length = sum(history[f"{mode}_{interface}_length_m"] for mode, interfaces in run.crack_modes.items()
                      for interface in interfaces)
-        found = {mark.id: mark.row for mark in marks(run, history["stress_MPa"])}
+        found = {mark.id: mark.row for mark in marks(run, history["stress_MPa"], history["strain"])}
         self.assertGreater(broken[found["first"]], 0)
         self.assertEqual(broken[found["first"] - 1], 0)
         self.assertGreaterEqual(length[found["extent"]], 1.0)

@@ -56,7 +56,8 @@ class Shell(unittest.TestCase):
     def test_data_end_no_script_and_gaps_are_null(self):
         made = page("run.html", ("packing.js",), {"a": "</script><script>", "b": float("nan")}, title="t", outcome="",
                     facts=[], level="good", cards=[], reasons=[], notes=[], stages=[], has_body=False, steps=[],
-                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False, is_solid=False)
+                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False,
+                    has_properties=False, is_solid=False)
         self.assertIn('{"a":"\\u003c/script>\\u003cscript>","b":null}', made)
 
 

@@ -18,6 +18,7 @@ from browser import RUNS, PageTest, begin, browser
 from matplotlib.path import Path
 
 import pyroclast
+from pyroclast.properties import panels, read_properties
 from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
 
@@ -152,8 +153,7 @@ class OneRun(PageOfRun):
 
         new = np.flatnonzero(beyond(frame) & ~beyond(frame - 1))
         self.assertTrue(len(new))
-        # a damage within half a step of a half may count either way
-        self.assertLessEqual(len(set(new.tolist()) ^ set(lit)), 0.1 * len(new))
+        self.assertEqual(set(lit), set(new.tolist()))
 
     def test_a_brushed_piece_tells_what_broke_in_it(self):
         box = browser.place("#curve svg")
@@ -171,6 +171,10 @@ class OneRun(PageOfRun):
             for name in interfaces:
                 broken = np.diff(self.run_.history[f"{mode}_{name}_broken"][rows])[0]
                 self.assertEqual(float(told[mode, name.replace("_", "–")][1]), broken)
+        cracked = self.run_.contact_field(self.run_.frames[-1], "crack_step [1]")
+        lit = browser.run("return [...pyroclast.specimen.lit]")
+        self.assertEqual(set(lit), set(np.flatnonzero((cracked > steps[0]) & (cracked <= steps[1])).tolist()))
+        self.assertTrue(lit)
         energies = dict(self.cells("#piece table", 1))
         lost = np.diff(self.run_.history["dissipated_tension_J"][rows])[0]
         self.assertAlmostEqual(float(energies["tension softening"]), lost, delta=0.006 * lost)  # three digits
@@ -362,6 +366,28 @@ class OtherRuns(PageOfRun):
             often = 0.5 * step * np.sqrt(len(run.mesh.contacts.cells)) * 4.0
             for told, lost in zip(sums, run.history[f"dissipated_{name}_J"][rows]):
                 self.assertAlmostEqual(told, lost, delta=often + 1e-4 * lost)
+
+    def test_properties_are_those_of_the_run_and_gas_is_beside_the_temperatures(self):
+        run = RUNS / "fire_one_side"
+        subprocess.run([os.environ["PYROCLAST"], "plot-properties", run / "deck.toml", "-o", self.folder],
+                       check=True, stdout=subprocess.DEVNULL)
+        every, few = (read_properties(folder / "properties.csv") for folder in (self.folder, run))
+        rows = [sum(len(one.value) for one in table.values()) for table in (every, few)]
+        self.assertLess(rows[1], 0.1 * rows[0])
+        for name, one in few.items():
+            values = np.interp(every[name].temperature, one.temperature, one.value)
+            # 0.1 % that fewer rows may miss, and twelve digits
+            self.assertLessEqual(np.abs(values - every[name].value).max(), 1.001e-3 * np.abs(every[name].value).max(),
+                                 name)
+        browser.open(self.page_of(run))
+        browser.run("for (const tab of ['properties', 'heat']) "
+                    "document.querySelector(`#tabs [data-tab=${tab}]`).click()")
+        titles = browser.run("return [...document.querySelectorAll('#properties h3')].map((h) => h.textContent)")
+        self.assertEqual(titles, [panel.title for panel in panels(few)])
+        self.assertIn("hottest gas [°C]", browser.run("return document.getElementById('heat').textContent"))
+        self.assert_silent()
+        browser.open(self.page_of(RUNS / "compression"))
+        self.assertIsNone(browser.run("return document.getElementById('properties')"))
 
     def test_heat_has_isotherms_and_a_line_across(self):
         run = pyroclast.read(RUNS / "thermal_wall")

@@ -79,7 +79,7 @@ class Results(Case):
         kept = first.copy()
         strain = first.strain
         run.next()
-        with self.assertRaisesRegex(pyroclast.Error, "earlier look"):
+        with self.assertRaisesRegex(pyroclast.Error, "earlier sample"):
             first.strain
         self.assertEqual(kept.strain, strain)
 
@@ -476,6 +476,18 @@ class Arrays(Case):
         contacts = run.contacts()
         self.assertEqual(set(contacts["law"]), {"cohesive", "elastic", "frictional"})
         self.assertLess(contacts["normal_traction_Pa"].mean(), 0.0)
+
+    def test_a_contact_keeps_the_step_of_the_row_that_found_it_cracked(self):
+        run = pyroclast.Run(deck(**{"stages[1].stop_strain": 3e-3}), threads=1)
+        expected = None
+        for state in run:
+            contacts = run.contacts()
+            if expected is None:
+                expected = np.full(len(contacts["crack"]), -1.0)
+            expected[(contacts["crack"] > 0.5) & (expected < 0.0)] = state.step
+            np.testing.assert_array_equal(contacts["crack_step"], expected)
+        self.assertGreater(len(np.unique(expected)), 5)
+        self.assertIn(-1.0, expected)
 
     def test_meshio_and_a_notebook_show_the_run(self):
         run = pyroclast.Run(deck(), threads=1)

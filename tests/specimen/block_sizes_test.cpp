@@ -47,6 +47,21 @@ std::map<int, double> size_in_bands(const Tessellation& t, Band band_of) {
   return sizes;
 }
 
+// Promise: blocks are finer near a point too, such as the tip of a notch.
+TEST(BlockSizes, AreFineAroundAPoint) {
+  const Vec<2> tip{{0.1, 0.05}};
+  const BlockSizes sizes(4e-3, 8e-3, {{.pieces = {{tip, tip}}, .size = 2e-3, .distance = 5e-3}});
+  EXPECT_EQ(sizes.at(tip), 2e-3);
+  EXPECT_EQ(sizes.at({{0.1, 0.0549}}), 2e-3);
+  EXPECT_EQ(sizes.at({{0.1, 0.2}}), 8e-3);
+  const Region region = Region::rectangle(0.2, 0.1);
+  const SizedArea area(region, {{.pieces = {{tip, tip}}, .size = 2e-3, .distance = 5e-3}});
+  const double even = region.area() / 64e-6;
+  EXPECT_GT(area.blocks(8e-3), even + 15.0);  // a circle of 5 mm has 20 blocks of 2 mm, and 1 of 8 mm
+  ASSERT_TRUE(area.largest_for(600));
+  EXPECT_NEAR(area.blocks(*area.largest_for(600)), 600.0, 1e-6);
+}
+
 TEST(BlockSizes, GrowByAFifthFromBlockToBlockUpToTheLargest) {
   const BlockSizes sizes(4e-3, 8e-3, {{.pieces = {{{{0, 0}}, {{0, 1}}}}, .size = 2e-3, .distance = 5e-3}});
   EXPECT_EQ(sizes.at({{5e-3, 0.5}}), 2e-3);

@@ -132,10 +132,27 @@ E = "E_GPa"
             self.assertIn("Compression of a 1,000-block specimen", (page.parent / file).read_text())
 
 
+    def test_with_targets_the_nearest_run_of_the_best_point_and_the_farthest_are_chosen(self) -> None:
+        study = self.made(*METHODS["secant"])
+        found = seen(study)
+        (nearest, best), (farthest, worst) = _chosen(found)
+        targets = study.setup.targets
+
+        def misfit(row: dict) -> float:
+            return sum(((row[t.output] - t.value) / (t.sd or abs(t.value))) ** 2 for t in targets)
+
+        values = [p.distribution.at(u) for p, u in zip(study.setup.parameters, found.findings["best"]["u"])]
+        at_best = [row for row in found.rows if [row[p.column] for p in study.setup.parameters] == values]
+        self.assertEqual(misfit(best), min(map(misfit, at_best)))
+        self.assertEqual(misfit(worst), max(map(misfit, found.rows)))
+        self.assertTrue(nearest.startswith("at the best point, nearest to the targets: "), nearest)
+        self.assertTrue(farthest.startswith("farthest from the targets: "), farthest)
+
     def test_failed_runs_are_chosen_behind_runs_not_yet_made(self) -> None:
         found = mock.Mock()
         found.setup.outputs = [mock.Mock(of_history=False, what="E_GPa")]
         found.setup.outputs[0].name = "E"
+        found.setup.targets = ()
         found.rows = [{"state": state, "reason": "", "E": None, "run": str(number)} for number, state in
                       enumerate(("not run", "not run", "not run", "failed"))]
         self.assertEqual([row["run"] for _, row in _chosen(found)], ["3"])

@@ -9,12 +9,11 @@ from pathlib import Path
 def parser() -> argparse.ArgumentParser:
     """Reads the words behind `pyroclast report`."""
     report = argparse.ArgumentParser(
-        prog="pyroclast report", description="Makes a page of a run: one HTML file with its curve, its specimen in all "
-        "frames and the reasons to believe it, which needs nothing but a browser. It only reads the run, which may "
-        "still go on.")
+        prog="pyroclast report", description="Makes the page of a run: one HTML file for any browser, with the curve, "
+        "the specimen in all frames, and the reasons for and against the results. Reads the run only, which may be in "
+        "progress.")
     report.add_argument("folders", type=Path, nargs="+", metavar="RUN",
-                        help="folder of a run; of several runs the page compares them, of a folder of runs it is an "
-                        "index")
+                        help="folder of a run; several for a comparison; a folder of runs for an index")
     report.add_argument("-o", "--out", type=Path, metavar="FILE",
-                        help="the page (default: report.html in the folder that is given)")
+                        help="file for the page (default: report.html in the given folder)")
     return report

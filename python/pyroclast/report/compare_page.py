@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..curves import names_apart
+from ..deck_differences import differing_keys, values_of, written
 from ..errors import Error
 from ..results import Results
 from ..style import visible
@@ -35,7 +36,7 @@ def compare_page(runs: Sequence[Results]) -> str:
             "over": _common([one.data for one in whole], "over"), "of": _common([one.data for one in whole], "of"),
             "seeds": len(runs) > 2 and [key for key, _ in differences] == ["seed"],
             "same": [list(pair) for pair in combinations(range(min(len(runs), _MOST_BODIES)), 2)
-                     if _is_same_specimen(runs[pair[0]], runs[pair[1]])]}
+                     if all(whole[k].data["body"] for k in pair) and _is_same_specimen(*(runs[k] for k in pair))]}
     return page("compare.html", _SCRIPTS, data, title=f"{len(runs)} runs compared", names=names,
                 levels=[worst(verdict(run)) for run in runs], results=_results(runs), differences=differences,
                 notes=notes, outcomes=[run.outcome for run in runs], has_body=any(one.data["body"] for one in whole))
@@ -64,29 +65,15 @@ def _results(runs: Sequence[Results]) -> list[tuple[str, list[Any]]]:
 
 def deck_differences(runs: Sequence[Results]) -> list[tuple[str, list[str]]]:
     """Keys of the decks whose values are not all the same, and these; "–" where a deck does not have the key."""
-    flat = [_flat(run.deck) for run in runs]
-    for run, keys in zip(runs, flat):
+    decks = [values_of(run.deck) for run in runs]
+    for run, values in zip(runs, decks):
         if "seed" in run.manifest:
-            keys["seed"] = str(run.manifest["seed"])
-            keys.pop("specimen.seed", None)
-    names = dict.fromkeys(name for keys in flat for name in keys)
-    rows = [(name, [keys.get(name, "–") for keys in flat]) for name in names]
-    return [(name, values) for name, values in rows if len(set(values)) > 1]
-
-
-def _flat(table: Any, path: str = "") -> dict[str, str]:
-    if isinstance(table, dict):
-        inner = [(f"{path}.{key}" if path else str(key), value) for key, value in table.items()]
-    elif isinstance(table, list) and any(isinstance(entry, dict) for entry in table):
-        inner = [(f"{path}[{i}]", value) for i, value in enumerate(table)]
-    else:
-        return {path: str(table)}
-    return {name: text for key, value in inner for name, text in _flat(value, key).items()}
+            values["seed",] = str(run.manifest["seed"])
+            values.pop(("specimen", "seed"), None)
+    return [(written(key), [values.get(key, "–") for values in decks]) for key in differing_keys(decks)]
 
 
 def _is_same_specimen(one: Results, other: Results) -> bool:
-    if not (one.has_fields and other.has_fields and one.frames and other.frames):
-        return False
     return all(np.array_equal(a, b) for a, b in ((one.mesh.blocks.points, other.mesh.blocks.points),
                                                  (one.mesh.contacts.points, other.mesh.contacts.points),
                                                  (one.mesh.contacts.interface, other.mesh.contacts.interface)))

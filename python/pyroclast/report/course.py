@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import style
+from ..heating import GAS
 from ..progress import ENERGY_IN, energies_out, extent_of_cracks
 from ..records import abscissa, leading, records_of
 from ..reference import TRANSIENT_STRAIN, strain_band
@@ -49,6 +50,7 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
     yield CurveQuantity("minutes", "time of heating [min]", "heating_time_s", 1.0 / 60.0, "heating_time")
     yield CurveQuantity("temperature_min", "least temperature [°C]", "temperature_min_degC")
     yield CurveQuantity("temperature_max", "greatest temperature [°C]", "temperature_max_degC")
+    yield CurveQuantity("gas", "hottest gas [°C]", GAS)
     for name in run.probes:
         yield CurveQuantity(f"probe_{name}", f"probe {name} [°C]", f"probe_{name}_degC", 1.0, name)
     yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
@@ -92,7 +94,8 @@ def course_of(run: Results) -> PackedCourse:
     over = over if over in by_id else next(iter(by_id), "")
     drawn = [name for name in drawn if name in by_id]
     first = history[by_id[drawn[0]].column] * by_id[drawn[0]].factor if drawn else None
-    found = marks(run, first)
+    goes_back = over not in ("", "time", "minutes", "temperature")
+    found = marks(run, first, history[by_id[over].column] * by_id[over].factor if goes_back else None)
     stage = history["stage"]
     frames = rows_of_frames(run)
     needed = {mark.row for mark in found} | set(frames) | {0, history.rows - 1}

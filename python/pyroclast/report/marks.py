@@ -12,6 +12,7 @@ from ..results import Results
 _CRACK_LENGTH = 1.0  # m, of damaged contacts
 _CRACK_SHARE = 0.01  # of the area of all contacts of a solid
 _HIGHER = 1e-3  # of the peak: what counts as higher
+_BACK = 0.1  # of the way on: what a test goes back at most where it goes on
 _STRETCH = 0.01  # of the rows of the test, over which a drop is measured
 
 
@@ -22,8 +23,12 @@ class Mark:
     row: int  #: of the history
 
 
-def marks(run: Results, leading: np.ndarray | None) -> list[Mark]:
-    """In the order of the run. leading: (rows,) of what the curve is about, such as the stress; None without one."""
+def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> list[Mark]:
+    """In the order of the run.
+
+    leading: (rows,) of what the curve is about, such as the stress; None without one. over: (rows,) of what it is drawn
+        over and goes back where the test unloads, such as the strain; None where only the time is known.
+    """
     found = []
     history = run.history
     broken = _sum(run, "_broken")
@@ -41,10 +46,10 @@ def marks(run: Results, leading: np.ndarray | None) -> list[Mark]:
             found.append(Mark("peak", "peak" if _is_peak(run, leading, peak) else "largest", peak))
             if leading[largest] > leading[peak] * (1.0 + _HIGHER):
                 found.append(Mark("largest", "higher again", largest))
-            if (drop := _largest_drop(leading)) is not None:
+            if (drop := _largest_drop(run, leading, over)) is not None:
                 found.append(Mark("drop", "largest drop", drop))
     if run.critical_temperature is not None:
-        found.append(Mark("end", "failure", history.rows - 1))
+        found.append(Mark("end", "failure", int(np.flatnonzero(run.exchanged)[-1])))
     return sorted(found, key=lambda mark: mark.row)
 
 
@@ -83,8 +88,19 @@ def _sum(run: Results, ending: str) -> np.ndarray | None:
     return np.nansum(columns, axis=0) if columns else None
 
 
-def _largest_drop(values: np.ndarray) -> int | None:
-    """The row at which the largest fall within a short stretch is over; None where nothing falls."""
+def _largest_drop(run: Results, values: np.ndarray, over: np.ndarray | None) -> int | None:
+    """The row at which the largest fall within a short stretch is over, in which the test goes on; None where nothing
+    falls, and where several stages move the body and nothing tells which of them unload.
+    """
     stretch = max(1, int(_STRETCH * len(values)))
-    fall = np.nan_to_num(values[:-stretch] - values[stretch:]) if len(values) > stretch else np.zeros(0)
-    return int(fall.argmax()) + stretch if len(fall) and fall.max() > 0.0 else None
+    if len(values) <= stretch:
+        return None
+    fall = np.nan_to_num(values[:-stretch] - values[stretch:])
+    if over is not None:
+        way = np.sign(over[np.nanargmax(values)] - over[np.isfinite(over).argmax()])
+        change = np.nan_to_num(way * np.diff(over))
+        on, back = (np.r_[0.0, np.cumsum(np.maximum(sign * change, 0.0))] for sign in (1.0, -1.0))
+        fall[back[stretch:] - back[:-stretch] > _BACK * (on[stretch:] - on[:-stretch])] = 0.0
+    elif sum(stage.get("kind") != "settle" for stage in run.deck_stages) > 1:
+        return None
+    return int(fall.argmax()) + stretch if fall.max() > 0.0 else None

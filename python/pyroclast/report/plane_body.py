@@ -10,13 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 
 from ..errors import Error
-from ..files import open_hdf
+from ..files import names_in, read_array
 from ..mesh import Mesh
 from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
@@ -27,6 +27,8 @@ STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5}
 """Wanted steps: MPa, K, m, 1."""
 _LOST_SHARE = 1e-5  # of all energy that contacts lost: the step of what one of them lost
 _LOST = re.compile(r"lost_(\w+) \[J m-2\]")
+_MOST_LEFT_OUT = 4  # notes of frames
+_COMPONENTS = 6  # of a tensor
 _BROKEN = 127  # a damage of 1; everything below is at most 126
 
 
@@ -126,6 +128,8 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
             arrays["turn"] = packed_steps(turn, fine / _block_size(corner, outline))
         else:
             arrays["move_x"], arrays["move_y"] = (packed_steps(moves[..., i], fine) for i in range(2))
+    if "crack_step" in columns:
+        arrays["crack_step"] = packed_whole(exact_steps(run, columns.pop("crack_step")[-1]), 4)
     for name, column in columns.items():
         if name.startswith("damage_"):
             arrays[name] = packed_damage(column)
@@ -140,27 +144,42 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
 
 def read_finite(read: Callable[[Frame], dict[str, np.ndarray]],
                 frames: Sequence[Frame]) -> tuple[list[Frame], dict[str, np.ndarray], list[str]]:
-    """The frames whose numbers are all finite, these (frames, ...) by name, and a note of the other frames."""
-    taken, found = [], []
+    """Frames that are whole, with numbers that are all finite; these (frames, ...) by name; notes of other frames."""
+    taken: list[Frame] = []
+    found: list[dict[str, np.ndarray]] = []
+    notes = []
     for frame in frames:
-        values = read(frame)
-        if all(np.isfinite(column).all() for column in values.values()):
+        try:
+            values = read(frame)
+        except Error as error:
+            notes.append(f"frame {frame.number} is left out: {error}")
+            continue
+        if not all(np.isfinite(column).all() for column in values.values()):
+            notes.append(f"frame {frame.number} is left out: it has numbers that are not finite")
+        elif found and values.keys() != found[0].keys():
+            notes.append(f"frame {frame.number} is left out: it has other fields than the frames before")
+        else:
             taken.append(frame)
             found.append(values)
-    left = len(frames) - len(taken)
-    notes = [f"{left} frames hold numbers that are not finite and are left out"] if left else []
-    return taken, {name: np.array([values[name] for values in found]) for name in (found[0] if found else {})}, notes
+    columns = {name: np.array([values[name] for values in found]) for name in (found[0] if found else {})}
+    return taken, columns, notes if len(notes) <= _MOST_LEFT_OUT else \
+        [*notes[:_MOST_LEFT_OUT - 1], f"{len(notes) - _MOST_LEFT_OUT + 1} more frames are left out"]
+
+
+def exact_steps(run: Results, found: np.ndarray) -> np.ndarray:
+    """Steps of the history for those that the fields have in single precision; -1 where they are negative."""
+    steps = run.history["step"]
+    row = np.searchsorted(steps.astype(np.float32), found.astype(np.float32))
+    return np.where(found < 0.0, -1.0, steps[np.minimum(row, len(steps) - 1)]).astype(np.int64)
 
 
 def about_body(run: Results) -> dict[str, Any]:
     """Names of materials, interfaces and modes of cracks."""
     mesh = run.mesh
     modes = run.crack_modes if run.moves else {}
-    breakable = {name for names in modes.values() for name in names}
     return {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
                           for i, name in enumerate(mesh.blocks.materials)],
             "interfaces": [_said(name) for name in mesh.contacts.interfaces],
-            "breakable": [name in breakable for name in mesh.contacts.interfaces],
             "modes": list(modes)}
 
 
@@ -224,29 +243,28 @@ class _Reader:
         if not run.moves:
             return
         yield "displacement", run.gridpoint_displacement(frame)[outline.gridpoint]
-        with open_hdf(self._folder / f"blocks_{frame.number:04d}.hdf") as file:
-            yield from self._of_zones(file)
+        yield from self._of_zones(self._folder / f"blocks_{frame.number:04d}.hdf")
         damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
         for mode, damage in damages.items():
             yield f"damage_{mode}", damage
         if damages:
             largest = np.max(list(damages.values()), axis=0)
             yield "opening", np.where(largest > 0.0, run.contact_field(frame, "opening [m]"), 0.0)
-        with open_hdf(self._folder / f"contacts_{frame.number:04d}.hdf") as file:
-            for name in file["VTKHDF/CellData"]:
-                if match := _LOST.fullmatch(name):
-                    yield f"lost_{match[1]}", file[f"VTKHDF/CellData/{name}"][()]
+            yield "crack_step", run.contact_field(frame, "crack_step [1]")
+        for name in names_in(self._folder / f"contacts_{frame.number:04d}.hdf", "VTKHDF/CellData"):
+            if match := _LOST.fullmatch(name):
+                yield f"lost_{match[1]}", run.contact_field(frame, name)
 
-    def _of_zones(self, file: h5py.File) -> Iterator[tuple[str, np.ndarray]]:
-        cells = file["VTKHDF/CellData"]
-        stress = cells["stress [Pa]"][()]
+    def _of_zones(self, path: Path) -> Iterator[tuple[str, np.ndarray]]:
+        shape = (len(self._share), _COMPONENTS)
+        stress = read_array(path, "VTKHDF/CellData/stress [Pa]", shape)
         xx, yy, xy = (1e-6 * self._mean(stress[:, i]) for i in (0, 1, 3))
         middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
         yield "stress_y", yy
         yield "stress_1", middle + radius
         yield "stress_2", middle - radius
-        if "creep_strain [1]" in cells:
-            yield "creep_y", self._mean(cells["creep_strain [1]"][:, 1])
+        if "creep_strain [1]" in names_in(path, "VTKHDF/CellData"):
+            yield "creep_y", self._mean(read_array(path, "VTKHDF/CellData/creep_strain [1]", shape)[:, 1])
 
     def _mean(self, of_zones: np.ndarray) -> np.ndarray:
         """(B,) over the zones of each block, by area."""

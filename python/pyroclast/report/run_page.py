@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from .. import style
 from ..errors import Error
+from ..properties import panels, read_properties
 from ..results import Results, SpecimenFolder
 from .course import course_of, rows_of_frames
 from .judging import Card, cards, stage_verdict, verdict, worst
@@ -45,7 +46,10 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     rows = rows_of_frames(run)
     row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
     marked = {min((row for row in rows if row >= mark.row), default=rows[-1]) for mark in course.marks}
-    body = fitted(run, most, lambda frame: row_of[frame.number] in marked)
+    try:
+        body = fitted(run, most, lambda frame: row_of[frame.number] in marked)
+    except Error as error:
+        return RunData(data, [*notes, f"the specimen cannot be shown: {error}"])
     if not body.frames:
         return RunData(data, notes + body.notes)
     place = dict(zip((frame.number for frame in run.frames), course.about["frames"]))
@@ -61,11 +65,12 @@ def run_page(run: Results) -> str:
     reasons = verdict(run)
     facts = [_without_formulas(fact) for fact in style.facts_of(run)]
     body = data["body"]
+    data["properties"] = _properties(run)
     return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
                 cards=_cards(run, data), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
-                can_crack=bool(run.moves and run.crack_modes))
+                can_crack=bool(run.moves and run.crack_modes), has_properties=bool(data["properties"]))
 
 
 def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
@@ -129,6 +134,16 @@ def _gradation(run: Results) -> list[tuple[str, str, str]]:
                 in zip(table["d_m"], table["asked_percent"], table["placed_percent"])][:_MOST_FACTS]
     except Error:
         return []  # a specimen without circles has none
+
+
+def _properties(run: Results) -> list[dict[str, Any]]:
+    """Panels of properties over the temperature; none where the temperature of the run stays."""
+    path = run.folder / "properties.csv"
+    if not path.exists():
+        return []
+    return [{"title": panel.title, "label": panel.label, "from0": panel.from_zero,
+             "lines": [{"name": line.label, "x": line.curve.temperature.tolist(), "y": line.shown.tolist()}
+                       for line in panel.lines]} for panel in panels(read_properties(path))]
 
 
 def _changes(run: Results) -> list[str]:

@@ -14,9 +14,7 @@ from ..files import read_array
 from ..mesh import BlockMesh
 from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
-from .plane_body import FINE, PackedBody, STEPS, about_body, packed_damage, read_finite
-
-_CRACK = 0.5  # damage from which a contact is kept
+from .plane_body import FINE, PackedBody, STEPS, about_body, exact_steps, packed_damage, read_finite
 
 
 def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
@@ -50,12 +48,13 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         kind = name.split("_")[0]
         if kind in ("shift", "turn"):
             arrays[name] = packed_steps(column, fine if kind == "shift" else fine / size)
-        elif kind not in ("damage", "opening", "move"):
+        elif kind not in ("damage", "opening", "move", "crack"):
             arrays[name] = packed_steps(column, STEPS[kind])
     if modes:
         damages = {mode: columns[f"damage_{mode}"] for mode in modes}
-        breakable = np.array(about_body(run)["breakable"])[contacts.interface]
-        kept = np.flatnonzero(breakable & (np.max(list(damages.values()), axis=(0, 1)) > _CRACK))
+        steps = exact_steps(run, columns["crack_step"][-1])
+        kept = np.flatnonzero(steps >= 0)
+        arrays["crack_step"] = packed_whole(steps[kept], 4)
         arrays["interface"] = packed_whole(contacts.interface[kept], 1)
         arrays["extent"] = packed_floats(contacts.extent[kept])
         arrays["number"] = packed_whole(kept, 4)
@@ -118,6 +117,7 @@ class _Reader:
         found.update(stress_y=yy, stress_1=principal[:, 2], stress_2=principal[:, 0])
         for mode in run.crack_modes:
             found[f"damage_{mode}"] = run.contact_field(frame, f"{mode}_damage [1]")
+        found["crack_step"] = run.contact_field(frame, "crack_step [1]")
         found["opening"] = run.contact_field(frame, "opening [m]")
         found["move"] = run.contact_displacement(frame)[contacts.cells[:, 0]]
         return found

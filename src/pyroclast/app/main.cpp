@@ -47,9 +47,9 @@ void add_seed(CLI::App* command, std::optional<std::int64_t>& seed) {
 }
 
 void add_output(CLI::App* command, app::RunOptions& options) {
-  command->add_option(
-      "-o,--out", options.out,
-      "Folder for the results (default: runs/<name of the deck>, of a specimen <...>-specimen)");
+  command->add_option("-o,--out", options.out,
+                      "Folder for the results (default: runs/<name of the deck>; of `specimen` runs/<name of "
+                      "the deck>-specimen)");
   command->add_flag("--overwrite", options.overwrite, "Replace the results of an earlier run");
   command->add_flag("!--no-figures", options.figures, "Draw no figures");
 }
@@ -61,25 +61,27 @@ void add_page(CLI::App* command, app::RunOptions& options) {
 void add_speech(CLI::App* command, app::RunOptions& options) {
   auto* quiet = command->add_flag_callback(
       "--quiet", [&options] { options.speech = app::Speech::quiet; },
-      "Print nothing but errors; run.log has it all");
+      "Print errors only; run.log has all messages");
   command
       ->add_flag_callback(
-          "--verbose", [&options] { options.speech = app::Speech::verbose; }, "Print a line for each look")
+          "--verbose", [&options] { options.speech = app::Speech::verbose; }, "Print a line for each sample")
       ->excludes(quiet);
 }
 
 void add_watch(CLI::App* command, app::RunOptions& options) {
-  command->add_flag("--watch", options.watch,
-                    "Show curve and specimen as they grow: in a window, or without a display in the terminal "
-                    "and in figures/watch.png of the folder");
+  command->add_flag(
+      "--watch", options.watch,
+      "Show curve and specimen during the run: in a window, or without a display in the terminal "
+      "and in figures/watch.png of the folder");
 }
 
 void add_threads(CLI::App* command, int& threads) {
   command
-      ->add_option("-t,--threads", threads,
-                   "At most so many threads (default: as many as processors are free for the program). Small "
-                   "bodies, and "
-                   "runs beside other work, take fewer; results are the same for any number")
+      ->add_option(
+          "-t,--threads", threads,
+          "At most this many threads (default: one for each processor that is free for the program). Small "
+          "bodies, and "
+          "runs beside other work, take fewer; results are the same for any number")
       ->check(whole_number(1, app::kMostThreads));
 }
 
@@ -92,9 +94,8 @@ void add_processor(CLI::App* command, app::RunOptions& options) {
 
 void add_changes(CLI::App* command, app::RunOptions& options) {
   command
-      ->add_option(
-          "--set", options.changes,
-          "Another value for a key of the deck, or one that it does not have: --set stages[1].to='400 degC'")
+      ->add_option("--set", options.changes,
+                   "Change a key of the deck, or add a key: --set stages[1].to='400 degC'")
       ->take_all()
       ->allow_extra_args(false);
 }
@@ -113,11 +114,10 @@ void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_flag("--allow-code", options.allow_code,
-                    "Let code that the deck names run, now and until it changes; read it first");
+                    "Allow the code that the deck names, until the code changes; read the code first");
   command->add_flag("--of-study", options.of_study,
-                    "What --set says comes from the file of a study: code that it names needs your word");
-  command->add_flag("!--no-compile", options.may_compile,
-                    "Compile no contact law that a deck states as a header");
+                    "Treat --set as part of a study file: code that it names needs --allow-code");
+  command->add_flag("!--no-compile", options.may_compile, "Compile no contact laws from headers");
 }
 
 int command_line(int argc, char** argv) {
@@ -131,7 +131,7 @@ int command_line(int argc, char** argv) {
   app::RunOptions options;
   for (int i = 0; i < argc; ++i) options.command += fmt::format("{}{}", i == 0 ? "" : " ", argv[i]);
   auto* run = cli.add_subcommand("run", "Run a deck");
-  auto* check = cli.add_subcommand("check", "Check a deck and tell what its run will be, without running it");
+  auto* check = cli.add_subcommand("check", "Check a deck and forecast its run, without running it");
   auto* specimen = cli.add_subcommand("specimen", "Make only the specimen of a deck, with its pictures");
   for (auto* command : {run, check, specimen}) {
     add_deck(command, options.deck);
@@ -148,20 +148,22 @@ int command_line(int argc, char** argv) {
   add_speech(run, options);
   add_watch(run, options);
   run->add_option("--seeds", options.seeds,
-                  "Run so many specimens, from --seed or 1 on: each result with its mean and 95 % interval, "
+                  "Run this many specimens, from seed 1 or --seed on: print each result with its mean and 95 "
+                  "% interval, "
                   "the curves "
                   "with their band, and the pictures of the median specimen")
       ->check(whole_number(1, 100000));
   run->add_flag_callback(
       "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
-      "Write no fields, as [output] fields = false; figures are those of the history");
+      "Write no fields, as [output] fields = false; then figures show the history only");
 
   app::ResumeOptions resume_options;
   resume_options.as.command = options.command;
   auto* resume = cli.add_subcommand(
-      "resume", "Go on with a run that was broken off, or fork one: other stages after some that are done");
+      "resume", "Continue an interrupted run, or fork one: keep its first stages and append others");
   resume->add_option("RUN", resume_options.run, "Folder of a run")->required();
-  resume->add_option("--checkpoint-file", resume_options.checkpoint, "Go on from this one, not the newest");
+  resume->add_option("--checkpoint-file", resume_options.checkpoint,
+                     "Continue from this checkpoint, not from the newest");
   auto* from_stage = resume->add_option("--from-stage", resume_options.from_stage,
                                         "Fork: the last stage in common, by its number from 0 or its name");
   resume->add_option("--stages", resume_options.more, "Fork: append the [[stages]] of this file")
@@ -182,34 +184,35 @@ int command_line(int argc, char** argv) {
   auto* law_deck = law->add_option("DECK", law_options.deck, "TOML file that describes the run");
   auto* stated =
       law->add_option("--law", law_options.law,
-                      "A law instead of a deck's: a name, a shared object (mine.so) or a header (mine.hpp), "
+                      "Use this law, not a deck's: a name, a shared object (mine.so) or a header (mine.hpp), "
                       "which is compiled");
   stated->excludes(law_deck);
-  law->add_option("--set", law_options.values, "With --law: a property of it, --set f_t='3 MPa', or a choice")
+  law->add_option("--set", law_options.values, "Set a property or a choice of the law: --set f_t='3 MPa'")
       ->take_all()
       ->allow_extra_args(false)
       ->needs(stated);
   add_own_laws(law, law_options.sources);
-  auto* law_path = law->add_option("--path", law_options.path,
-                                   "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]");
-  law->add_option("--interface", law_options.interface,
-                  "A table of [contacts], or a_a for two blocks of phase a (default: that of the matrix)");
-  law->add_option("--steps", law_options.steps, "Cut each leg of the path into so many steps")
+  auto* law_path =
+      law->add_option("--path", law_options.path,
+                      "CSV file with columns u_n, u_s and optionally T, each with its unit: u_n [um]");
+  law->add_option(
+      "--interface", law_options.interface,
+      "A table of [contacts], or a_a for two blocks of phase a (default: the interface of the matrix)");
+  law->add_option("--steps", law_options.steps, "Steps of each leg of the path")
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->default_val(1);
   law->add_option("-o,--out", law_options.out, "CSV file to write (default: standard output)");
   app::VerifyOptions verify_options;
-  auto* verify =
-      law->add_option("--verify", verify_options.laws,
-                      "Instead: try these laws, or all, against the properties that a law must have")
-          ->expected(0, -1)
-          ->excludes(law_deck)
-          ->excludes(law_path);
-  law->add_option("--paths", verify_options.paths, "Random paths in each dimension")
+  auto* verify = law->add_option("--verify", verify_options.laws,
+                                 "Test these laws, or all, for the properties that a law must have")
+                     ->expected(0, -1)
+                     ->excludes(law_deck)
+                     ->excludes(law_path);
+  law->add_option("--paths", verify_options.paths, "Number of random paths in each dimension")
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->needs(verify)
       ->default_val(10000);
-  law->add_option("--seed", verify_options.seed, "Of the random paths")->needs(verify)->default_val(1);
+  law->add_option("--seed", verify_options.seed, "Seed of the random paths")->needs(verify)->default_val(1);
   law->callback([&] {
     verify_options.sources = law_options.sources;
     if (*verify) return;
@@ -226,16 +229,17 @@ int command_line(int argc, char** argv) {
 
   auto* figures = cli.add_subcommand(
       "figures",
-      "Draw figures of runs that are there, several in one too: figures compare RUN... --out FILE");
+      "Draw the figures of a run again, or several runs in one figure: figures compare RUN... --out FILE");
   figures->prefix_command();
   figures->set_help_flag();
 
   auto* report = cli.add_subcommand(
-      "report", "Make the page of a run, which needs nothing but a browser: report RUN [--out FILE]");
+      "report", "Make the page of a run, one HTML file for any browser: report RUN [--out FILE]");
   report->prefix_command();
   report->set_help_flag();
 
-  auto* watch = cli.add_subcommand("watch", "Show a run that another process computes: watch RUN [--once]");
+  auto* watch =
+      cli.add_subcommand("watch", "Show a run while another process computes it: watch RUN [--once]");
   watch->prefix_command();
   watch->set_help_flag();
 
@@ -245,16 +249,15 @@ int command_line(int argc, char** argv) {
   study->set_help_flag();
 
   auto* converge = cli.add_subcommand("converge",
-                                      "Say what half the rate, half the exchange step, and half and double "
-                                      "the block size move: converge DECK");
+                                      "Tell how far results move with half the rate, half the exchange step, "
+                                      "and half and double the block size: converge DECK");
   converge->prefix_command();
   converge->set_help_flag();
 
   std::string name, from = "starter";
   auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
-  starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
-  starter->add_option("--from", from, "Case that it is a copy of, see `pyroclast list cases`")
-      ->capture_default_str();
+  starter->add_option("NAME", name, "Name of the new deck: NAME.toml")->required();
+  starter->add_option("--from", from, "Case to copy, see `pyroclast list cases`")->capture_default_str();
 
   app::ConcreteOptions concrete_options;
   for (int i = 0; i < argc; ++i) {
@@ -265,63 +268,65 @@ int command_line(int argc, char** argv) {
   }
   auto* concrete = cli.add_subcommand(
       "concrete",
-      "Write the deck of a concrete by its strength and stiffness, and a study that calibrates it");
-  concrete->add_option("--f_c", concrete_options.strength, "Its mean strength: --f_c '45 MPa'")->required();
-  concrete->add_option("--E", concrete_options.modulus, "Its Young's modulus: --E '32 GPa'")->required();
-  concrete->add_option("--aggregate", concrete_options.rock, "Its rock, see `pyroclast list rocks`")
+      "Write a deck for your concrete from its strength and stiffness, and a study that calibrates the deck");
+  concrete->add_option("--f_c", concrete_options.strength, "Mean compressive strength: --f_c '45 MPa'")
+      ->required();
+  concrete->add_option("--E", concrete_options.modulus, "Young's modulus: --E '32 GPa'")->required();
+  concrete
+      ->add_option("--aggregate", concrete_options.rock, "Rock of the aggregate, see `pyroclast list rocks`")
       ->required();
   concrete->add_option("--fraction", concrete_options.fraction,
-                       "Area of coarse aggregate over that of a section");
-  concrete->add_option(
-      "--stones", concrete_options.stones,
-      "Instead: mass of the aggregate in the mix, '1100 kg/m3'; with --passing, of all of it");
+                       "Area of coarse aggregate over the area of a section");
+  concrete->add_option("--stones", concrete_options.stones,
+                       "Mass of coarse aggregate in the mix, in the place of --fraction: '1100 kg/m3'; with "
+                       "--passing, of all aggregate");
   concrete->add_option("--d_max", concrete_options.d_max, "Largest aggregate, graded by Fuller's curve");
   concrete
-      ->add_option(
-          "--passing", concrete_options.passing,
-          "Instead: what passes each sieve, by mass: --passing '4 mm=38 %' '8 mm=55 %' '20 mm=100 %'")
+      ->add_option("--passing", concrete_options.passing,
+                   "Share that passes each sieve, by mass, in the place of --d_max: --passing '4 mm=38 %' '8 "
+                   "mm=55 %' '20 mm=100 %'")
       ->take_all();
   concrete
       ->add_option("--d_min", concrete_options.d_min,
-                   "Smallest coarse aggregate; the mortar has what is smaller")
+                   "Smallest coarse aggregate; smaller grains belong to the mortar")
       ->capture_default_str();
   concrete->add_option("--width", concrete_options.width,
-                       "Of the specimen (default: 150 mm; with --from: its deck's)");
+                       "Width of the specimen (default: 150 mm; with --from: as in its deck)");
   concrete->add_option("--height", concrete_options.height,
-                       "Of the specimen (default: 300 mm; with --from: its deck's)");
+                       "Height of the specimen (default: 300 mm; with --from: as in its deck)");
   concrete
-      ->add_option("--blocks", concrete_options.blocks,
-                   "Number of blocks (default: 5 in the largest aggregate, but 1000 to 5000 of them)")
+      ->add_option(
+          "--blocks", concrete_options.blocks,
+          "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 blocks)")
       ->check(whole_number(100, 1000000));
   concrete->add_option("--hot", concrete_options.hot,
-                       "Write a test at this temperature too: --hot '400 degC'");
+                       "Also write a deck of a test at this temperature: --hot '400 degC'");
   concrete->add_option("--from", concrete_options.from,
-                       "With --hot: take mortar and contacts from this deck, such as the calibrated one");
-  concrete->add_option("-o,--out", concrete_options.out, "The deck will be this file")->required();
+                       "Take mortar and contacts of the hot test from this deck, such as the calibrated one");
+  concrete->add_option("-o,--out", concrete_options.out, "File for the deck")->required();
 
   app::KeysOptions keys_options;
-  auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
-  keys->add_flag("--json", keys_options.json, "As JSON");
+  auto* keys = cli.add_subcommand("keys", "Print all keys of decks, as Markdown");
+  keys->add_flag("--json", keys_options.json, "Print JSON");
   keys->add_flag("--schema", keys_options.schema,
-                 "As a JSON Schema (draft 4), with which editors complete and check decks");
-  keys->add_flag(
-          "--survey", keys_options.survey,
-          "Ask the readers of decks, which takes a while, and not the file that they left at the build")
+                 "Print a JSON Schema (draft 4), with which editors complete and check decks");
+  keys->add_flag("--survey", keys_options.survey,
+                 "Ask the readers of decks again, not the file of the build; takes a while")
       ->group("");
   auto* laws = cli.add_subcommand("laws", "Print the contact laws of the program, as Markdown");
 
   std::string list_of;
-  auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
+  auto* list = cli.add_subcommand("list", "List the names that a deck may use, a line each");
   list->add_option("WHAT", list_of, "cases, columns, curves, fields, fires, keys, laws, rocks or units");
 
-  auto* doctor =
-      cli.add_subcommand("doctor", "Say what is there and what is missing; a report of a bug needs it");
+  auto* doctor = cli.add_subcommand(
+      "doctor", "List the parts that are present and those that are missing; add this list to a bug report");
 
   auto* manual = cli.add_subcommand("manual", "Print the manual page, for man");
   std::string shell = "bash";
   auto* completion = cli.add_subcommand("completion", "Print the completion of a shell for this program");
   completion->add_option("SHELL", shell, "bash or zsh")->capture_default_str();
-  auto* commands = cli.add_subcommand("commands", "Print all of this as JSON")->group("");
+  auto* commands = cli.add_subcommand("commands", "Print all commands as JSON")->group("");
 
   try {
     cli.parse(argc, argv);
@@ -357,7 +362,7 @@ int command_line(int argc, char** argv) {
     return app::make_deck(name, from);
   }();
   if (std::fflush(stdout) != 0)
-    throw Error(fmt::format("what is printed cannot be written ({})", std::strerror(errno)));
+    throw Error(fmt::format("the output cannot be written ({})", std::strerror(errno)));
   return code;
 }
 

@@ -248,6 +248,7 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
   if (!of_matrix)
     throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));
 
+  concrete.bearing_interfaces = p.bearings.size();
   for (const BearingInterface& bearing : p.bearings) {
     const bool is_glued = bearing.contact == BearingContact::glued;
     ContactMaterial& contact =

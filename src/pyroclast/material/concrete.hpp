@@ -215,6 +215,7 @@ struct ConcreteMaterials {
   std::vector<BlockMaterial> block_materials;  ///< materials by phase, then those of bearings
   std::vector<std::string> interfaces;         ///< names as in InterfaceTable, then those of bearings
   std::vector<ContactMaterial> contacts;       ///< contacts in the order of `interfaces`
+  std::size_t bearing_interfaces = 0;          ///< number of those of bearings
   double fracture_zone = 0.0;                  ///< t_b that results where blocks have their mean size, m
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< composition, where `follow_composition` was called

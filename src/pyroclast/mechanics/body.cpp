@@ -93,6 +93,8 @@ void Body<Dim>::place_model() {
   s.displacement = made<Vec<Dim>>(packs * kLanes);
   s.step_over_mass = made<double>(packs * kLanes);
   const auto point_packs = static_cast<std::size_t>(layout.point_packs);
+  s.crack_step = made<double>(point_packs * kLanes);
+  std::fill(s.crack_step.begin(), s.crack_step.end(), kNotCracked);
   s.losing = made<bool>(point_packs);
   s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
   if (parameters.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);

@@ -46,10 +46,11 @@ bool all_zero(const double* lanes) {
   return bits == 0;
 }
 
-/// Returns the bits of the contact point of each slot. Goes over the internal variables as they stand: most
-/// points have no damage, and to ask one by one costs more than all else of a look.
-template <int Dim>
-std::vector<std::uint8_t> damages(const Body<Dim>& body) {
+/// Calls `f(pack_of_points, mode, damages)` where a mode has damaged one of the eight points. Goes over the
+/// internal variables as they stand: most points have no damage, and to ask one by one costs more than all
+/// else of a look.
+template <int Dim, class F>
+void for_each_damage(const Body<Dim>& body, F f) {
   const auto& layout = body.layout;
   const auto& state = body.state;
   struct Place {
@@ -61,8 +62,6 @@ std::vector<std::uint8_t> damages(const Body<Dim>& body) {
     for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(Dim))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
         of_law.push_back({static_cast<std::size_t>(&info - law->internals(Dim).data()), mode});
-  std::vector<std::uint8_t> bits(static_cast<std::size_t>(layout.first_point_of(layout.face_packs())) *
-                                 kLanes);
   for (int pack = 0; pack < layout.face_packs(); ++pack) {
     const std::uint8_t law = state.law_of_faces[pack];
     const std::size_t lines_of_point = body.laws[law]->internals(Dim).size();
@@ -70,16 +69,23 @@ std::vector<std::uint8_t> damages(const Body<Dim>& body) {
     const int first = layout.first_point_of(pack);
     for (int point = first; point < layout.first_point_of(pack + 1); ++point) {
       const Line* const line = lines + static_cast<std::size_t>(point - first) * lines_of_point;
-      std::uint8_t* const of_point = bits.data() + static_cast<std::size_t>(point) * kLanes;
-      for (const auto [place, mode] : places[law]) {
-        const double* const damage = line[place].number;
-        if (all_zero(damage)) continue;
-        for (int lane = 0; lane < kLanes; ++lane)
-          of_point[lane] |= static_cast<std::uint8_t>((damage[lane] > 0.0 ? damaged_by(mode) : 0) |
-                                                      (damage[lane] >= 1.0 ? broken_by(mode) : 0));
-      }
+      for (const auto [place, mode] : places[law])
+        if (const double* const damage = line[place].number; !all_zero(damage)) f(point, mode, damage);
     }
   }
+}
+
+/// Returns the bits of the contact point of each slot.
+template <int Dim>
+std::vector<std::uint8_t> damages(const Body<Dim>& body) {
+  std::vector<std::uint8_t> bits(
+      static_cast<std::size_t>(body.layout.first_point_of(body.layout.face_packs())) * kLanes);
+  for_each_damage(body, [&](int point, std::size_t mode, const double* damage) {
+    std::uint8_t* const of_point = bits.data() + static_cast<std::size_t>(point) * kLanes;
+    for (int lane = 0; lane < kLanes; ++lane)
+      of_point[lane] |= static_cast<std::uint8_t>((damage[lane] > 0.0 ? damaged_by(mode) : 0) |
+                                                  (damage[lane] >= 1.0 ? broken_by(mode) : 0));
+  });
   return bits;
 }
 
@@ -159,6 +165,18 @@ Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds) 
   return {std::move(sums.of_kind), sums.extent > 0.0 ? sums.opening / sums.extent : 0.0};
 }
 
+template <int Dim>
+void note_cracks(Body<Dim>& body) {
+  const auto now = static_cast<double>(body.steps);
+  for_each_damage(body, [&](int point, std::size_t /*mode*/, const double* damage) {
+    double* const step = body.arrays.crack_step.data() + static_cast<std::size_t>(point) * kLanes;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (damage[lane] > kCracked && step[lane] == kNotCracked) step[lane] = now;
+  });
+}
+
+template void note_cracks(Body<2>&);
+template void note_cracks(Body<3>&);
 template std::vector<CrackKind> crack_kinds(const Body<2>&);
 template std::vector<CrackKind> crack_kinds(const Body<3>&);
 template Cracks count_cracks(const Body<2>&, const std::vector<CrackKind>&);

@@ -47,4 +47,12 @@ struct Cracks {
 template <int Dim>
 Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds);
 
+/// Damage above which a contact point counts as a crack of some age.
+inline constexpr double kCracked = 0.5;
+
+/// Notes the present step for each contact point whose damage by some mode is above kCracked for the first
+/// time.
+template <int Dim>
+void note_cracks(Body<Dim>& body);
+
 }  // namespace pyroclast

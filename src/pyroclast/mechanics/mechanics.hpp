@@ -5,6 +5,7 @@
 
 #include "pyroclast/mechanics/body.hpp"
 #include "pyroclast/mechanics/constraints.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/mechanics/masses.hpp"
 #include "pyroclast/mechanics/mover.hpp"
 #include "pyroclast/mechanics/properties.hpp"
@@ -44,6 +45,9 @@ class Mechanics {
   /// was elastic until now becomes creep strain. The ledger counts its work as "creep" in `dissipated`;
   /// `property_change` closes the ledger. Does nothing where no zone creeps.
   void commit_creep();
+
+  /// Notes the step for contacts that have cracked since the last call.
+  void note_cracks() { pyroclast::note_cracks(*body_); }
 
   /// Takes a number of steps.
   void advance(int steps);

@@ -43,6 +43,7 @@ class MotionReader {
   virtual ContactState contact(int contact) const = 0;
   virtual ContactFrame<3> frame_of_forces(int contact) const = 0;
   virtual double remembered(int contact, Remembers what) const = 0;
+  virtual double crack_step(int contact) const = 0;
   virtual double opening(int contact) const = 0;
 };
 
@@ -89,6 +90,7 @@ class Motion {
   virtual TimeStepLimit real_mass_limit() const = 0;
   virtual BodyProperties set_properties(BodyProperties properties) = 0;
   virtual void commit_creep() = 0;
+  virtual void note_cracks() = 0;
   [[nodiscard]] virtual bool break_contact(int contact) = 0;
   virtual void visit_state(StateVisitor& visitor) = 0;
 
@@ -130,6 +132,7 @@ class MotionOf final : public Motion {
     return mechanics_.set_properties(std::move(properties));
   }
   void commit_creep() override { mechanics_.commit_creep(); }
+  void note_cracks() override { mechanics_.note_cracks(); }
   [[nodiscard]] bool break_contact(int contact) override { return mechanics_.break_contact(contact); }
   void visit_state(StateVisitor& visitor) override { mechanics_.visit_state(visitor); }
   bool creeps() const override { return mechanics_.body().creeps(); }
@@ -181,6 +184,7 @@ class MotionOf final : public Motion {
     ContactState contact(int contact) const override { return read_.contact(contact); }
     ContactFrame<3> frame_of_forces(int contact) const override;
     double remembered(int contact, Remembers what) const override { return read_.remembered(contact, what); }
+    double crack_step(int contact) const override { return read_.crack_step(contact); }
     double opening(int contact) const override { return read_.opening(contact); }
 
    private:

@@ -146,6 +146,11 @@ double Reader<Dim>::remembered(int contact, Remembers what) const {
 }
 
 template <int Dim>
+double Reader<Dim>::crack_step(int contact) const {
+  return body_.arrays.crack_step[body_.layout.contact_slot[contact]];
+}
+
+template <int Dim>
 ContactState Reader<Dim>::contact(int contact) const {
   const int set = body_.properties.of_contact[contact], lane = body_.layout.contact_slot[contact] % kLanes;
   ContactState state;

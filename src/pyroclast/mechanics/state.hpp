@@ -120,9 +120,11 @@ struct StateArrays {
   Array<Line> internals, loss;       ///< lines of each pack of points in turn
   Array<int> first_internal;         ///< first line of each pack of faces, and of one more
   Array<int> first_loss;             ///< first line of each pack of faces, and of one more
-  Array<bool> losing;                ///< true for a pack of points that lost something in the last step
-  Array<Vec<Dim>> contact_force;     ///< force on side a by slot, from which gridpoints gather, N
-  Array<Vec<Dim>> turning_force;     ///< force on both sides by slot; finite kinematics only, N
+  /// Step at which each point was first found cracked, by slot, see note_cracks; kNotCracked before that.
+  Array<double> crack_step;
+  Array<bool> losing;             ///< true for a pack of points that lost something in the last step
+  Array<Vec<Dim>> contact_force;  ///< force on side a by slot, from which gridpoints gather, N
+  Array<Vec<Dim>> turning_force;  ///< force on both sides by slot; finite kinematics only, N
   /// Forces of zones of pieces on their corners, from which gridpoints gather, N: for each pack of zones
   /// eight of each corner; behind them eight idle ones.
   Array<Vec<Dim>> corner_force;
@@ -165,6 +167,8 @@ struct StateArrays {
     f(ArrayInfo{"loss", Per::entry, Touched::none, Touched::none, Lasts::kept}, s.loss...);
     f(ArrayInfo{"first_internal", Per::face_pack_end, Touched::all}, s.first_internal...);
     f(ArrayInfo{"first_loss", Per::face_pack_end, Touched::all}, s.first_loss...);
+    f(ArrayInfo{"crack_step", Per::point_slot_or_idle, Touched::none, Touched::none, Lasts::kept},
+      s.crack_step...);
     f(ArrayInfo{"losing", Per::point_pack_or_idle, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
     f(ArrayInfo{"contact_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
                 HeldBy::owner_and_halo},
@@ -190,6 +194,9 @@ struct StateArrays {
     f(ArrayInfo{"face_sums", Per::face_pack, Touched::none, Touched::none, Lasts::kept}, s.face_sums...);
   }
 };
+
+/// Step of a contact point that has not cracked.
+inline constexpr double kNotCracked = -1.0;
 
 /// Parameters that all parts of the body share in a step.
 template <int Dim>

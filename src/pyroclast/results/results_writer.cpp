@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/results/properties_file.hpp"
 #include "pyroclast/results/specimen_files.hpp"
+#include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast {
 
@@ -16,6 +18,7 @@ ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
       specimen_(setup.specimen),
       references_(setup.references),
+      temperatures_(setup.temperatures),
       has_fields_(setup.has_fields) {
   for (const Diagnostic& warning : setup.warnings) warnings_.push_back(without_place(warning));
 }
@@ -28,6 +31,10 @@ void ResultsWriter::begin(const Run& run) {
   for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
     lost_frames_.push_back(fmt::format(
         "a frame is lost: fields/{} is missing or broken; a run from the beginning has it", name));
+  if (temperatures_.upper > temperatures_.lower)
+    write_text_file(folder_ / "properties.csv",
+                    properties_csv(property_curves(run.simulation().materials(), run.simulation().moves()),
+                                   temperatures_, PropertyRows::few));
   if (run.simulation().has_specimen())
     write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }

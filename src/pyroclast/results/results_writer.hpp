@@ -14,8 +14,8 @@
 
 namespace pyroclast {
 
-/// Writer of a run's results into its folder as they come: `history.csv`, `fields/`, `specimen/`, and at the
-/// end `summary.json`:
+/// Writer of a run's results into its folder as they come: `history.csv`, `fields/`, `specimen/`,
+/// `properties.csv`, and at the end `summary.json`:
 ///
 ///     writer.begin(run);
 ///     while (run.next()) writer.write(run);
@@ -26,8 +26,9 @@ class ResultsWriter {
   /// \param folder  folder that exists, see RunFolder
   ResultsWriter(std::filesystem::path folder, const Setup& setup);
 
-  /// Writes the specimen, the mesh, and all present rows. Where a run goes on from a checkpoint, anything
-  /// written after the checkpoint is removed. Throws Error when a file cannot be written.
+  /// Writes the specimen, the mesh, the properties where the temperature changes, and all present rows. Where
+  /// a run goes on from a checkpoint, anything written after the checkpoint is removed. Throws Error when a
+  /// file cannot be written.
   void begin(const Run& run);
   /// Returns a line for each file of an earlier frame that `begin` did not find whole; the lines are also
   /// among the warnings of the summary.
@@ -58,7 +59,8 @@ class ResultsWriter {
   std::vector<Reference> references_;
   std::vector<std::string> warnings_;  ///< warnings of the deck, and of changes to the run
   std::vector<std::string> lost_frames_;
-  bool has_fields_;  ///< true where fields are written
+  Interval temperatures_;  ///< temperatures to which the run may come, °C
+  bool has_fields_;        ///< true where fields are written
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;
   FrameRows frames_;

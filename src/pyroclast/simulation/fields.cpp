@@ -99,6 +99,12 @@ double crack(const R& r, int contact) {
   return most;
 }
 
+/// Returns the step at which a contact was first found cracked, as `crack` tells it.
+double crack_step(const R& r, int contact) {
+  if (r.model().is_of_bearing(r.model().joint(contact))) return kNotCracked;
+  return r.motion().read().crack_step(contact);
+}
+
 double temperature_jump(const R& r, int contact) {
   const auto& temperature = r.simulation().field().gridpoints();
   const Joint& c = r.model().joint(contact);
@@ -156,6 +162,10 @@ constexpr auto kOfContacts = std::to_array<KnownField>({
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack(r, i); },
      "the largest damage by any mode, 0 intact, 1 broken; 0 at the platens, which are no cracks"},
+    {"crack_step", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
+     [](R& r, int i, double* to) { *to = crack_step(r, i); },
+     "step of the first row of the history that found the largest damage above 0.5; -1 before, and at the "
+     "platens"},
     {"opening", unit::length, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = r.contact(i).opening; }, "normal jump, positive when open"},
     {"tangential_jump", unit::length, Item::contact, ValueKind::number, true, moves,

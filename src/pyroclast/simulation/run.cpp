@@ -110,6 +110,7 @@ bool Run::next() {
   frame_is_due_ = false;
   if (!has_started_) {
     has_started_ = true;
+    if (simulation_.moves()) simulation_.motion().note_cracks();
     add_row();
     frame_is_due_ = true;
     return true;
@@ -117,7 +118,10 @@ bool Run::next() {
   if (stage_is_over_) ++stage_;
   if (stage_is_over_ || !stage_is_begun_) begin_stage();
   if (!move_to_look()) return false;
-  if (simulation_.moves()) simulation_.motion().commit_creep();  // a look sees the body after its creep
+  if (simulation_.moves()) {
+    simulation_.motion().commit_creep();  // a look sees the body after its creep
+    simulation_.motion().note_cracks();
+  }
   add_row();
   courses_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);
@@ -159,8 +163,7 @@ void Run::end_stage() {
   go_on();
   if (!stage_is_under_way() || outcome_ != Outcome::running)
     throw Error("no stage is under way that could be ended");
-  if (courses_[stage_].rows.empty())
-    throw Error("the stage has not come to a look yet, so it cannot be ended");
+  if (courses_[stage_].rows.empty()) throw Error("the stage has no sample yet, so it cannot be ended");
   end_stage(Verdict{.over = true});
 }
 

@@ -93,6 +93,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
       field_(make_field(*model_, block_materials, heat_, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!moving) {
+    materials_.block_materials = block_materials;
     for (const RecordParameters& record : records) records_.emplace_back(*model_, false, record);
     show_cracks_to_heat();
     return;

@@ -168,7 +168,7 @@ std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter,
                                    const std::function<double(const Vec<2>&)>& side,
                                    std::vector<double> angles = {0.0});
 
-/// Returns the distance of a point from the segment between two others, m.
+/// Returns the distance of a point from the segment between two others, which may be one, m.
 double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<2>& to);
 
 }  // namespace pyroclast::specimen

@@ -1,8 +1,6 @@
 // A body of the plane: its blocks painted line by line into pixels, each pixel with the block that it shows, and its
 // cracks as lines. Blocks are convex; the same frame gives the same pixels on every machine.
 
-const HALF = 0.5; // damage from which a crack is drawn
-
 class Body {
   constructor(about, arrays, frames) {
     Object.assign(this, {about, arrays, frames, ranges: {}, kept: {}, owner: null});
@@ -165,20 +163,26 @@ class Body {
     return (this.ranges[field] = {low, high: high > low ? high : low + 1, isTwoSided: false});
   }
 
-  // Of each contact the first frame in which its damage by any mode is above a half; -1 where it never is.
-  get brokeIn() {
-    if (this.brokeInKept) return this.brokeInKept;
-    const first = new Int32Array(this.contacts).fill(-1),
-      {interface: kind} = this.arrays;
-    for (let f = this.frames.length - 1; f >= 0; f--)
-      for (const mode of this.modes) {
-        const damage = this.arrays[`damage_${mode}`],
-          row = damage.row(f),
-          least = HALF / damage.step;
-        for (let c = 0; c < this.contacts; c++)
-          if (damage.values[row + c] > least && this.about.breakable[kind.values[c]]) first[c] = f;
-      }
-    return (this.brokeInKept = first);
+  // Of each contact the step at which its damage by any mode was first found above a half; -1 where it never was.
+  get crackStep() {
+    return this.arrays.crack_step.values;
+  }
+
+  // Contacts that cracked behind one step and up to another.
+  crackedBetween(from, to) {
+    const found = new Set();
+    if (this.modes.length)
+      this.crackStep.forEach((step, c) => {
+        if (step > from && step <= to) found.add(c);
+      });
+    return found;
+  }
+
+  // Steps of the first and the last crack; null without cracks.
+  get ages() {
+    if (this.agesKept) return this.agesKept;
+    const steps = this.crackStep.filter((step) => step >= 0).sort();
+    return (this.agesKept = steps.length ? [steps[0], steps[steps.length - 1]] : null);
   }
 
   // The mode with the largest damage of a contact, and that damage.
@@ -194,10 +198,7 @@ class Body {
 
   // Contacts that a frame shows as cracks.
   cracks(frame) {
-    const found = [],
-      first = this.modes.length ? this.brokeIn : [];
-    for (let c = 0; c < this.contacts; c++) if (first[c] >= 0 && first[c] <= frame) found.push(c);
-    return found;
+    return [...this.crackedBetween(-1, this.frames[frame].step)];
   }
 
   // Ends of the line that a contact is drawn as, pixels.

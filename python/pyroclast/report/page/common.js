@@ -11,6 +11,14 @@ const made = (name, text, parent, className) => {
 };
 const number = (v, digits = 3) => (isFinite(v) ? String(+v.toPrecision(digits)).replace("-", "−") : "–");
 const ENERGY_COLOURS = {"#000000": "var(--ink)", "#10245e": "var(--shear)", "#d55e00": "var(--tension)"};
+const COLOURS = [
+  "var(--curve)",
+  "var(--tension)",
+  "var(--good)",
+  "var(--mixed)",
+  "var(--warn-line)",
+  "var(--faint)",
+];
 const DASHES = ["", "7 3", "2 2", "7 3 2 3"];
 
 // The history: columns by name, quantities by id.

@@ -1,26 +1,23 @@
 // The page of several runs: curves together, specimens where they have the same strain or temperature.
 
-const RUN_COLOURS = [
-  "var(--curve)",
-  "var(--tension)",
-  "var(--good)",
-  "var(--mixed)",
-  "var(--warn-line)",
-  "var(--faint)",
-];
 const SHARES = 200; // of the slider
 
-// The mean of curves over a common x and their least and greatest values, as far as all go.
+// The mean of curves over a common x and their least and greatest values, as far as all go that have two points; null
+// where fewer than two have, or have no x in common.
 function band(curves, count = 200) {
-  const rising = curves.map(({x, y}) => {
-    const points = [];
-    for (let i = 0; i < x.length; i++)
-      if (isFinite(x[i]) && isFinite(y[i]) && (!points.length || x[i] > points[points.length - 1][0]))
-        points.push([x[i], y[i]]);
-    return points;
-  });
+  const rising = curves
+    .map(({x, y}) => {
+      const points = [];
+      for (let i = 0; i < x.length; i++)
+        if (isFinite(x[i]) && isFinite(y[i]) && (!points.length || x[i] > points[points.length - 1][0]))
+          points.push([x[i], y[i]]);
+      return points;
+    })
+    .filter((points) => points.length > 1);
+  if (rising.length < 2) return null;
   const from = Math.max(...rising.map((p) => p[0][0])),
     to = Math.min(...rising.map((p) => p[p.length - 1][0]));
+  if (!(to > from)) return null;
   const x = Array.from({length: count}, (_, k) => from + ((to - from) * k) / (count - 1));
   const values = rising.map((points) => {
     let k = 0;
@@ -32,6 +29,7 @@ function band(curves, count = 200) {
   });
   const of = (f) => x.map((_, k) => f(values.map((v) => v[k])));
   return {
+    count: rising.length,
     x,
     low: of((v) => Math.min(...v)),
     high: of((v) => Math.max(...v)),
@@ -76,15 +74,15 @@ class ComparePage {
       name: page.seeds ? "" : this.runs[k].name,
       ...(k ? {x: c.x} : {}),
       y: c.y,
-      colour: page.seeds ? "var(--faint)" : RUN_COLOURS[k % RUN_COLOURS.length],
-      dash: DASHES[Math.floor(k / RUN_COLOURS.length) % 4],
+      colour: page.seeds ? "var(--faint)" : COLOURS[k % COLOURS.length],
+      dash: DASHES[Math.floor(k / COLOURS.length) % 4],
       width: page.seeds ? 0.7 : 1.8,
     }));
-    if (page.seeds) {
-      const b = band(curves);
+    const b = page.seeds ? band(curves) : null;
+    if (b)
       series.push(
         {
-          name: `${curves.length} seeds: least to greatest`,
+          name: `${b.count} seeds: least to greatest`,
           x: b.x,
           y: b.high,
           base: b.low,
@@ -93,7 +91,6 @@ class ComparePage {
         },
         {name: "their mean, as far as all go", x: b.x, y: b.mean, colour: "var(--curve)", width: 2.2},
       );
-    }
     this.curve.draw({
       x: curves[0].x,
       label: first.quantity(over).label,

@@ -214,7 +214,7 @@ class Chart {
     this.moving.replaceChildren();
     const {top, bottom} = this.box,
       low = this.height - bottom;
-    if (this.piece) {
+    if (this.piece && !d.series[0].x) {
       const [a, b] = this.piece;
       const line = {x: d.x, y: d.series[0].y};
       const cut = svg("path", {class: "piece"}, this.moving);

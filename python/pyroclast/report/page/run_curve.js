@@ -136,11 +136,6 @@ class RunCurve {
 
   // Contacts whose damage passed a half since the frame before.
   newIn(frame) {
-    const lit = new Set();
-    if (this.body.modes.length)
-      this.body.brokeIn.forEach((f, c) => {
-        if (f === frame && f > 0) lit.add(c);
-      });
-    return lit;
+    return frame ? this.body.crackedBetween(this.frames[frame - 1].step, this.frames[frame].step) : new Set();
   }
 }

@@ -6,13 +6,8 @@ class RunPiece extends RunCurve {
     for (const chart of this.charts) chart.setPiece(piece);
     if (!isOver) return;
     if (this.body) {
-      const [from, to] = [this.frameBefore(piece[0]), this.frameAt(piece[1])];
-      const lit = new Set();
-      if (this.body.modes.length)
-        this.body.brokeIn.forEach((f, c) => {
-          if (f > from && f <= to) lit.add(c);
-        });
-      this.show(to, lit);
+      const [from, to] = piece.map((row) => this.course.column("step")[row]);
+      this.show(this.frameAt(piece[1]), this.body.crackedBetween(from, to));
     }
     this.tellPiece();
   }

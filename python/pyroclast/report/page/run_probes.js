@@ -78,8 +78,8 @@ class RunProbes extends RunSpecimen {
     const a = this.body.arrays,
       facts = this.body.modes.map((m) => [`damage in ${m}`, number(a[`damage_${m}`].at(frame, c), 2)]);
     facts.push(["opening [µm]", number(1e6 * a.opening.at(frame, c))]);
-    const first = this.body.brokeIn[c];
-    if (first >= 0) facts.push(["passed a half by frame", String(this.frames[first].number)]);
+    const step = this.body.crackStep[c];
+    if (step >= 0) facts.push(["passed a half at", this.toldStep(step)]);
     return facts;
   }
 

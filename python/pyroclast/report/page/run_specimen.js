@@ -122,11 +122,13 @@ class RunSpecimen extends RunPiece {
           entry({name: `opening from ${um} µm`, colour: css(colourAt(ONE_SIDED, ([0, 2, 4][k] + 1.5) / 7))}),
         ),
       );
-    if (s.cracks === "age")
+    if (s.cracks === "age" && this.body.ages) {
+      const [first, last] = this.body.ages;
       key.append(
-        entry({name: "oldest cracks", colour: css(colourAt(ONE_SIDED, 0.95))}),
-        entry({name: "youngest", colour: css(colourAt(ONE_SIDED, 0.15))}),
+        entry({name: `oldest crack: ${this.toldStep(first)}`, colour: css(colourAt(ONE_SIDED, 0.95))}),
+        entry({name: `youngest: ${this.toldStep(last)}`, colour: css(colourAt(ONE_SIDED, 0.15))}),
       );
+    }
     if (s.lit && s.lit.size)
       key.append(
         entry({
@@ -134,6 +136,14 @@ class RunSpecimen extends RunPiece {
           colour: "var(--lit)",
         }),
       );
+  }
+
+  // A step, and where the curve was at it.
+  toldStep(step) {
+    const row = this.course.column("step").findIndex((s) => s >= step),
+      over = this.course.quantity(page.course.over);
+    const at = row < 0 || !over ? NaN : this.course.of(over.id)[row];
+    return `step ${step}${isFinite(at) ? ` (${number(at)} ${unitOf(over.label)})` : ""}`;
   }
 
   play() {

@@ -13,6 +13,7 @@ class RunTabs extends RunProbes {
       energies: () => this.drawEnergies(),
       cracks: () => this.drawCracks(),
       heat: () => this.drawHeat(),
+      properties: () => this.drawProperties(),
       convergence: () => this.drawConvergence(),
     };
     const drawn = new Set();
@@ -183,23 +184,17 @@ class RunTabs extends RunProbes {
       "temperature",
       "temperature_min",
       "temperature_max",
+      "gas",
       ...page.course.quantities.map((q) => q.id).filter((id) => id.startsWith("probe_")),
     ];
-    const colours = [
-      "var(--ink)",
-      "var(--curve)",
-      "var(--tension)",
-      "var(--good)",
-      "var(--mixed)",
-      "var(--warn-line)",
-    ];
+    const colours = ["var(--ink)", ...COLOURS];
     const series = ids
       .filter((id) => this.course.quantity(id))
       .map((id, k) => ({
         name: this.course.quantity(id).label,
         y: this.course.of(id),
-        colour: colours[k % 6],
-        dash: DASHES[Math.floor(k / 6) % 4],
+        colour: id === "gas" ? "var(--faint)" : colours[k % 6],
+        dash: id === "gas" ? DASHES[1] : DASHES[Math.floor(k / 6) % 4],
       }));
     chart.draw({
       x: this.course.of("minutes"),
@@ -209,6 +204,28 @@ class RunTabs extends RunProbes {
       stages: page.course.stages,
     });
     chart.setCursor(this.row);
+  }
+
+  // Panels whose cursor is the greatest temperature of the row.
+  drawProperties() {
+    for (const panel of page.properties) {
+      const host = made("div", null, $("properties"));
+      made("h3", panel.title, host);
+      const chart = new Chart(host, {height: 240, name: panel.title});
+      this.charts.push(chart);
+      chart.draw({
+        x: this.course.column("temperature_max_degC"),
+        label: "temperature [°C]",
+        yLabel: panel.label,
+        from0: panel.from0,
+        series: panel.lines.map((line, k) => ({
+          ...line,
+          colour: COLOURS[k % COLOURS.length],
+          dash: DASHES[k % 4],
+        })),
+      });
+      chart.setCursor(this.row);
+    }
   }
 
   drawConvergence() {

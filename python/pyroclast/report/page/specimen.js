@@ -82,8 +82,8 @@ class Specimen {
       return {name: `o${k}`, colour: css(colourAt(ONE_SIDED, (k + 1.5) / 7)), width: 0.8 + 0.5 * k, order: k};
     }
     if (cracks === "age") {
-      const share = body.brokeIn[c] / Math.max(1, body.frames.length - 1),
-        k = Math.round(11 * share);
+      const [first, last] = body.ages,
+        k = Math.round((11 * (body.crackStep[c] - first)) / Math.max(1, last - first));
       return {name: `a${k}`, colour: css(colourAt(ONE_SIDED, 0.95 - (0.8 * k) / 11)), width: 1.6, order: k};
     }
     const [mode, damage] = body.worst(frame, c),

@@ -24,8 +24,8 @@ class RunPageLink(NamedTuple):
 
 
 def pages_of_runs(seen: Seen, folder: Path) -> list[RunPageLink]:
-    """Writes into a folder the pages of the runs with the least and the greatest value of the first output, and of
-    some that gave none; of runs of which the study keeps more than the summary.
+    """Writes into a folder the pages of the best and the worst run, and of some that gave no value; of runs of which
+    the study keeps more than the summary. With targets the runs are ordered by their misfit, else by the first output.
     """
     links = []
     for text, row in _chosen(seen):
@@ -42,11 +42,41 @@ def pages_of_runs(seen: Seen, folder: Path) -> list[RunPageLink]:
 
 
 def _chosen(seen: Seen) -> list[tuple[str, dict[str, Any]]]:
-    output = seen.setup.outputs[0]
-    done = sorted((row for row in seen.rows if row["state"] == DONE and row[output.name] is not None),
-                  key=lambda row: float(row[output.name]))
-    label = output_label(output)
-    ends = [("least", done[0]), ("greatest", done[-1])] if len(done) > 1 else []
+    done = [row for row in seen.rows if row["state"] == DONE]
+    ends = _by_targets(seen, done) if seen.setup.targets else _by_first_output(seen, done)
     failed = [row for row in seen.rows if row["state"] not in (DONE, NOT_RUN)][:_MOST_FAILED]
-    return [*((f"{what} {label}: {number(row[output.name])}, seed {row['seed']}", row) for what, row in ends),
+    return [*((f"{what}, seed {row['seed']}", row) for what, row in ends),
             *((f"{row['state']}: {row['reason']}", row) for row in failed)]
+
+
+def _by_first_output(seen: Seen, done: list[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
+    output = seen.setup.outputs[0]
+    rows = sorted((row for row in done if row[output.name] is not None), key=lambda row: float(row[output.name]))
+    label = output_label(output)
+    return [(f"{what} {label}: {number(row[output.name])}", row)
+            for what, row in (("least", rows[0]), ("greatest", rows[-1]))] if len(rows) > 1 else []
+
+
+def _by_targets(seen: Seen, done: list[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
+    """The nearest to the targets, at the best point where the method has one, and the farthest."""
+    targets = seen.setup.targets
+    rows = [row for row in done if all(row[target.output] is not None for target in targets)]
+    if len(rows) < 2:
+        return []
+    findings = seen.findings or {}
+    scales = findings.get("sd") or [target.sd or abs(target.value) or 1.0 for target in targets]
+
+    def misfit(row: dict[str, Any]) -> float:
+        return sum(((row[t.output] - t.value) / scale) ** 2 for t, scale in zip(targets, scales))
+
+    def said(what: str, row: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+        return f"{what}: {', '.join(f'{t.output} = {number(row[t.output])}' for t in targets)}", row
+
+    best = [row for row in rows if _is_at(seen, row, findings["best"]["u"])] if "best" in findings else []
+    nearest = min(best or rows, key=misfit)
+    what = "at the best point, nearest to the targets" if best else "nearest to the targets"
+    return [said(what, nearest), said("farthest from the targets", max(rows, key=misfit))]
+
+
+def _is_at(seen: Seen, row: dict[str, Any], u: list[float]) -> bool:
+    return all(row[p.column] == p.distribution.at(float(x)) for p, x in zip(seen.setup.parameters, u))
