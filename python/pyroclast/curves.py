@@ -256,7 +256,7 @@ def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The finite points of a curve whose x exceeds all before."""
     rows = np.isfinite(x) & np.isfinite(y)
     if not rows.any():
-        raise Error("compare: a run has no finite value of what is compared")
+        raise Error("compare: a run has no finite value of the compared quantity")
     x, y = x[rows], y[rows]
     rows = np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])
     return x[rows], y[rows]

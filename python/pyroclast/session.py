@@ -51,7 +51,7 @@ class History(Columns):
 
     @property
     def rows(self) -> int:
-        """Looks so far, with that at the start."""
+        """Samples so far, the one at the start included."""
         return len(self._rows)
 
 
@@ -205,7 +205,7 @@ class Sets(Mapping[str, Indices]):
 
 
 class Observer:
-    """Follows a run. A run calls `begin` once, `look` at every look after its row is written, and `finish` when it is
+    """Follows a run. A run calls `begin` once, `look` at every sample after its row is written, and `finish` when it is
     over or stopped.
     """
 
@@ -220,7 +220,7 @@ class Observer:
 
 
 class Run:
-    """A run in this process, from look to look:
+    """A run in this process, from sample to sample:
 
         run = pyroclast.Run("compression.toml")
         for state in run:
@@ -309,7 +309,7 @@ class Run:
                                   _changes(changes), str(out), overwrite, threads, places, list(stages_in_python))
         return cls._of(core, stages_in_python, places)
 
-    # From look to look
+    # From sample to sample
 
     def __iter__(self) -> Run:
         return self
@@ -364,7 +364,7 @@ class Run:
               stress: float | str | Quantity | None = None, temperature: float | str | Quantity | None = None,
               quantity: Mapping[str, float] | None = None, steps: int | None = None,
               equilibrium: float | None = None) -> State:
-        """Goes on until the first of these holds at a look, and returns what was measured there.
+        """Goes on until the first of these holds at a sample, and returns what was measured there.
 
         condition: of the state.
         strain, stress, temperature: of the specimen, passed up or down from where it is now; numbers are Pa and degC.
@@ -399,7 +399,7 @@ class Run:
             return self._go_until(condition, passed, rising, equilibrium, goal)
         finally:
             stops[0] = False
-            self._core.stop(False)  # where the last step was that of a look
+            self._core.stop(False)  # where the last step was that of a sample
 
     def _go_until(self, condition: Callable[[State], bool] | None, passed: Mapping[str, float],
                   rising: Mapping[str, bool], equilibrium: float | None, goal: int | None) -> State:
@@ -408,7 +408,7 @@ class Run:
             if state is None:
                 if goal is not None and self._core.step >= goal and not self._core.is_over:
                     return self.measure()
-                raise Error(f"the run ended ({self.outcome}) before it came to what was asked")
+                raise Error(f"the run ended ({self.outcome}) before it met the condition")
             if any(state[name] >= value if rising[name] else state[name] <= value for name, value in passed.items()):
                 return state
             if condition is not None and condition(state):
@@ -419,7 +419,7 @@ class Run:
                 return state
 
     def measure(self) -> State:
-        """What a look would measure now. It is no row of the history."""
+        """Measures what a sample would, now; adds no row to the history."""
         return State(self, self._columns, self._core.measure(), self._look)
 
     def stop(self) -> None:
@@ -427,7 +427,7 @@ class Run:
         self._core.stop()
 
     def at_looks(self, call: Callable[[Run], object]) -> None:
-        """Calls back at every look, after its row is written. The call may change the run. What it raises, `next`
+        """Calls back at every sample, after its row is written. The call may change the run. What it raises, `next`
         raises; the run can go on.
         """
         self._at_looks.append(call)
@@ -552,7 +552,7 @@ class Run:
         return self
 
     def end_stage(self) -> Run:
-        """Ends the stage that is under way at the last look; the next one begins there. Returns the run.
+        """Ends the stage that is under way at the last sample; the next one begins there. Returns the run.
 
         The run is then no longer that of its deck, as with `change`.
         """
@@ -613,7 +613,7 @@ class Run:
 
     @property
     def stage(self) -> int:
-        """Number of the stage of the last look, from 0."""
+        """Number of the stage of the last sample, from 0."""
         return self._core.stage
 
     @property

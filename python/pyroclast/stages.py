@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Verdict(NamedTuple):
-    """What a stage says of the look that was just taken."""
+    """What a stage says of the sample that was just taken."""
 
     over: bool = False  #: the stage is over
     last: bool = False  #: and the run with it
@@ -46,7 +46,7 @@ class Key:
 class Stage:
     """Something that is done to a body until its verdict says that it is over; a deck asks for it by its kind.
 
-    A run calls `begin`, and then again and again `advance` until a look is due, takes the look, and asks `judge`. The
+    A run calls `begin`, then `advance` again and again until a sample is due, takes the sample, and asks `judge`. The
     body is lent for the time of a call. All is SI, temperatures in degC. A class is handed to a deck by
     `Deck(..., stages_in_python=[Mine])`, and must be made without arguments.
 
@@ -63,11 +63,11 @@ class Stage:
         """Prepares what acts on the body; moves nothing."""
 
     def advance(self, body: Body, most_steps: int) -> bool:
-        """Moves on by at most so many steps; True when a look is due."""
+        """Moves on by at most so many steps; True when a sample is due."""
         raise NotImplementedError(f"stage {self.kind!r} has no advance()")
 
     def judge(self, body: Body) -> Verdict:
-        """Called after each look that `advance` asked for."""
+        """Called after each sample that `advance` asked for."""
         raise NotImplementedError(f"stage {self.kind!r} has no judge()")
 
     def progress(self) -> float:
@@ -75,7 +75,7 @@ class Stage:
         return 0.0
 
     def values(self) -> list[float]:
-        """At a look, in the order of `columns`."""
+        """At a sample, in the order of `columns`."""
         return []
 
     def results(self) -> dict[str, float]:

@@ -61,7 +61,7 @@ void print_composition(const Composition& whole) {
   fmt::print("composition     {:.3f} inclusions\n", whole.inclusions);
   if (whole.creep_share) {
     const auto [at_once, far] = *whole.creep_share;
-    fmt::print("                creep of the concrete over that of its matrix, R = {:.4f}", at_once);
+    fmt::print("                creep of the concrete over creep of its matrix, R = {:.4f}", at_once);
     if (far != at_once)
       fmt::print(
           " when the matrix has crept\n                by its elastic strain, {:.4f} by ten times as much",

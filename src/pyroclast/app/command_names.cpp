@@ -25,8 +25,10 @@ struct ExitCode {
 };
 
 constexpr ExitCode kExitCodes[] = {
-    {0, "The command did what it was asked for. A specimen that fails is a result, too."},
-    {1, "Nothing came of it: the command line, the deck, a file or the disk. One line says what."},
+    {0, "The command succeeded. A specimen that fails is a result, too."},
+    {1,
+     "The command failed, because of the command line, the deck, a file or the disk. One line gives the "
+     "reason."},
     {2,
      "The run ended without what it was for: it did not come to rest or to the stated stress, a number was "
      "not finite, or its energy ledger does not close. summary.json says so. Of law --verify: a law fails."},

@@ -126,7 +126,8 @@ Asked asked_of(const ConcreteOptions& o) {
                             1e3 * a.d_max, 1e3 * a.d_min));
   if (o.fraction.empty() == o.stones.empty())
     throw Error(
-        "either --fraction (area of coarse aggregate over that of a section) or --stones (its mass in the "
+        "either --fraction (area of coarse aggregate over the area of a section) or --stones (its mass in "
+        "the "
         "mix, such as '1100 kg/m3') is needed");
   if (o.stones.empty()) {
     a.fraction = quantity_of("--fraction", o.fraction, unit::dimensionless, 0.0, 0.6);
@@ -170,7 +171,7 @@ std::string grading(const Asked& a) {
       if (size > 1.05e3 * a.d_min && size < 0.95e3 * a.d_max)
         sieves.push_back(fmt::format("\"{:g} mm\"", size));
     return fmt::format(
-        "d_min = \"{}\"            # what is smaller belongs to the mortar\nd_max = \"{}\"\n"
+        "d_min = \"{}\"            # smaller grains belong to the mortar\nd_max = \"{}\"\n"
         "fuller_exponent = 0.45       # guess: Fuller's curve P(d) = (d / d_max)^fuller_exponent, or state "
         "`passing`\n"
         "sieves = [{}]  # bounds of the size intervals between d_min and d_max",
@@ -181,7 +182,7 @@ std::string grading(const Asked& a) {
     points.push_back(fmt::format("[\"{}\", \"{}\"]", in(a.passing.sizes[i], 1e3, "mm"),
                                  in(a.passing.shares[i], 100.0, "%")));
   return fmt::format(
-      "d_min = \"{}\"            # what is smaller belongs to the mortar\npassing = [{}]\n"
+      "d_min = \"{}\"            # smaller grains belong to the mortar\npassing = [{}]\n"
       "passing_by = \"volume\"        # of the stones, or their mass",
       in(a.d_min, 1e3, "mm"), fmt::join(points, ", "));
 }
@@ -236,13 +237,14 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
     v[key] += "  # literature, on concrete as a whole";
   }
   v["HOT_CONCRETE"] = fmt::format(
-      "[concrete]                   # strains of the phases follow from those of the concrete as a whole\n"
+      "[concrete]                   # strains of the phases follow from the strain of the concrete\n"
       "thermal_strain = {{ builtin = \"{}\" }}  # {}\n"
-      "inclusion_ratio = {:g}         # expansion of rock over that of its concrete; {}\n\n",
+      "inclusion_ratio = {:g}         # expansion of the rock over expansion of its concrete; {}\n\n",
       a.rock->concrete_curve, a.rock->curve_source, a.rock->expansion_ratio.value,
       a.rock->expansion_ratio.source);
   v["HOT_CREEP"] = fmt::format(
-      "[materials.mortar.creep]     # load-induced thermal strain: what heating under stress shortens for "
+      "[materials.mortar.creep]     # load-induced thermal strain: heating under stress shortens the mortar "
+      "for "
       "good\n"
       "k2 = 2.5                     # fitted to a siliceous concrete (docs/validation/hot_concrete.md)\n"
       "f_c = \"{}\"\nnu = 0.3\ntension = 1                  # as much under tension as under compression\n\n",

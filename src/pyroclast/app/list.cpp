@@ -73,7 +73,7 @@ void print_rocks() {
     print("Poisson's ratio", each.poisson, "");
     print("density", each.density, "kg/m3");
     print("expansion near 20 degC", each.expansion, "1e-6/K");
-    print("over that of its concrete", each.expansion_ratio, "");
+    print("over the expansion of its concrete", each.expansion_ratio, "");
     fmt::print("  {:<24} {} ({})\n", "strain of its concrete", each.concrete_curve, each.curve_source);
   }
 }

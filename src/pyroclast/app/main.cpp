@@ -195,8 +195,9 @@ int command_line(int argc, char** argv) {
   auto* law_path =
       law->add_option("--path", law_options.path,
                       "CSV file with columns u_n, u_s and optionally T, each with its unit: u_n [um]");
-  law->add_option("--interface", law_options.interface,
-                  "A table of [contacts], or a_a for two blocks of phase a (default: that of the matrix)");
+  law->add_option(
+      "--interface", law_options.interface,
+      "A table of [contacts], or a_a for two blocks of phase a (default: the interface of the matrix)");
   law->add_option("--steps", law_options.steps, "Steps of each leg of the path")
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->default_val(1);
@@ -361,7 +362,7 @@ int command_line(int argc, char** argv) {
     return app::make_deck(name, from);
   }();
   if (std::fflush(stdout) != 0)
-    throw Error(fmt::format("what is printed cannot be written ({})", std::strerror(errno)));
+    throw Error(fmt::format("the output cannot be written ({})", std::strerror(errno)));
   return code;
 }
 

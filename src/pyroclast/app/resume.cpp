@@ -46,8 +46,7 @@ int resume(const ResumeOptions& options) {
   const bool forks = !options.from_stage.empty() || !options.more.empty();
   if (forks && options.as.out.empty()) throw Error("a fork needs a folder of its own: --out NEW");
   if (!forks && !options.as.changes.empty())
-    throw Error(
-        "--set: a run that goes on stays what it is; to change something, fork it: --from-stage K --out NEW");
+    throw Error("--set: a resumed run cannot change; fork it with the change: --from-stage K --out NEW");
   if (!forks && !options.as.out.empty())
     throw Error("--out: a run goes on in its own folder; a fork needs --from-stage or --stages");
   return forks ? fork(options) : go_on(options);

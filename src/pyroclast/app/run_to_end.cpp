@@ -106,11 +106,12 @@ std::string describe(const Summary& s, const AskedSpecimen& specimen, const std:
     text += describe_warnings(report.warnings);
   }
   if (s.energy_error)
-    text += fmt::format("energy ledger   closes within {:.3f} % of the energy turned over{}\n",
-                        100.0 * std::abs(*s.energy_error),
-                        s.error_over_dissipated ? fmt::format(", {:.2g} % of what contacts dissipated",
-                                                              100.0 * std::abs(*s.error_over_dissipated))
-                                                : "");
+    text +=
+        fmt::format("energy ledger   closes within {:.3f} % of the energy turned over{}\n",
+                    100.0 * std::abs(*s.energy_error),
+                    s.error_over_dissipated ? fmt::format(", {:.2g} % of the energy that contacts dissipated",
+                                                          100.0 * std::abs(*s.error_over_dissipated))
+                                            : "");
   if (s.heat_error)
     text += fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.heat_error);
   return text + describe_scatter(s, specimen) + describe_warnings(s.warnings) +

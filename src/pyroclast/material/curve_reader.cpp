@@ -140,7 +140,7 @@ std::optional<Curve> CurveReader::read_form(const Section& forms, const std::str
 }
 
 std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit& unit) const {
-  forms.describe("value", {.value = kQuantity}, "what the ratio `times` is multiplied with");
+  forms.describe("value", {.value = kQuantity}, "value that the ratio `times` multiplies");
   forms.describe("times",
                  {.value = fmt::format("name of a built-in ratio, or {}", forms_name()),
                   .form = ValueForm::text,
@@ -152,9 +152,9 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
                               : read_builtin(forms, "times", unit::dimensionless);
   double share = 1.0;
   if (axis_ == temperature_axis())
-    share =
-        forms.number("share", Range::between(0.0, 1.0), 1.0,
-                     "of what the ratio `times` loses: the value is multiplied with 1 - share (1 - ratio)");
+    share = forms.number("share", Range::between(0.0, 1.0), 1.0,
+                         "share of the loss by the ratio `times` that counts: the value is multiplied by 1 - "
+                         "share (1 - ratio)");
   if (!ratio || !forms.ok()) return std::nullopt;
   return try_at(forms, "times", [&] {
     if (axis_ == temperature_axis() && ratio->holds(kReferenceTemperature)) {

@@ -18,7 +18,7 @@ struct Rock {
   SourcedNumber poisson;            ///< Poisson's ratio
   SourcedNumber density;            ///< kg/m³
   SourcedNumber expansion;          ///< linear, near 20 °C, 1e-6/K
-  SourcedNumber expansion_ratio;    ///< its expansion over that of its concrete, up to some 600 °C
+  SourcedNumber expansion_ratio;    ///< its expansion over the expansion of its concrete, up to some 600 °C
   std::string_view concrete_curve;  ///< built-in free thermal strain of its concrete
   std::string_view curve_source;
 };

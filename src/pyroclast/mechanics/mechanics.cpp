@@ -38,7 +38,7 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
   commit_creep();
   Body<Dim>& body = *body_;
   if (!properties.creep.empty() && !body.creeps())
-    throw Error("a body that was made of what does not creep cannot begin to");
+    throw Error("a body made of materials that do not creep cannot begin to creep");
   change_properties([&] {
     Properties<Dim>(body).begin_creep(properties.creep);
     std::swap(body.properties, properties);

@@ -89,7 +89,7 @@ LawSources law_sources(const DeckText& text) {
 }
 
 void bind_decks(py::module_& m) {
-  py::class_<DeckText>(m, "DeckText", "A deck as it is written, and what belongs to reading it.")
+  py::class_<DeckText>(m, "DeckText", "A deck as written, with its place for messages.")
       .def(py::init([](std::string text, std::string name, std::string folder,
                        std::vector<std::string> changes, std::vector<std::string> laws, py::list stages,
                        bool deck_names, bool changes_name) {
@@ -125,7 +125,7 @@ void bind_decks(py::module_& m) {
               {.file = deck.name(), .message = "keys of a law are not checked: " + code});
         return diagnostics(setup.warnings);
       },
-      py::arg("deck"), "Reads a deck; returns what it warns of.");
+      py::arg("deck"), "Reads a deck; returns its warnings.");
   m.def(
       "resolve",
       [](const DeckText& text) {

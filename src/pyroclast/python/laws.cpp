@@ -51,12 +51,11 @@ void bind_laws(py::module_& m) {
       [](const std::string& law, const std::string& folder, const std::vector<std::string>& sources) {
         return find_law(law, folder, law_sources(sources), true).name;
       },
-      arg("law"), arg("folder"), arg("sources"),
-      "Finds, loads or compiles a law; returns what it calls itself.");
+      arg("law"), arg("folder"), arg("sources"), "Finds, loads or compiles a law; returns its name.");
   m.def("law_properties", &properties, arg("law"), arg("folder"), arg("sources"),
         "Key, unit and meaning of each property of a law.");
   m.def("law_along_path", &along_path, arg("law"), arg("folder"), arg("sources"), arg("values"), arg("path"),
-        arg("steps"), "Takes a contact point along a path; what it answers, by column.");
+        arg("steps"), "Takes a contact point along a path; returns its columns.");
 }
 
 }  // namespace pyroclast::python

@@ -46,7 +46,8 @@ class Held {
   Session& resting() const {
     Session& session = get();
     if (stepping_.load() != std::thread::id())
-      throw Error("a call-back between steps may look, and stop the run; stop it, and change it then");
+      throw Error(
+          "a call-back between steps may read the run and stop it; change the run after it has stopped");
     return session;
   }
 
@@ -81,7 +82,7 @@ class Held {
     });
   }
   void stop(bool wanted) { stop_ = wanted; }
-  /// Writes what came of the run, and gives its folder back.
+  /// Writes the summary of the run, and unlocks its folder.
   void close() {
     if (closed_) return;
     Session& session = resting();
@@ -236,8 +237,8 @@ void bind_sessions(py::module_& m) {
           },
           arg("folder"), arg("from_stage"), arg("more"), arg("changes"), arg("out"), arg("overwrite"),
           arg("threads"), arg("laws"), arg("stages"))
-      .def("next", &Held::next, "Goes on to the next look; False when the run is over or was stopped.")
-      .def("close", &Held::close, "Writes what came of the run, and gives its folder back.")
+      .def("next", &Held::next, "Goes on to the next sample; False when the run is over or was stopped.")
+      .def("close", &Held::close, "Writes the summary of the run, and unlocks its folder.")
       .def("stop", &Held::stop, arg("wanted") = true,
            "Stops the run at the next end of a batch of steps, or takes that back.")
       .def("call_at", &Held::call_at, arg("step"), arg("call"),
@@ -322,13 +323,13 @@ void bind_sessions(py::module_& m) {
            "(rows, columns), in the units of the columns; NaN where a cell is empty.")
       .def("row", read([](const Session& s) {
              const History& history = s.run().history();
-             if (history.row_count() == 0) throw Error("the run has come to no look yet");
+             if (history.row_count() == 0) throw Error("the run has no sample yet");
              return row(history.row(history.row_count() - 1));
            }),
            "The last row, (columns,).")
       .def(
           "measure", [](const Held& h) { return row(h.get().run().measure()); },
-          "What a look would measure now, (columns,).")
+          "What a sample would measure now, (columns,).")
       .def_property_readonly("step",
                              [](const Held& h) -> std::int64_t {
                                const Simulation& s = h.get().simulation();

@@ -104,7 +104,7 @@ py::array_t<double> balls(const SolidSpecimen& s) {
 
 void bind_solid_specimens(py::module_& m) {
   py::class_<SolidSpecimen, std::shared_ptr<SolidSpecimen>>(m, "SolidSpecimen",
-                                                            "Polyhedral blocks, and what each is made of.")
+                                                            "Polyhedral blocks, each with its material.")
       .def_static(
           "read",
           [](const std::string& file) {
@@ -154,7 +154,7 @@ std::vector<std::string> side_names(const Specimen& s) {
 void bind_specimens(py::module_& m) {
   using py::arg;
   bind_solid_specimens(m);
-  py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, and what each is made of.")
+  py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, each with its material.")
       .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
                   arg("phase"), arg("block_size"), arg("join"))
       .def_static("rectangle", &rectangle, arg("width"), arg("height"), arg("count"), arg("shortest_edge"),

@@ -244,7 +244,7 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   std::string table(trailer.table_bytes, '\0');
   if (!file.read(trailer.table_begin, table.data(), table.size()) ||
       XXH3_64bits(table.data(), table.size()) != trailer.table_hash)
-    fail("is damaged: its table is not what was written");
+    fail("is damaged: its table has another hash");
   try {
     const Json json = Json::parse(table);
     CheckpointInfo::each(info_, [&](const char* name, auto& value) { read_entry(json.at(name), value); });

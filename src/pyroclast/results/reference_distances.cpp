@@ -154,7 +154,7 @@ std::vector<std::string> doubts(const Reference& reference, const PlainCurve& cu
   if (!std::isfinite(ratio) || ratio == 0.0) return {};
   if (std::abs(ratio) > kOtherUnit || std::abs(ratio) * kOtherUnit < 1.0)
     return say("it is most likely in another unit than its header says");
-  if (ratio < 0.0) return say("where the file counts as positive what the run does not, state its sign");
+  if (ratio < 0.0) return say("where the file's positive values are negative in the run, state its sign");
   return {};
 }
 

@@ -340,7 +340,7 @@ void warn_of_hardening(Summary& summary) {
     if (failed_at && *strength > *failed_at)
       report.warnings.push_back(fmt::format(
           "f_c {:.2f} MPa is of a specimen that had failed at {:.2f} MPa in an earlier stage: it is "
-          "hardening of what is left, not a strength",
+          "hardening of the remaining body, not a strength",
           *strength, *failed_at));
     failed_at = failed_at ? std::max(*failed_at, *strength) : *strength;
   }
@@ -378,11 +378,12 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
     s.warnings.push_back(fmt::format(
         "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * *s.energy_error));
   if (s.error_over_dissipated && std::abs(*s.error_over_dissipated) > kDissipationTolerance)
-    s.warnings.push_back(fmt::format(
-        "the energy ledger closes only within {:.2g} % of what contacts dissipated, not within {:.2g} %: a "
-        "lower mechanics.safety leaves less{}",
-        100.0 * std::abs(*s.error_over_dissipated), 100.0 * kDissipationTolerance,
-        history.has("exchange") ? ", and so does a smaller coupling.exchange_increment" : ""));
+    s.warnings.push_back(
+        fmt::format("the energy ledger closes only within {:.2g} % of the energy that contacts dissipated, "
+                    "not within {:.2g} %: a "
+                    "lower mechanics.safety leaves less{}",
+                    100.0 * std::abs(*s.error_over_dissipated), 100.0 * kDissipationTolerance,
+                    history.has("exchange") ? ", and so does a smaller coupling.exchange_increment" : ""));
   if (s.exchange_stress && *s.exchange_stress > kExchangeStress)
     s.warnings.push_back(fmt::format(
         "exchanges of temperatures are too large: one brings up to {:.2g} of the tensile strength at once, "

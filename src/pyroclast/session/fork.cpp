@@ -81,9 +81,8 @@ void require_later(const std::string& change, std::int64_t stage) {
     std::int64_t of = 0;
     const auto [end, error] = std::from_chars(key.data() + kStages.size(), key.data() + key.size(), of);
     if (error == std::errc{} && *end == ']' && of > stage) return;
-    throw Error(
-        fmt::format("--set {}: this stage is done in what is forked; only stages[{}] and later may change",
-                    change, stage + 1));
+    throw Error(fmt::format("--set {}: the parent has done this stage; only stages[{}] and later may change",
+                            change, stage + 1));
   }
   if (key.starts_with("coupling"))
     throw Error(

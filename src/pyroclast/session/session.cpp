@@ -40,9 +40,11 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
       throw Error("a density cannot change in a run: mass would come or go");
   for (std::size_t i = 0; i < old.contacts.size(); ++i)
     if (old.contacts[i].law != changed.contacts[i].law)
-      throw Error("a contact law cannot change in a run: contacts remember what the old one kept");
+      throw Error(
+          "a contact law cannot change in a run: contacts keep the internal variables of the old law");
   if (old.on_cooling != changed.on_cooling)
-    throw Error("materials.on_cooling cannot change in a run: what was the hottest is kept from the start");
+    throw Error(
+        "materials.on_cooling cannot change in a run, which keeps its highest temperatures from the start");
   if (old.creeps() != changed.creeps())
     throw Error(
         "whether phases creep cannot change in a run: [materials.NAME.creep] is there from the start");
@@ -236,7 +238,7 @@ void Session::change_materials(const std::vector<std::string>& changes) {
 
 void Session::drive(const std::string& drives) {
   if (!simulation_->moves()) throw Error("nothing moves in this run, so there is nothing to hold or load");
-  if (run_.history().row_count() == 0) throw Error("the run has not begun: go on to its first look");
+  if (run_.history().row_count() == 0) throw Error("the run has not begun: go on to its first sample");
   Deck deck = Deck::parse("duration = \"1 s\"\n" + drives, "drive");
   StageTables tables;
   tables.folder = opened_.folder;

@@ -62,8 +62,7 @@ void check_flow(const Section& root, const Setup& setup) {
   const auto heat = root.optional_section("heat");
   const auto lets_flow = [](const auto& stage) { return stage->heating().duration > 0.0; };
   if (!heat || setup.heat.boundaries.empty() || std::ranges::any_of(setup.stages, lets_flow)) return;
-  heat->error("boundaries",
-              "have no effect: no stage lets heat flow, as those of kind \"expose\" and \"conduct\" do");
+  heat->error("boundaries", "have no effect: no stage lets heat flow (kinds \"expose\" and \"conduct\")");
 }
 
 void warn_of_first_strain(const Section& root, const Setup& setup) {

@@ -60,7 +60,7 @@ HeatedFaces read_faces(const Section& s, const DeckSpace& space) {
     s.error("box_high", "must be a pair, which stands for all z, like box_low, or both three numbers");
   for (int i = 0; i < space.dimension() && s.ok(); ++i)
     if (faces.box_low[i] > faces.box_high[i])
-      s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
+      s.error("box_high", "the box is inside out: no coordinate may be less than in box_low");
   return faces;
 }
 
@@ -121,7 +121,7 @@ std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveRea
                                                    const DeckSpace& space) {
   std::vector<HeatBoundaryCondition> boundaries;
   for (const Section& s :
-       heat.sections("boundaries", "what acts on faces of the specimen; see [Heat](../understand/heat.md)")) {
+       heat.sections("boundaries", "heat on faces of the specimen; see [Heat](../understand/heat.md)")) {
     HeatBoundaryCondition boundary{read_faces(s, space), read_condition(s, curves),
                                    fmt::format("{}: {}", s.where("faces"), s.path())};
     if (!s.ok()) continue;  // a value that stands in for an error contradicts nothing

@@ -125,9 +125,9 @@ BlockMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   m.density = curves.read(s, "density", unit::density, Range::positive().usually(500.0, 20e3),
                           "masses are those at 20 °C; heat conduction follows the curve");
   m.conductivity = optional("conductivity", unit::conductivity, Range::positive().usually(0.02, 500.0),
-                            "thermal conductivity; heat conduction needs that of every phase");
+                            "thermal conductivity; heat conduction needs one for every phase");
   m.specific_heat = optional("specific_heat", unit::specific_heat, Range::positive().usually(100.0, 2e4),
-                             "heat conduction needs that of every phase");
+                             "heat conduction needs one for every phase");
   return m;
 }
 
@@ -167,7 +167,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
                                         CurveReader& curves) {
   const auto s = phase.optional_section(
       "creep",
-      "load-induced thermal strain (transient creep): what the phase under stress is shorter by when "
+      "load-induced thermal strain (transient creep): shortening of the phase under stress when "
       "it is heated for the first time; see [Creep under load](../understand/deck.md#creep-under-load)");
   if (!s) return std::nullopt;
   CreepMaterial m;
@@ -192,7 +192,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
   else if (s->has("share"))
     m.share =
         s->number("share", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false},
-                  "R: creep of the concrete over that of its matrix; without it from the specimen's share "
+                  "R: creep of the concrete over creep of its matrix; by default from the specimen's share "
                   "of inclusions, by the self-consistent scheme");
   m.strength = s->quantity("f_c", unit::stress, Range::positive().usually(1e6, 200e6), 35e6,
                            "strength of the concrete at 20 °C that B counts stresses by");
@@ -537,27 +537,25 @@ void check_complete(const Section& s, const std::vector<InterfaceParameters>& in
 
 MaterialRules read_material_rules(const Section& root) {
   const Section s = root.section("materials", "what the body is made of");
-  return {
-      s.choice<ExpansionReading>(
-          "expansion_reading",
-          {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
-           {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
-          ExpansionReading::secant, "how the coefficients of thermal expansion α are read"),
-      s.choice<OnCooling>(
-          "on_cooling",
-          {{"irreversible", OnCooling::irreversible,
-            "they stay those of the highest temperature that was there: concrete does not heal"},
-           {"reversible", OnCooling::reversible, "they come back along their curves"}},
-          OnCooling::irreversible,
-          "what E of the phases, and strengths, fracture energies and stiffnesses of contacts do where it "
-          "cools")};
+  return {s.choice<ExpansionReading>(
+              "expansion_reading",
+              {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
+               {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
+              ExpansionReading::secant, "how the coefficients of thermal expansion α are read"),
+          s.choice<OnCooling>("on_cooling",
+                              {{"irreversible", OnCooling::irreversible,
+                                "they stay as at the highest temperature so far: concrete does not heal"},
+                               {"reversible", OnCooling::reversible, "they come back along their curves"}},
+                              OnCooling::irreversible,
+                              "change of E, strengths, fracture energies and stiffnesses where it "
+                              "cools")};
 }
 
 ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
                            const MaterialRules& rules, CurveReader& curves) {
   ReadConcrete concrete;
   const auto s = root.optional_section("concrete",
-                                       "what is known of the concrete as a whole; see [Creep under "
+                                       "strains of the concrete as a whole; see [Creep under "
                                        "load](../understand/deck.md#creep-under-load)");
   if (!s) return concrete;
   concrete.thermal_strain = read_thermal_strain(*s, rules.expansion_reading, curves);
@@ -569,10 +567,10 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
   }
   StrainOfConcrete& strain = concrete.of_phases.emplace();
   strain.strain = *concrete.thermal_strain;
-  strain.ratio =
-      s->number("inclusion_ratio", Range::positive().usually(1.0, 1.6),
-                "κ: thermal strain of the inclusions over that of the concrete; that of the matrix is "
-                "what makes the concrete's, and neither is stated in [materials]");
+  strain.ratio = s->number("inclusion_ratio", Range::positive().usually(1.0, 1.6),
+                           "κ: thermal strain of the inclusions over thermal strain of the concrete; the "
+                           "matrix gets the strain that "
+                           "gives the concrete's, and neither is stated in [materials]");
   if (s->has("inclusion_weight"))
     strain.weight = s->number(
         "inclusion_weight", Range::inside(0.0, 1.0),
@@ -619,8 +617,7 @@ std::vector<BlockMaterial> read_conducting_materials(const Section& root,
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
                                 const std::string& matrix, bool has_platens, OnCooling on_cooling,
                                 const LawFinder& find_law, CurveReader& curves) {
-  const Section s =
-      root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
+  const Section s = root.section("contacts", "all contacts: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
   c.matrix = matrix;
   c.fracture_zone = s.quantity("t_b", unit::length, Range::positive().usually(1e-5, 0.05),

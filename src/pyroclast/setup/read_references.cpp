@@ -154,7 +154,7 @@ Drawn find_drawn(const std::string& of, const std::string& over, const std::vect
 std::vector<double> read_signs(const Section& s) {
   const auto list = nlohmann::json::parse(
       s.json("sign", "list of 1 and -1", "[]",
-             "of each column: -1 where the file counts as positive what the run counts as negative"));
+             "sign of each column: -1 where the file's positive values are negative in the run"));
   std::vector<double> signs;
   for (const auto& item : list.is_array() ? list : nlohmann::json::array())
     if (item.is_number() && std::abs(item.get<double>()) == 1.0) signs.push_back(item.get<double>());
@@ -181,10 +181,9 @@ void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuanti
   };
   const double size = std::max(std::abs(least), std::abs(greatest));
   if (of.column == "stress_MPa" && -least > greatest)
-    say(least,
-        fmt::format("figures draw compression as positive, so that little or nothing of it shows; where "
-                    "the file counts it as negative, write sign = {}",
-                    sign_to_write));
+    say(least, fmt::format("figures draw compression as positive, so the curve hardly shows; where "
+                           "the file counts it as negative, write sign = {}",
+                           sign_to_write));
   else if ((is_stress && size > kMostStress) || (*of.unit == unit::dimensionless && size > kMostStrain))
     say(size, "it is most likely in another unit, which the header of its column must say");
 }
@@ -279,12 +278,13 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
       s.text("file",
              "a [measured table](measured-tables.md) beside the deck, in any units: the columns "
              "of `over` and `of`, or of `over` and the least and greatest of `of`");
-  const std::string of = s.text(
-      "of", "what it is of: `stress`, `total_strain`, `temperature`, or the name of a [[record]] or a probe");
+  const std::string of = s.text("of",
+                                "quantity of the curve: `stress`, `total_strain`, `temperature`, or the name "
+                                "of a [[record]] or a probe");
   const std::string over =
       s.text("over", "",
-             "what it is drawn over: `strain`, `temperature`, `heating_time`, `time` or the name of a "
-             "[[record]]; without it what the figure of `of` has there");
+             "quantity below the curve: `strain`, `temperature`, `heating_time`, `time` or the name of a "
+             "[[record]]; by default as in the figure of `of`");
   reference.name = read_reference_name(s, file);
   ColumnChoice choice = read_column_choice(s, file, kCurveColumns, kRangeColumns);
   choice.key = "file";

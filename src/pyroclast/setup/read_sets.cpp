@@ -100,7 +100,7 @@ RecordParameters read_record(const Section& s, const DeckSpace& space) {
           "the zones that lie wholly in the set, by area; where there is none "
           "its faces, by length; of a solid by volume and by area; else gridpoints"},
          {"gridpoints", MeanOver::gridpoints, "its gridpoints, each alike"}},
-        MeanOver::size, "what the mean is taken over");
+        MeanOver::size, "items of which the mean is taken");
   if (r.kind == RecordKind::opening)
     r.other = s.text("other", "the set that moves away from `set`, or towards it");
   switch (r.kind) {

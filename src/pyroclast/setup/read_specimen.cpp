@@ -42,7 +42,7 @@ constexpr Range kBlockCount = Range::between(4, 100e6);
 /// Largest difference from 1 of the last share of a sieve analysis, as percents leave it.
 constexpr double kAllPass = 1e-9;
 
-constexpr Meaning kPhase = "what they are made of: a table of [materials]";
+constexpr Meaning kPhase = "their material, a table of [materials]";
 constexpr Meaning kSuperposition =
     "which blocks are of which phase; needed where there is more than the matrix";
 constexpr Meaning kMatrix = "phase of the blocks that nothing else covers";

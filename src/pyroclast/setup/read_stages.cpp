@@ -79,8 +79,8 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
                        const std::filesystem::path& folder) {
   std::vector<Choice<const StageKind*>> options;
   for (const StageKind& kind : kinds.kinds()) options.push_back({kind.name, &kind, Meaning(kind.meaning)});
-  const auto sections = root.sections(
-      "stages", "what is done to the specimen, in this order; see [Stages](../understand/deck.md#stages)");
+  const auto sections =
+      root.sections("stages", "the test: stages in this order; see [Stages](../understand/deck.md#stages)");
   std::vector<const StageKind*> chosen;
   for (const Section& s : sections) chosen.push_back(s.choice("kind", options, "what the stage does"));
   const auto any = [&](auto needs) {
@@ -121,8 +121,9 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
     else
       root.warn(
           "coupling",
-          fmt::format("no stage exchanges temperatures with the mechanics, so that nothing of it acts{}",
-                      tables.coupling_table->has("stress_free") ? " but stress_free" : ""));
+          fmt::format(
+              "no stage exchanges temperatures with the mechanics, so nothing in the table{} has an effect",
+              tables.coupling_table->has("stress_free") ? " but stress_free" : ""));
   }
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
   read.any_moves = moves;

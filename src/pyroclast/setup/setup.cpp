@@ -56,7 +56,7 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
       {{"scaled", MassChoice::scaled,
         "density scaling, for quasi-static runs: the limit of each gridpoint is the common time step"},
        {"real", MassChoice::real, "density times volume, for dynamics"}},
-      "mass that moves; weight is always that of the real mass");
+      "mass that moves; the weight always follows the real mass");
   if (m.mass == MassChoice::scaled)
     m.time_step =
         s.quantity("time_step", unit::time, Range::positive().usually(1e-8, 1e-4), "common time step");
@@ -182,7 +182,7 @@ void warn_of_healing(const Section& root, const Setup& setup) {
     if (!to) continue;
     if (*to < temperature) {
       root.warn("stages", fmt::format("stage {} cools to {:.6g} degC: properties come back along their "
-                                      "curves, but real concrete does not heal, so what is left of strength "
+                                      "curves, but real concrete does not heal, so the remaining strength "
                                       "and stiffness is too high",
                                       i + 1, *to));
       return;
@@ -289,7 +289,7 @@ double read_thickness(const Section& s, const DeckSpace& space) {
                              ? "has no meaning beside depth, which makes the specimen a solid: leave one out"
                              : "has no meaning here: a cylinder is a solid");
   return s.quantity("thickness", unit::length, Range::positive(), 1.0,
-                    "out of plane; forces, energies and heats are those of this thickness");
+                    "out of plane; forces, energies and heats are for this thickness");
 }
 
 /// Reads the materials and all that moves, where a stage moves the body.
@@ -416,7 +416,7 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
                                             std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
   if (phases(specimen) != specimen::phases(setup.specimen))
-    throw Error(fmt::format("the specimen's phases are {}, but those of the deck {}",
+    throw Error(fmt::format("the specimen's phases are {}, but the deck has {}",
                             fmt::join(phases(specimen), ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.block_materials, setup.sets,

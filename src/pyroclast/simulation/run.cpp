@@ -163,8 +163,7 @@ void Run::end_stage() {
   go_on();
   if (!stage_is_under_way() || outcome_ != Outcome::running)
     throw Error("no stage is under way that could be ended");
-  if (courses_[stage_].rows.empty())
-    throw Error("the stage has not come to a look yet, so it cannot be ended");
+  if (courses_[stage_].rows.empty()) throw Error("the stage has no sample yet, so it cannot be ended");
   end_stage(Verdict{.over = true});
 }
 

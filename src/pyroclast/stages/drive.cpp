@@ -123,9 +123,10 @@ Drive::Action read_action(const Section& s, double duration, int dimension, Curv
   };
   const auto read_change = [&] {
     a.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(), 0.0,
-                             "in which it comes evenly from what it was to its value");
+                             "time in which it changes evenly from its earlier value to the new one");
     if (s.ok() && !at_most(a.ramp_time, duration))
-      s.error("ramp_time", "must end within the stage (its duration): what is stated would never be reached");
+      s.error("ramp_time",
+              "must end within the duration of the stage: else the stated value is never reached");
     if (s.has("factor"))
       a.factor = curves.read(s, "factor", unit::dimensionless, Range::any(),
                              "of the value, over the time since the stage began");
@@ -148,8 +149,7 @@ Drive::Action read_action(const Section& s, double duration, int dimension, Curv
     case ActionKind::force: {
       a.amount =
           s.quantity("force", unit::force, Range::any(),
-                     "in all, shared out by the faces that belong to each gridpoint; in what thickness the "
-                     "specimen has");
+                     "in all, for the thickness of the specimen; shared out by the faces of each gridpoint");
       a.direction = read_force_direction(s, dimension);
       read_change();
       break;
@@ -212,11 +212,11 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
       break;
     case Drive::Until::Kind::rate_above:
       u.value = s.quantity("rate_above", rate, Range::positive(),
-                           "the stage ends when the record has changed faster between two looks");
+                           "the stage ends when the record has changed faster between two samples");
       break;
     case Drive::Until::Kind::rate_below:
       u.value = s.quantity("rate_below", rate, Range::positive(),
-                           "the stage ends when the record has changed more slowly between two looks");
+                           "the stage ends when the record has changed more slowly between two samples");
       break;
   }
   return u;
@@ -224,7 +224,7 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
 
 Drive::Control read_control(const Section& s, const std::vector<RecordParameters>& records) {
   Drive::Control c;
-  c.record = s.text("record", "a [[record]] of kind opening: what is controlled");
+  c.record = s.text("record", "the controlled [[record]], of kind opening");
   c.place = fmt::format("{}: {}", s.where("record"), s.path());
   const auto found = std::ranges::find(records, c.record, &RecordParameters::name);
   if (s.ok() && (found == records.end() || found->kind != RecordKind::opening))
@@ -244,7 +244,7 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
   keys.duration =
       s.quantity("duration", unit::time, Range::positive(), "after which the stage ends at the latest");
   CurveReader curves(tables.folder, time_axis(), {0.0, keys.duration}, fire_curves());
-  for (const Section& own : s.sections("drives", "what is held, moved or loaded, any number"))
+  for (const Section& own : s.sections("drives", "sets that are held, moved or loaded, any number"))
     keys.actions.push_back(read_action(own, keys.duration, tables.dimension, curves));
   for (const Section& own :
        s.optional_sections("until", "conditions of which the first that is met ends the stage"))

@@ -54,7 +54,7 @@ PlatenControl read_platen(const Section& s) {
       "platen",
       {{"force", PlatenControl::force, "its force stays; none but its weight if no load was applied"},
        {"fixed", PlatenControl::fixed, "its height stays"}},
-      "what the upper platen does");
+      "motion of the upper platen");
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
 
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables) {
   ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature};
-  if (const auto other = own.optional_section("coupling", "instead of what [coupling] says, for this stage"))
+  if (const auto other = own.optional_section("coupling", "in the place of [coupling], for this stage"))
     keys.coupling = tables.coupling_table
                         ? read_coupling(other->with_defaults_of("coupling"), &tables.coupling)
                         : read_coupling(*other);

@@ -50,13 +50,13 @@ void read_strength(const Section& s, const std::filesystem::path& folder, Load::
   if (s.is_table("f_c")) {
     const Section own = s.section("f_c", "the strength of another run");
     const std::string run = own.text(
-        "run", "Folder of the run, beside the deck; its f_c is taken: best that of the same specimen.");
+        "run", "Folder of the run, beside the deck, which gives f_c: best a run of the same specimen.");
     if (own.ok()) of = read_run(own, folder / run, keys);
   } else {
     keys.strength = s.quantity("f_c", unit::stress, range, "");
   }
-  keys.strength_of =
-      s.text("f_c_of", of, "whose strength this is, for the summary: best that of the same specimen, 20 °C");
+  keys.strength_of = s.text(
+      "f_c_of", of, "whose strength this is, for the summary: best a run of the same specimen at 20 °C");
 }
 
 /// Reads the load: a stress, or a level, which is a fraction of a strength that is given with it.

@@ -28,7 +28,7 @@ StrengthOfRun strength_of_run(const std::filesystem::path& place) {
   const auto summary = json_in(found.summary);
   found.deck_sha256 = json_in(found.manifest).value("deck_sha256", "");
   found.is_good = summary.value("is_good", false);
-  std::string why = "no stage of it measures one";
+  std::string why = "none of its stages measures one";
   for (const auto& stage : summary.value("stages", nlohmann::json::array())) {
     if (!stage.is_object() || !stage.contains("results")) continue;
     const auto& results = stage["results"];

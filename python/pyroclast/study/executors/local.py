@@ -163,7 +163,7 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None]
                 result, has_ended = server.hear()
                 if has_ended:
                     if not server.is_ready and server.process.wait() > 0:
-                        raise Error(f"{jobs[0].command[0]}: the function cannot be loaded; what Python says stands above")
+                        raise Error(f"{jobs[0].command[0]}: the function cannot be loaded; Python's message stands above")
                     server.close()
                     servers[servers.index(server)] = _Server(jobs[0].command[0])
                     if result is None and job is not None:
