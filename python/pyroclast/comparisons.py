@@ -57,6 +57,9 @@ def _common_kind(runs: Sequence[Results]) -> str:
 
 
 def _kind(run: Results) -> str:
+    if not run.moves:
+        raise Error(f"compare: {run.folder} is a run of heat alone, which has no stress and no strain; "
+                    "`pyroclast report RUN RUN... --out FILE` draws temperatures of several runs together")
     if not run.ends_heated:
         return "stress-strain"
     return "thrust" if run.restrained else "total-strain"

@@ -6,8 +6,11 @@ import statistics
 import subprocess
 import tomllib
 import unittest
+from unittest import mock
 
 import numpy as np
+from pyroclast.comparisons import compare_seeds
+from pyroclast.errors import Error
 from pyroclast.study import converge
 from scipy.stats import t, ttest_ind
 from study_files import CASES, PROGRAM, StudyTest
@@ -55,6 +58,11 @@ class Seeds(StudyTest):
         after = {file: file.stat().st_mtime_ns for file in out.glob("runs/*/summary.json")}
         self.assertEqual(len(after), 4)
         self.assertEqual({file: after[file] for file in before}, before)
+
+    def test_runs_of_heat_alone_have_no_curves_of_stress(self):
+        wall = mock.Mock(moves=False, folder="runs/wall")
+        with self.assertRaisesRegex(Error, "runs/wall is a run of heat alone, .* `pyroclast report RUN"):
+            compare_seeds([wall, wall])
 
     def test_a_specimen_that_lacks_one_result_has_a_value(self):
         done = self.run_deck("--seeds", "2", "--no-figures", *SMALL, "--set", "stages[1].stop_strain=0.0006")
