@@ -243,14 +243,14 @@ class LedgerOfARing(UserTest):
         done = self.pyroclast("run", CASES / "ring_cooling.toml", "--out", "out", "--overwrite", "--no-figures",
                               "--no-fields", *words)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"of the energy turned over, \d+\.?\d* % of what contacts dissipated")
+        self.assertRegex(done.stdout, r"of the energy turned over, \d+\.?\d* % of the energy that contacts dissipated")
         summary = json.loads((self.folder / "out/summary.json").read_text())
         energy = summary["energy_J"]
         dissipated = sum(energy[f"dissipated_{name}"] for name in ("tension", "shear", "friction", "compression"))
         self.assertAlmostEqual(energy["error_over_dissipated"], energy["error"] / dissipated, delta=1e-9)
         told = " ".join(summary["warnings"])
         return {"error": abs(energy["error_over_dissipated"]), "stress": summary["exchange_stress_over_strength"],
-                "of_ledger": "of what contacts dissipated" in told,
+                "of_ledger": "of the energy that contacts dissipated" in told,
                 "of_exchanges": "exchanges of temperatures are too large" in told}
 
     def test_it_is_judged_by_what_cracks_dissipated(self):

@@ -282,7 +282,7 @@ class Changing(Case):
             copied = parent.copy({"stages[2].to": to}, out=folder / f"copy {to}").finish()
             self.assertEqual(history(folder / f"whole {to}"), history(folder / f"copy {to}"))
             self.assertEqual(copied.history["temperature"].max(), whole.history["temperature"].max())
-        with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
+        with self.assertRaisesRegex(pyroclast.Error, "the parent has done this stage"):
             parent.copy({"stages[0].most_steps": 10})
 
     def test_a_stage_that_is_appended_gives_the_run_of_the_whole_deck(self):
@@ -322,7 +322,7 @@ class Changing(Case):
         whole["stages[2].to"] = "30 degC"
         straight = pyroclast.Run(whole, threads=1).finish()
         np.testing.assert_array_equal(run.history.to_pandas(), straight.history.to_pandas())
-        with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
+        with self.assertRaisesRegex(pyroclast.Error, "the parent has done this stage"):
             run.change({"stages[2].to": "50 degC"})
 
     def test_a_stage_can_be_ended_where_it_was_stopped(self):

@@ -70,7 +70,7 @@ std::ptrdiff_t count_of(const std::vector<std::string>& warnings, const std::str
 }
 
 const std::string kOfTurnover = "of the energy turned over";
-const std::string kOfDissipated = "of what contacts dissipated";
+const std::string kOfDissipated = "of the energy that contacts dissipated";
 
 // ---- The energy ledger -----------------------------------------------------------------------------------
 
@@ -268,12 +268,15 @@ TEST(EnergyLedger, OnePercentOfTheDissipatedIsTheBoundOfAWarning) {
     const Summary s = r.summary();
     ASSERT_EQ(s.warnings.size(), 1u);
     EXPECT_EQ(s.warnings[0],
-              "the energy ledger closes only within 1 % of what contacts dissipated, not within 1 %: a lower "
+              "the energy ledger closes only within 1 % of the energy that contacts dissipated, not within 1 "
+              "%: a lower "
               "mechanics.safety leaves less");
     EXPECT_TRUE(s.is_sound);
   }
   r.put("energy_error_J", 0.04);
-  EXPECT_EQ(count_of(r.summary().warnings, "only within 2 % of what contacts dissipated, not within 1 %"), 1);
+  EXPECT_EQ(count_of(r.summary().warnings,
+                     "only within 2 % of the energy that contacts dissipated, not within 1 %"),
+            1);
 }
 
 // Promise: an error that is rounding beside the turnover is none, however little contacts dissipated; and

@@ -141,7 +141,9 @@ TEST(Session, ACopyWithOtherLaterStagesIsTheRunOfThatDeck) {
   finish(*copied);
   finish(*whole);
   EXPECT_EQ(cells(*copied), cells(*whole));
-  EXPECT_NE(message([&] { run->copy({"stages[0].most_steps=5"}, std::nullopt); }).find("this stage is done"),
+  EXPECT_NE(message([&] {
+              run->copy({"stages[0].most_steps=5"}, std::nullopt);
+            }).find("the parent has done this stage"),
             std::string::npos);
 }
 

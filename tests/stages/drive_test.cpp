@@ -396,7 +396,7 @@ TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
   says(refused(kHeld, record("r", "stress", "set = \"corner\"\ndirection = \"x\"")), "which holds no zone");
   says(message(free_deck(kUniform + kSettle + kCompress)), "\"compress\" needs the table [platens]");
   says(refused(kHeld + does("right", "pressure = \"1 MPa\"\nramp_time = \"2 ms\"")),
-       "ramp_time = \"2 ms\": must end within the stage");
+       "ramp_time = \"2 ms\": must end within the duration of the stage");
   says(refused(kHeld + does("right", "force = \"0 N\"\ndirection = [1, 0]")),
        "no force acts on set \"right\" along that direction, so that this ends nothing");
   says(refused(kHeld + does("right", "pressure = \"0 Pa\"")), "no pressure acts on set \"right\"");
