@@ -312,6 +312,7 @@ std::vector<ColumnInfo> possible_gauge_columns() {
   infos.push_back({"mean_opening_m", "m", "mean opening of the broken contacts"});
   infos.push_back({"NAME_UNIT", "its own", "a [[record]] of the deck"});
   infos.push_back({"rate_K_s", "K/s", "root of the mean square of the temperature's rate over the volume"});
+  infos.push_back({"gas_max_degC", "degC", "hottest gas of all boundaries of heat"});
   add_infos(infos, kHeats, "heat");
   infos.push_back(
       {"heat_gap_length_m", "m", "length of the contacts whose sides have temperatures of their own"});
