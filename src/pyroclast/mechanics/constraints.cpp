@@ -109,6 +109,8 @@ void Constraints<Dim>::tie(std::vector<int> gridpoints, int component) {
   TieOfBundle tie{body_.first_bundle_of(body_.layout.bundle_of(gridpoints.front())), component, {}};
   double mass = 0.0, momentum = 0.0;
   for (int g : gridpoints) {
+    if (body_.first_bundle_of(body_.layout.bundle_of(g)) != tie.bundle)
+      throw Error("gridpoints of several blocks cannot be tied: a plate is one block");
     constrain(g);
     tie.slots.push_back(body_.layout.gridpoint_slot[g]);
     mass += body_.mass[g];

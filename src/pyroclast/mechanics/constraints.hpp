@@ -17,7 +17,8 @@ class Constraints {
   /// Lets one component of a gridpoint move freely again.
   void release(int gridpoint, int component);
   /// Ties free gridpoints of one block, which then share one component of their motion, as under a rigid
-  /// plate. They start with their mean velocity, so tie them at rest.
+  /// plate. They start with their mean velocity, so tie them at rest. Throws Error where they are of several
+  /// blocks.
   void tie(std::vector<int> gridpoints, int component);
   /// Ends all ties.
   void untie();
