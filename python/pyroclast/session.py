@@ -71,7 +71,7 @@ class State:
     def __getitem__(self, name: str) -> float:
         """A column; raises KeyError where there is none."""
         if not self._lasts and self._look != self._run._look:
-            raise Error("this state is of an earlier look: the run has gone on; keep state.copy() instead")
+            raise Error("this state is of an earlier sample: the run has gone on; keep state.copy() instead")
         i, factor = self._columns.place(name)
         return float(self._values[i]) * factor
 

@@ -175,7 +175,7 @@ class Going(Case):
     def test_a_call_back_between_steps_changes_nothing(self):
         run = pyroclast.Run(deck(), threads=1)
         run.call_at(2500, lambda r: r.change({"stages[1].stop_strain": 2e-4}))
-        with self.assertRaisesRegex(pyroclast.Error, "stop it, and change it then"):
+        with self.assertRaisesRegex(pyroclast.Error, "change the run after it has stopped"):
             run.finish()
         run.finish()
         self.assertEqual(run.outcome, "completed")
