@@ -1,6 +1,5 @@
 """validation/runs: which runs of a study are done, and which go on."""
 
-import hashlib
 import json
 import pathlib
 import sys
@@ -25,7 +24,7 @@ class Runs(unittest.TestCase):
         (self.folder / "checkpoints" / "1.state").touch()
         (self.folder / "manifest.json").write_text(json.dumps(
             {"command": " ".join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
-        self.folder.with_name("run.source").write_text(hashlib.sha256(self.deck.read_bytes()).hexdigest())
+        self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
         version = mock.patch.object(runs, "physics_version", lambda program: "7")
         version.start()
         self.addCleanup(version.stop)
@@ -43,6 +42,8 @@ class Runs(unittest.TestCase):
     def test_what_came_to_its_end_is_done(self):
         self.end("completed")
         self.assertFalse(runs.broken_off(self.folder, COMMAND))
+        self.assertTrue(runs.finished(self.folder, COMMAND, self.deck))
+        self.deck.write_text("# another comment\ntitle = 'one'\n")
         self.assertTrue(runs.finished(self.folder, COMMAND, self.deck))
 
     def test_another_command_deck_or_physics_is_another_run(self):
