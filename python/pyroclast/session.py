@@ -146,7 +146,8 @@ class Views:
 class Fields(Mapping[str, Array]):
     """Fields of gridpoints and zones now, by name with unit, `run.fields["stress_Pa"]`, or without,
     `run.fields.stress`: (items,) numbers, (items, dimension) vectors x, y and of a solid z, (items, 6) symmetric
-    tensors xx, yy, zz, xy, yz, xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/lookup/fields.md lists them.
+    tensors xx, yy, zz, xy, yz, xz. Each is a copy. A name that there is not raises KeyError, or AttributeError.
+    docs/lookup/fields.md lists them.
     """
 
     def __init__(self, core: _core.Session):

@@ -51,7 +51,7 @@ class Specimen:
         labels: of each cell, the name of its phase, or what `phases` has the name for; an array may have any shape
             that has one label for each cell, such as (cells, 1).
         phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
-        block_size: (cells,), in `unit`: size that each was to have, which its contact stiffness follows; None: all alike.
+        block_size: (cells,), in `unit`: size that each was to have, which its contact stiffness follows; None: alike.
         unit: of the vertices: "m", "mm", ...; None: they are taken in m, with a warning.
         join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
             does not have them become corners of it ("1 um"); None: cells share the vertices that they name.

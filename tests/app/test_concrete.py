@@ -119,7 +119,8 @@ class Concrete(unittest.TestCase):
                 ((*LIMESTONE, "--d_max", "20 mm"), "--stones"),
                 ((*LIMESTONE, "--fraction", "0.4"), "--d_max is needed"),
                 ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm:45 %"), "'8 mm=45 %'"),
-                ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45"), '"45": must be between 0 and 1, or 0 % and 100 %'),
+                ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45"),
+                 '"45": must be between 0 and 1, or 0 % and 100 %'),
                 ((*LIMESTONE, "--fraction", "0.4", "--passing", "8 mm=45 %", "16 mm=90 %"), "100 %"),
                 ((*LIMESTONE, "--stones", "1900 kg/m3", "--d_max", "20 mm"), "at most 0.6 can be placed"),
                 ((*LIMESTONE, *FULLER, "--from", "x.toml"), "--hot")):

@@ -24,6 +24,31 @@ phi_res = "34 deg"
 G_f2 = "240 N/m"
 )";
 
+/// Contacts of mortar that stay elastic at the stresses of tests, but for what is stated.
+inline std::string strong_bond(const std::string& f_t = "25 MPa", const std::string& c_o = "100 MPa",
+                               const std::string& G_f1 = "6 kN/m") {
+  return "f_t = \"" + f_t + "\"\nG_f1 = \"" + G_f1 + "\"\nc_o = \"" + c_o + R"("
+f_cm = "1 GPa"
+beta = 0.05
+c_res = "1 MPa"
+phi = "34 deg"
+phi_res = "34 deg"
+G_f2 = "24 kN/m"
+)";
+}
+
+/// A body that comes to rest by scaled mass.
+inline std::string resting_mechanics(const std::string& gravity) {
+  return R"([mechanics]
+mass = "scaled"
+time_step = "10 us"
+safety = 0.9
+local_damping = 0.8
+damping_form = "combined"
+gravity = ")" +
+         gravity + "\"\n";
+}
+
 /// Sixty blocks of a prism, 60 mm x 120 mm, whose parts differ in their expansion at most.
 inline std::string deck(const std::string& stages, const std::string& expansion = "\"1e-5 1/K\"") {
   return R"DECK(title = "small"

@@ -16,6 +16,7 @@
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
+#include "stages/small_runs.hpp"
 
 namespace pyroclast {
 namespace {
@@ -39,34 +40,18 @@ density = "2200 kg/m3"
 )";
 const std::string kHot = "conductivity = \"1.5 W/(m K)\"\nspecific_heat = \"1000 J/(kg K)\"\n";
 
-/// Mortar that moves, with contacts that stay elastic at a tensile strength of 25 MPa.
+/// Mortar that moves; its contacts are those of strong_bond.
 std::string moving(const std::string& f_t = "25 MPa", const std::string& c_o = "100 MPa",
                    const std::string& G_f1 = "6 kN/m") {
-  return fmt::format(R"(E = "30 GPa"
+  return R"(E = "30 GPa"
 nu = 0.2
 [contacts]
 t_b = "1.6 mm"
 t_b_scaling = "block size"
 t_b_block_size = "3 mm"
 [contacts.mortar_mortar]
-f_t = "{}"
-G_f1 = "{}"
-f_cm = "1 GPa"
-beta = 0.05
-c_o = "{}"
-c_res = "1 MPa"
-phi = "34 deg"
-phi_res = "34 deg"
-G_f2 = "24 kN/m"
-[mechanics]
-mass = "scaled"
-time_step = "10 us"
-safety = 0.9
-local_damping = 0.8
-damping_form = "combined"
-gravity = "0 m/s2"
-)",
-                     f_t, G_f1, c_o);
+)" + strong_bond(f_t, c_o, G_f1) +
+         resting_mechanics("0 m/s2");
 }
 
 std::string record(const char* name, const char* kind, const char* set, const std::string& more) {

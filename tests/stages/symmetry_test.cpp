@@ -18,6 +18,7 @@
 #include "messages.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
+#include "stages/small_runs.hpp"
 
 namespace pyroclast {
 namespace {
@@ -96,24 +97,9 @@ t_b = "{} m"
 t_b_scaling = "fixed"
 platen_friction = 0.0
 [contacts.mortar_mortar]
-f_t = "25 MPa"
-G_f1 = "6 kN/m"
-f_cm = "1 GPa"
-beta = 0.05
-c_o = "100 MPa"
-c_res = "1 MPa"
-phi = "34 deg"
-phi_res = "34 deg"
-G_f2 = "24 kN/m"
-[mechanics]
-mass = "scaled"
-time_step = "10 us"
-safety = 0.9
-local_damping = 0.8
-damping_form = "combined"
-gravity = "9.81 m/s2"
 )",
-                     kYoung, kPoisson, kFractureZone);
+                     kYoung, kPoisson, kFractureZone) +
+         strong_bond() + resting_mechanics("9.81 m/s2");
 }
 
 const std::string kPress = R"([platens]

@@ -153,7 +153,7 @@ class Driver:
     def _missing(self, proposal: Proposal) -> list[Wanted]:
         """Runs of which it is not known what came of them. What a killed driver left undone is done first."""
         wanted = self._wanted(proposal)
-        begun = {file.stem for file in self.store.runs.glob("*.begun")}
+        begun = self.store.begun()
         for job in self._jobs(w for w in wanted if w.ids[0] in begun):
             if (result := made(job, self.store.runs)) is not None:
                 self.store.put(result)
@@ -166,7 +166,7 @@ class Driver:
 
     def count_begun(self) -> int:
         """Runs that were begun and have no result."""
-        return self.store.begun()
+        return sum(self.store.get(run) is None for run in self.store.begun())
 
     def rows(self) -> list[dict[str, Any]]:
         """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""

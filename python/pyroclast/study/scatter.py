@@ -127,7 +127,8 @@ def _digits(s: ensemble.Summary) -> int:
 
 def _runs(study: Study, rows: Sequence[dict[str, Any]]) -> list[Results]:
     """Runs that came to an end."""
-    return [Results(study.setup.folder / "runs" / str(row["run"])) for row in rows if row["state"] in ("done", "no value")]
+    folder = study.setup.folder / "runs"
+    return [Results(folder / str(row["run"])) for row in rows if row["state"] in ("done", "no value")]
 
 
 def _table(found: dict[str, ensemble.Summary]) -> str:

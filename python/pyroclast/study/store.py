@@ -126,9 +126,9 @@ class Store:
                 self._results[run] = result
         self._stamps = there
 
-    def begun(self) -> int:
-        """Number of runs that were begun and have no result: under way, or broken off."""
-        return sum(self.get(file.stem) is None for file in self.runs.glob("*.begun"))
+    def begun(self) -> set[str]:
+        """Identities of the runs that are under way or were broken off."""
+        return {file.stem for file in self.runs.glob("*.begun")}
 
     def _stamps_now(self) -> dict[str, tuple[int, ...]]:
         """A file is replaced by another one, so it is changed where its number or its time is."""

@@ -143,7 +143,8 @@ class Study:
         files = [self.setup.folder / "runs" / str(row["run"]) / "summary.json" for row in self.rows()]
         summaries = [json.loads(file.read_text(encoding="utf-8")) for file in files if file.exists()]
         for summary in summaries:
-            told = [*summary.get("warnings", []), *(w for s in summary.get("stages", []) for w in s.get("warnings", []))]
+            of_stages = (text for stage in summary.get("stages", []) for text in stage.get("warnings", []))
+            told = [*summary.get("warnings", []), *of_stages]
             for head, text in {text.partition(":")[0]: text for text in reversed(told)}.items():
                 kinds.setdefault(head, []).append(text)
         return [f"{len(texts)} of {len(summaries)} runs: {texts[0]}" for texts in kinds.values()]

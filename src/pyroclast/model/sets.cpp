@@ -18,10 +18,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Distance from a plane of symmetry that counts as none, over the size of the specimen.
-constexpr double kInPlane = 1e-9;
-
-/// Largest distance from a bound or a line at which a point is on it, in sizes of the model.
+/// Largest distance from a bound, a line or a plane at which a point is on it, in sizes of the model.
 constexpr double kOnBound = 1e-9;
 /// Largest distance from the body of a place that is meant, in sizes of a block.
 constexpr double kNear = 1.0;
@@ -201,15 +198,13 @@ void add_sets(Model& model, const std::vector<SetParameters>& sets) {
 }
 
 void add_symmetry(Model& model, const std::vector<PlaneOfSymmetry>& planes) {
-  const auto& specimen = model.set("specimen");
-  double size = 0.0;
-  for (const int g : specimen) size = std::max(size, norm(model.place(g) - model.place(specimen.front())));
+  const double slack = kOnBound * size_of(model);
   for (const PlaneOfSymmetry& plane : planes) {
     std::vector<int> its = model.set(plane.side);
     for (int block = 0; block < model.block_count(); ++block)
       if (model.is_of_bearing(block))
         for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-          if (std::abs(model.place(g)[plane.component] - plane.at) <= kInPlane * size) its.push_back(g);
+          if (std::abs(model.place(g)[plane.component] - plane.at) <= slack) its.push_back(g);
     sort_unique(its);
     model.sets[plane.set()] = std::move(its);
     model.symmetry.push_back(plane);

@@ -134,8 +134,7 @@ std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregatePar
 
 }  // namespace
 
-CellMetrics measure(const Complex& complex, const Prism& body) {
-  CellMetrics metrics;
+CellMetrics measure(const Complex& complex, const Prism& body, CellMetrics metrics) {
   metrics.shortest_edge = std::numeric_limits<double>::infinity();
   std::size_t zones = 0;
   for (const CellFace& face : complex.faces) {
@@ -199,8 +198,7 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   specimen.phases = specimen::phases(p);
   const int matrix = place_in(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
-  CellMetrics done;
-  specimen.complex = tessellate(p.blocks, body, block_random, team, done);
+  specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics);
   const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
   specimen.covered_fraction = superposed.covered_fraction;
   std::vector<double> volumes;
@@ -213,10 +211,7 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
     if (specimen.phase.back() != matrix) specimen.fraction_superposed += volumes.back() / body.volume();
   }
   specimen.classes = classes_of(kinds, specimen, superposed.stone, volumes);
-  specimen.metrics = measure(specimen.complex, body);
-  specimen.metrics.vertices_merged = done.vertices_merged;
-  specimen.metrics.edges_left_short = done.edges_left_short;
-  specimen.metrics.seeds_redrawn = done.seeds_redrawn;
+  specimen.metrics = measure(specimen.complex, body, specimen.metrics);
   return specimen;
 }
 

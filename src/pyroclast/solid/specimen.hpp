@@ -57,8 +57,9 @@ struct SolidSpecimen {
 SolidSpecimen make_specimen(const specimen::SpecimenParameters& parameters, const Prism& body,
                             Team* team = nullptr);
 
-/// Measures blocks. What has been done to them stays 0.
-CellMetrics measure(const Complex& complex, const Prism& body);
+/// Measures blocks.
+/// \param metrics  metrics that say what has been done to the blocks, which stays in the result
+CellMetrics measure(const Complex& complex, const Prism& body, CellMetrics metrics = {});
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const SolidSpecimen& specimen);
