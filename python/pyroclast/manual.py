@@ -198,7 +198,7 @@ def _arguments(command: Command) -> str:
             continue
         after = f":{_quoted(option.value)}:{values}" if option.value else ""
         told += [f"'*{name}[{_quoted(option.meaning)}]{after}'" for name in option.names]
-    return " ".join(["_arguments", *told, "'--help[what there is]'"])
+    return " ".join(["_arguments", *told, "'--help[options and their meanings]'"])
 
 
 def _described(commands: Sequence[Command]) -> str:

@@ -51,7 +51,7 @@ def labels_of(mesh: meshio.Mesh, data: str | None, phases: Mapping[Any, str] | N
             remedy = f"; data={next(iter(mesh.cell_data))!r} takes cell data"
         else:
             remedy = f"; phases has {', '.join(map(repr, phases))}" if phases else ""
-        missing = "nothing that says what its cells are of" if data is None else f"no cell data {data!r}"
+        missing = "nothing that names the phases of its cells" if data is None else f"no cell data {data!r}"
         raise Error(f"the mesh has {missing}; it has "
                     f"{', '.join(there) or 'no cell data, cell sets or physical groups'}{remedy}")
     labels = [label for i in taken if len(mesh.cells[i].data)

@@ -387,7 +387,7 @@ class Run:
             if name not in self._columns.bare and name not in self._columns.units:
                 raise Error(f"the history has no {name!r}; it has {', '.join(self._columns.bare)}")
         if condition is None and not passed and steps is None and equilibrium is None:
-            raise Error("until what? say a condition, strain, stress, temperature, quantity, steps or equilibrium")
+            raise Error("until needs a condition: strain, stress, temperature, quantity, steps or equilibrium")
         now = self.measure()
         stops = [True]  # taken back where another condition comes first
         rising = {name: not now[name] > value for name, value in passed.items()}  # NaN: comes from below

@@ -401,8 +401,7 @@ def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | N
                  if phases is None else dict.fromkeys(phases.values()))
     for number, label in enumerate(values):
         if phases is None and not isinstance(label, str):
-            raise Error(f"cell {number} (from 0) has the label {label!r}; say by phases={{{label!r}: ...}} what it is "
-                        "called")
+            raise Error(f"cell {number} (from 0) has the label {label!r}; say by phases={{{label!r}: ...}} its name")
         if phases is not None and (not isinstance(label, Hashable) or label not in phases):
             raise Error(f"cell {number} (from 0) has the label {label!r}, for which there is no phase; there are "
                         f"{', '.join(map(repr, phases)) or 'none'}")

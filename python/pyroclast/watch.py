@@ -510,7 +510,7 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--once", action="store_true", help="show the present state, and stop")
     parser.add_argument("--on", choices=SCREENS,
                         help="a window; the terminal, in place; lines, one curve below the other; or nothing "
-                             f"but {PICTURE} in the folder (default: what there is)")
+                             f"but {PICTURE} in the folder (default: the first of these that works here)")
     parser.add_argument("--out", type=Path, metavar="FILE",
                         help=f"file for the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
     return parser

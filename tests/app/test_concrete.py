@@ -70,7 +70,7 @@ class Concrete(unittest.TestCase):
         self.assertAlmostEqual(deck["fraction"], 1800.0 / 2700.0 * (1.0 - 0.38), delta=5e-4)
         self.assertEqual(deck["passing"], [["4 mm", "38 %"], ["8 mm", "55 %"], ["20 mm", "100 %"]])
         self.assertEqual(deck["passing_by"], "volume")
-        self.assertIn("0.413 of a section: what is larger than --d_min 4 mm", done.stdout)
+        self.assertIn("0.413 of a section: all stones larger than --d_min 4 mm", done.stdout)
         self.pyroclast("check", "mine.toml", "--set", "blocks.count=300")
 
     def test_a_hot_test_takes_mortar_and_contacts_from_the_calibrated_deck(self):

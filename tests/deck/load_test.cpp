@@ -165,7 +165,7 @@ TEST(DeckText, OfTwoFilesNamesTheOneThatIsWrong) {
     return failure_of([&] {
       const Deck deck = Deck::parse(own, "deck.toml", changes, {more, "more.toml"});
       deck.root().text("title", "of the run");
-      for (const Section& stage : deck.root().sections("stages")) stage.text("kind", "what the stage does");
+      for (const Section& stage : deck.root().sections("stages")) stage.text("kind", "kind of the stage");
       deck.root().section_or_none("output").text("folder", "", "where");
       deck.finish();
     });

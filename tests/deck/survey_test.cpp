@@ -308,7 +308,7 @@ TEST(Reference, HasARowForEachKey) {
     for (const Section& s : root.sections("stages", "what is done, one after the other")) {
       const auto kind = s.choice<Kind>(
           "kind", {{"press", Kind::press, "the platen moves"}, {"fire", Kind::fire, "heat flows"}},
-          "what the stage does");
+          "kind of the stage");
       if (kind == Kind::press) {
         s.quantity("velocity", unit::velocity, Range::positive(), "of the platen");
         if (s.has("fastest")) {

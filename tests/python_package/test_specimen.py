@@ -402,7 +402,7 @@ class Meshes(Case):
         for told, more in (("no cell data 'paste'; it has cell sets paste, stone; leave data out", {"data": "paste"}),
                            ("cell 1 .from 0. is in none of the cell sets paste", {"phases": {"paste": "mortar"}}),
                            ("no cell set 'x'; it has paste, stone", {"phases": {"paste": "mortar", "x": "y"}}),
-                           ("nothing that says .* it has cell sets paste, stone; phases has 1", {"phases": {1: "a"}})):
+                           ("nothing that names .* it has cell sets paste, stone; phases has 1", {"phases": {1: "a"}})):
             with self.assertRaisesRegex(pyroclast.Error, told):
                 pyroclast.Specimen.from_meshio(mesh, unit="m", **more)
         both = self.two_quads(cell_sets={"all": [np.array([0, 1])], "stone": [np.array([1])]})
@@ -410,7 +410,7 @@ class Meshes(Case):
             pyroclast.Specimen.from_meshio(both, unit="m")
         with self.assertRaisesRegex(pyroclast.Error, "it has cell data l; data='l' takes cell data"):
             pyroclast.Specimen.from_meshio(self.two_quads(cell_data={"l": [[1, 1]]}), phases={1: "mortar"}, unit="m")
-        with self.assertRaisesRegex(pyroclast.Error, "nothing that says what its cells are of; it has no cell data"):
+        with self.assertRaisesRegex(pyroclast.Error, "nothing that names the phases of its cells; it has no cell data"):
             pyroclast.Specimen.from_meshio(self.two_quads(), unit="m")
 
     def test_elsets_of_abaqus_and_physical_names_of_gmsh(self):

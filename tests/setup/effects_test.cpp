@@ -30,7 +30,7 @@ TEST(Effects, TemperaturesThatNobodyHandsOverAreRefused) {
   const auto complaint = refused(conducting(kSettle + kConduct + kCompress));
   expect_contains(complaint,
                   {"deck.toml:", "stages[2].kind = \"compress\"",
-                   "nobody has handed over to it the temperatures of stage 2 (conduct)", "\"expose\""});
+                   "no stage has handed over the temperatures of stage 2 (conduct)", "\"expose\""});
   EXPECT_EQ(refused(conducting(kSettle + kConduct + kExpose + kCompress)), "no Error was thrown");
 }
 

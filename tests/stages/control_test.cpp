@@ -293,12 +293,11 @@ TEST(Control, TheReportTellsThePairsPart) {
     const double of_work = number("control_work_over_loading_work");
     EXPECT_NEAR(of_work * number("loading_work_J"), std::abs(work), 0.1 * std::abs(work) + 1e-3);
     ASSERT_EQ(report.lines.size(), 1U);
-    EXPECT_EQ(
-        report.lines[0],
-        fmt::format("control of stretch: the largest load is {:.4g} N, and {:.4g} N with what the pair bore "
-                    "beside it ({:+.2g} %); the pair bore up to {:.2g} % of it, and did {:.2g} % of the work",
-                    peak, with_pair, 100.0 * number("control_error_of_largest_load"),
-                    100.0 * number("control_force_over_peak"), 100.0 * of_work));
+    EXPECT_EQ(report.lines[0], fmt::format("control of stretch: the largest load is {:.4g} N, and {:.4g} N "
+                                           "with the force of the pair beside this ({:+.2g} %); the pair "
+                                           "bore up to {:.2g} % of that load, and did {:.2g} % of the work",
+                                           peak, with_pair, 100.0 * number("control_error_of_largest_load"),
+                                           100.0 * number("control_force_over_peak"), 100.0 * of_work));
     const bool is_much = std::max(number("control_error_of_largest_load"), of_work) > 0.05;
     EXPECT_EQ(report.warnings.size(), is_much ? 1U : 0U) << rate;
   }

@@ -315,7 +315,7 @@ TEST(LoadReports, TellsWhatWasBorne) {
   EXPECT_TRUE(r.warnings.empty());
   const StageReport crushed = Load(keys).report(history, {1, 4}, Outcome::crushed);
   EXPECT_EQ(crushed.warnings,
-            std::vector<std::string>{"crushed: it bore 5.00 MPa at most of the 6.00 MPa of the load"});
+            std::vector<std::string>{"crushed: the specimen bore 5.00 MPa at most of the 6.00 MPa of the load"});
   keys.level.reset();
   const StageReport plain = Load(keys).report(history, {1, 1}, Outcome::not_begun);
   for (const char* name :

@@ -30,7 +30,7 @@ def compare_page(runs: Sequence[Results]) -> str:
     names = names_apart(runs, visible)
     notes = [f"{name}: {note}" for name, data in zip(names, whole) for note in data.notes]
     if len(runs) > _MOST_BODIES:
-        notes.append(f"specimens are those of the first {_MOST_BODIES} runs")
+        notes.append(f"only the first {_MOST_BODIES} runs have specimens here")
     differences = deck_differences(runs)
     data = {"runs": [{**one.data, "name": name} for name, one in zip(names, whole)],
             "over": _common([one.data for one in whole], "over"), "of": _common([one.data for one in whole], "of"),

@@ -80,7 +80,7 @@ def verdict(run: Results) -> list[Reason]:
 def _of_end(run: Results) -> list[Reason]:
     """Against a run as a whole: how it ended, and its warnings."""
     if "outcome_id" not in run.summary:
-        said = {"running": "the run still goes on: its numbers are those of now",
+        said = {"running": "the run still goes on: its numbers are of this moment",
                 "killed": "the run was killed before it could sum up", "broken off": "the run broke off"}
         return [Reason(DOUBT if run.outcome == "running" else BAD,
                        said.get(run.outcome, "summary.json does not say whether the run is good"))]

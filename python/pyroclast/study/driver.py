@@ -133,7 +133,7 @@ class Driver:
             missing = self._missing(proposal)
             if missing:
                 count = "1 run" if len(missing) == 1 else f"{len(missing)} runs"
-                say(f"{count} to make" + ("" if proposal.is_complete else "; what follows depends on them"))
+                say(f"{count} to make" + ("" if proposal.is_complete else "; further runs depend on their results"))
                 progress = _Progress(len(missing), say)
 
                 def finished(result: RunResult, progress: _Progress = progress) -> None:
@@ -212,7 +212,7 @@ class Driver:
         values = self.values(self.findings()["best"]["u"])
         found = ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(self.study.parameters, values))
         write_text(file, f"# Best point of the study \"{self.study.title}\": {found}.\n"
-                         "# The comments below are those of the deck that it began with.\n" + self.points.text(values))
+                         "# The comments below come from the first deck.\n" + self.points.text(values))
         return file
 
     def findings(self) -> dict[str, Any]:

@@ -34,7 +34,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Runner:
-    """What makes the numbers of a point.
+    """Model that gives the numbers of a point.
 
     kind: "pyroclast" runs a deck, "command" runs a command line that leaves summary.json in {folder}, "function" calls
         a function of a Python file with the parameters and `seed` by name; it returns the outputs by name.
@@ -64,7 +64,7 @@ class SlurmSettings:
 
 @dataclass(frozen=True)
 class Method:
-    """Which points are run, and what is made of them. settings: keys of the table [method] but kind and until."""
+    """Method that chooses the points and evaluates the runs. settings: keys of [method] but kind and until."""
 
     kind: str
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -123,14 +123,15 @@ def schema() -> str:
 
 def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> StudySetup:
     root = toml.root()
-    title = root.text("title", "What figures and the report are headed with; without it the file's name.", file.stem)
-    own = root.table("study", "What is run, how often, and what is kept of it.")
+    title = root.text("title", "Heading of figures and of the report; without one the file's name.", file.stem)
+    own = root.table("study", "Deck, number of runs, and the parts of a run that are kept.")
     runner = _runner(own, file.parent)
     count = own.integer("seeds", "Realisations of the specimen that each point is run with; the same for all points. "
                         "Results of a point are means over them.", 1, 10000, 1)
     first = own.integer("first_seed", "The first of them; the others follow.", 0, None, FIRST_SEED)
     keep = own.choice("keep", [("summary", "summary, manifest and deck"), ("history", "and the history"),
-                               ("all", "all that a run writes")], True, "What stays of a run once its outputs are taken.")
+                               ("all", "all that a run writes")], True,
+                              "Parts of a run that stay once its outputs are taken.")
     wall_limit = own.quantity("wall_limit", "s", "Wall time after which a run is stopped and counts as timed out; "
                               "that of attempts that were killed counts.", 0.0, None, 86400.0)
     accepted = own.integer("accept_version", "Physics version of earlier runs that count beside the program's own; a "
@@ -140,13 +141,13 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
     earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.",
                         is_optional=True)
 
-    method = _method(root.table("method", "Which points are run, and what is made of them."))
+    method = _method(root.table("method", "Method that chooses the points and evaluates the runs."))
     outputs = [Output.of_function(name) for name in functions]
     outputs += _outputs(root, not outputs, "Numbers that are taken of each run, by names of your own: a number of the "
                                   "summary by its name (`\"f_c_MPa\"`), or `\"history: COLUMN at COLUMN = NUMBER\"`; see "
                         "[Outputs](../do/studies.md#outputs).")
     parameters = []
-    tables = root.optional_table("parameters", "What is varied.")
+    tables = root.optional_table("parameters", "Varied parameters.")
     if tables is not None:
         named = sorted(tables.named_tables("NAME", "A parameter."), key=lambda entry: _line(entry[1]))
         parameters = [_parameter(name, table, runner.kind) for name, table in named]
@@ -164,7 +165,7 @@ def _runner(own: _core.Table, folder: Path) -> Runner:
         ("pyroclast", "`pyroclast run` of a deck"),
         ("command", "a command line of your own; it leaves summary.json in {folder}"),
         ("function", "a function of a Python file"),
-    ], True, "What makes the numbers of a point.")
+    ], True, "Model that gives the numbers of a point.")
     if kind == "command":
         return Runner(kind, command=own.text("command", "With {NAME} for each parameter, {seed} and {folder}."))
     if kind == "function":
@@ -197,7 +198,7 @@ _METHODS = [
     ("chaos", "shares of the variance by a polynomial chaos surrogate with its own error"),
     ("calibrate", "parameters that meet targets, by CMA-ES"),
     ("secant", "a parameter for each target, changed until it is met: some four rounds"),
-    ("posterior", "what targets tell of parameters, by MCMC on a surrogate"),
+    ("posterior", "distribution of parameters that the targets allow, by MCMC on a surrogate"),
 ]
 
 
@@ -221,7 +222,7 @@ def _method(table: _core.Table) -> Method:
         integer("samples", "Rows; each has two points more than there are parameters. A power of 2 fills best.", 8, 128)
     elif kind in ("chaos", "posterior"):
         integer("samples", "Points that the surrogate is fitted to.", 10, 200)
-        integer("held", "Further points that it is tried on. Those without a value are made up for, up to as "
+        integer("held", "Further points for a trial of the surrogate. Points without a value are replaced, up to as "
                         "many again.", 30, 30)
     elif kind == "calibrate":
         integer("population", "Points of a generation; 0: 4 + 3 ln of the number of parameters.", 0, 0)
@@ -283,9 +284,9 @@ def _parameter(name: str, table: _core.Table, runner: str) -> Parameter:
     if runner == "pyroclast":
         keys = _keys(table)
         how = table.choice("vary", [("value", "the value itself; of a curve its `value`"),
-                                    ("scale", "a factor of what the deck says, of curves too"),
+                                    ("scale", "a factor of the deck's value, of curves too"),
                                     ("shift", "a shift of a curve over temperature, in K")], True,
-                           "What of the key is varied.")
+                           "Varied part of the key's value.")
     elif table.has("key") or table.has("keys"):
         table.error("key" if table.has("key") else "keys", f'has no meaning with runner = "{runner}"')
     given = [kind for kind in _DISTRIBUTIONS if table.has(kind)]
@@ -405,9 +406,9 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
         root.know(["targets"])
         return []
     targets = []
-    tables = root.table("targets", "What outputs should be.")
+    tables = root.table("targets", "Values that outputs should reach.")
     for name, table in tables.named_tables("OUTPUT", "Of the output of that name, in its unit."):
-        value = table.number("value", "What it should be.")
+        value = table.number("value", "Value that the output should reach.")
         sd = table.number("sd", "Standard deviation by which the experiment is uncertain.", 0.0)
         if name not in [o.name for o in outputs] and name != "OUTPUT":
             tables.error(name, f"no output is called so; there are {', '.join(o.name for o in outputs)}")

@@ -124,7 +124,7 @@ int check(const RunOptions& options) {
              setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());
   if (!model.symmetry.empty())
-    fmt::print("symmetry        a plane at {}: forces, energies and cracks are those of this part alone\n",
+    fmt::print("symmetry        a plane at {}: forces, energies and cracks count this part alone\n",
                fmt::join(model.symmetry | std::views::transform(&PlaneOfSymmetry::side), ", at "));
   if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())

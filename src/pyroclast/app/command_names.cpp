@@ -30,11 +30,11 @@ constexpr ExitCode kExitCodes[] = {
      "The command failed, because of the command line, the deck, a file or the disk. One line gives the "
      "reason."},
     {2,
-     "The run ended without what it was for: it did not come to rest or to the stated stress, a number was "
-     "not finite, or its energy ledger does not close. summary.json says so. Of law --verify: a law fails."},
+     "The run ended and missed its aim: the body did not come to rest or to the stated stress, a number was "
+     "not finite, or the energy ledger does not close. summary.json says so. Of law --verify: a law fails."},
     {3,
-     "The deck or the study names code that was not allowed (--allow-code); of check: all but the keys of "
-     "that law was checked."},
+     "The deck or the study names code that was not allowed (--allow-code); of check: all keys but that "
+     "law's were checked."},
     {130, "Ended by Ctrl-C or another signal; results so far and a checkpoint are kept."},
 };
 

@@ -490,8 +490,8 @@ int write_concrete(const ConcreteOptions& options) {
     fmt::print("{} is written\n", file.string());
   }
   if (!o.stones.empty() || !asked.passing.sizes.empty())
-    fmt::print("coarse          {:.3g} of a section: what is larger than --d_min {:g} mm\n", asked.fraction,
-               1e3 * asked.d_min);
+    fmt::print("coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm\n",
+               asked.fraction, 1e3 * asked.d_min);
   if (!is_guess) {
     if (is_first_guess(found, asked, o))
       fmt::print(

@@ -120,7 +120,7 @@ int print_list(const std::string& what) {
       return 0;
     }
   const std::vector<std::string> names = names_of_lists();
-  if (what.empty()) throw Error(fmt::format("list: of what? {}", quoted_list(names)));
+  if (what.empty()) throw Error(fmt::format("list: name one of {}", quoted_list(names)));
   throw Error(fmt::format("list {}: there is no such list{}; lists: {}", what,
                           did_you_mean(what, names, "; "), quoted_list(names)));
 }

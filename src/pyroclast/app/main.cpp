@@ -110,7 +110,7 @@ void add_checkpoint(CLI::App* command, app::RunOptions& options) {
 void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
   command
       ->add_option("--law-path", options.folders,
-                   "Folders with contact laws, before those of PYROCLAST_LAW_PATH")
+                   "Folders with contact laws, searched before PYROCLAST_LAW_PATH")
       ->take_all()
       ->allow_extra_args(false);
   command->add_flag("--allow-code", options.allow_code,

@@ -17,7 +17,7 @@ std::string describe(const StateRule& rule) {
   if (!has_least && !has_most) return "a finite number";
   if (!has_most) return fmt::format("{:g} or greater", rule.least);
   if (!has_least) return fmt::format("{:g} or less", rule.most);
-  if (rule.least > rule.most) return "left out, for there is nothing that it could name";
+  if (rule.least > rule.most) return "left out, as it could name nothing";
   return fmt::format("{:g} to {:g}", rule.least, rule.most);
 }
 

@@ -216,7 +216,7 @@ std::optional<StatedPlace> read_stated_place(const Entry& entry, std::string_vie
   }
   const bool is_pair = list->size() == 2, is_triple = list->size() == 3;
   if (is_triple && !is_in_space) {
-    entry.error(needed + ": a body in the plane has no z; with [specimen] depth it is a solid");
+    entry.error(needed + ": a body in the plane has no z; with [specimen] depth the body is a solid");
     return std::nullopt;
   }
   if (!is_pair && !is_triple) {

@@ -23,7 +23,7 @@ struct MixedMode {
   static constexpr const char* name = "mixed_mode";
   static constexpr bool exact_in_shear = false;  // dilatancy turns sliding into a combined path
   static constexpr const char* meaning =
-      "one damage for tension and shear; what is broken rubs and dilates; yields in compression";
+      "one damage for tension and shear; broken faces rub and dilate; yields in compression";
 
   /// Form of the strength's fall from the beginning of softening to its end.
   enum class Softening : std::uint8_t {
@@ -248,7 +248,8 @@ struct MixedMode {
       f(LossInfo{"shear", "of the bond by shear above friction; G_f2 when sheared off",
                  unit::fracture_energy},
         l.shear...);
-      f(LossInfo{"friction", "rubbed off, less what dilation lifts", unit::fracture_energy}, l.friction...);
+      f(LossInfo{"friction", "rubbed off, less the work that dilation gives back", unit::fracture_energy},
+        l.friction...);
       f(info::lost_in_compression, l.compression...);
     }
   };

@@ -359,8 +359,8 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
   if (!strain) return;
   if (phases.size() > 2)
     throw Error(
-        fmt::format("concrete.inclusion_ratio: the strains of {} phases do not follow from it, only "
-                    "those of a matrix and one kind of inclusions",
+        fmt::format("concrete.inclusion_ratio: gives the strains of a matrix and of one kind of inclusions, "
+                    "and not of {} phases",
                     phases.size()));
   const double weight = inclusions.empty() ? 0.0 : strain->weight.value_or(mixture.inclusion_weight());
   whole.strain_weight = weight;

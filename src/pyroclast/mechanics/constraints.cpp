@@ -180,11 +180,11 @@ void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
       functions_of_made += static_cast<std::size_t>(body_.layout.bundles[b].packs);
     }
   for (const TieOfBundle& tie : body_.made_ties) tied += tie.slots.size();
-  visitor.require(s.constraints.size() == made, "constraints", "are not those of the bundles that have some");
+  visitor.require(s.constraints.size() == made, "constraints", "name others than the bundles that have some");
   visitor.require(s.constraint_packs.size() == functions_of_made, "constraint_packs",
-                  "are not those of the bundles that have some");
-  visitor.require(s.ties.size() == body_.made_ties.size(), "ties", "are not as many as those of the bundles");
-  visitor.require(s.tied_slots.size() == tied, "tied_slots", "are not as many as those of the bundles");
+                  "name others than the bundles that have some");
+  visitor.require(s.ties.size() == body_.made_ties.size(), "ties", "differ in number from the bundles'");
+  visitor.require(s.tied_slots.size() == tied, "tied_slots", "differ in number from the bundles'");
   for (std::size_t b = 0; b < body_.made_constraints.size(); ++b) {
     const int index = body_.made_constraints[b];
     visitor.require(s.constraints_of_bundle[b] < 0 || s.constraints_of_bundle[b] == index,

@@ -65,7 +65,7 @@ inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
      [](const EnergyLedger& e) { return e.local_damping; }},
     {"viscous_damping", "energy_viscous_damping_J", LedgerSide::lost, "to viscous damping",
      [](const EnergyLedger& e) { return e.viscous_damping; }},
-    {"error", "energy_error_J", LedgerSide::error, "what was put in less what is held and lost",
+    {"error", "energy_error_J", LedgerSide::error, "energy put in, less energy held and lost",
      [](const EnergyLedger& e) { return e.error(); }},
 });
 

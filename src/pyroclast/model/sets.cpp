@@ -189,7 +189,7 @@ void add_sets(Model& model, const std::vector<SetParameters>& sets) {
     if (const auto* nearest = std::get_if<NearestTo>(&asked.place))
       if (const double away = distance_of(model, nearest->point); away > kNear * block_size(model))
         fail(fmt::format(
-            "is of what is nearest to a place that lies {:.4g} m from the body, more than a block is wide",
+            "takes the items nearest to a place that lies {:.4g} m from the body, more than a block is wide",
             away));
     auto members = chosen(items, within, asked.place, slack);
     if (members.empty()) fail("is empty: nothing lies there");

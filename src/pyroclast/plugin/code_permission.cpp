@@ -49,8 +49,8 @@ bool is_listed(const fs::path& list, const std::string& hash) {
   if (list.empty() || stat(list.c_str(), &is) != 0) return false;
   if (is.st_uid != geteuid() || (is.st_mode & (S_IWGRP | S_IWOTH)) != 0)
     throw Error(
-        fmt::format("{}: others than you may write it, so what it allows is not trusted; it must be "
-                    "yours, with mode 0600",
+        fmt::format("{}: others than you may write this file, so its permissions are not trusted; the file "
+                    "must be yours, with mode 0600",
                     list.string()));
   std::istringstream lines(read_file(list));
   for (std::string line; std::getline(lines, line);)

@@ -52,8 +52,8 @@ class Opener {
     if (!object) refuse("cannot be loaded as a contact law: {}", dlerror());
     if (after != before)
       refuse(
-          "switches the processor to other arithmetic when it is loaded (MXCSR {:#x} becomes {:#x}), as what "
-          "is linked with -ffast-math does: numbers near zero would be flushed to zero; {}",
+          "switches the processor to other arithmetic when it is loaded (MXCSR {:#x} becomes {:#x}), as a "
+          "library linked with -ffast-math does: numbers near zero would be flushed to zero; {}",
           before, after, kRemedy);
     auto* const function = reinterpret_cast<pyroclast_law_function>(dlsym(object, kLawSymbol));
     if (!function)

@@ -100,11 +100,11 @@ void bind_decks(py::module_& m) {
            py::arg("stages"), py::arg("deck_names"), py::arg("changes_name"));
   m.def(
       "shown", [](const std::string& text) { return shown(text, true); }, py::arg("text"),
-      "A text from elsewhere as a terminal may show it: what acts on one is written out, but for line "
-      "breaks.");
+      "A text from elsewhere as a terminal may show it: characters that act on a terminal are written out, "
+      "but for line breaks.");
   m.def(
       "allow_code", [] { allows_code = true; },
-      "Lets code that decks and studies name run in this process; it stays allowed until it changes.");
+      "Lets code that decks and studies name run in this process, until the code changes.");
   m.def(
       "require_code",
       [](const std::string& what, const std::vector<std::string>& texts, bool named) {
@@ -139,8 +139,7 @@ void bind_decks(py::module_& m) {
       },
       py::arg("deck"),
       "Reads a deck; returns its text as the folder of a run keeps it, the SHA-256 of each file that it "
-      "names, and "
-      "what it warns of.");
+      "names, and its warnings.");
   m.def(
       "read", [](const std::string& file) { return Deck::open(file).text(); }, py::arg("file"),
       "The text of a file that is a deck.");
@@ -164,7 +163,7 @@ void bind_decks(py::module_& m) {
       py::arg("text"), py::arg("unit"), "The value of a quantity in a unit.");
   m.def("is_quantity", &is_quantity, py::arg("text"),
         "Whether a text is a number with a unit that decks know.");
-  m.def("si_factor", &si_factor, py::arg("unit"), "What one of a unit of the results is in SI.");
+  m.def("si_factor", &si_factor, py::arg("unit"), "Value in SI of one of a unit of the results.");
 }
 
 }  // namespace pyroclast::python

@@ -256,13 +256,13 @@ void bind_sessions(py::module_& m) {
             const Session& session = h.get();
             return summary_text(session.summary(), session.run());
           },
-          "The same, not written.")
+          "The text of the summary, not written.")
       .def(
           "summary_numbers", [](const Held& h) { return h.get().summary_numbers(); },
-          "What may be a number in the summary when the run is over: results by name, others by path.")
+          "Entries that may be numbers in the summary when the run is over: results by name, others by path.")
       .def(
           "test_results", [](const Held& h) { return test_results(h.get().run()); },
-          "Those of its results that a laboratory would report, by name.")
+          "Results that a laboratory would report, by name.")
       .def(
           "copy",
           [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
@@ -329,7 +329,7 @@ void bind_sessions(py::module_& m) {
            "The last row, (columns,).")
       .def(
           "measure", [](const Held& h) { return row(h.get().run().measure()); },
-          "What a sample would measure now, (columns,).")
+          "Row that a sample would measure now, (columns,).")
       .def_property_readonly("step",
                              [](const Held& h) -> std::int64_t {
                                const Simulation& s = h.get().simulation();

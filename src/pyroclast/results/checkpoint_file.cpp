@@ -186,7 +186,7 @@ class CheckpointReader : public StateVisitor {
   void read(const std::string& name, const CheckpointFile::Piece& piece, std::byte* data) const {
     if ((piece.bytes() > 0 && !file_.read(piece.begin, data, piece.bytes())) ||
         XXH3_64bits(data, piece.bytes()) != piece.hash)
-      fail(fmt::format("is damaged: \"{}\" is not what was written", name));
+      fail(fmt::format("is damaged: \"{}\" differs from the bytes that were written", name));
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}", checkpoint_.path().string(), what));
@@ -274,7 +274,7 @@ void CheckpointFile::restore(const std::function<void(StateVisitor&)>& visit) co
     visit(reader);
     reader.finish();
   } catch (const std::bad_alloc&) {
-    fail("it asks for more memory than there is");
+    fail("the file asks for more memory than there is");
   } catch (const std::exception& error) {
     fail(error.what());
   }

@@ -153,7 +153,7 @@ std::vector<std::string> doubts(const Reference& reference, const PlainCurve& cu
   };
   if (!std::isfinite(ratio) || ratio == 0.0) return {};
   if (std::abs(ratio) > kOtherUnit || std::abs(ratio) * kOtherUnit < 1.0)
-    return say("it is most likely in another unit than its header says");
+    return say("the column is most likely in another unit than its header says");
   if (ratio < 0.0) return say("where the file's positive values are negative in the run, state its sign");
   return {};
 }

@@ -404,7 +404,7 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
             ? "with mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical "
               "temperatures "
               "8 to 28 K"
-            : "blocks that turn would be softer there, but those of a solid cannot turn yet"));
+            : "blocks that turn would be softer there, but blocks of a solid cannot turn yet"));
   return s;
 }
 

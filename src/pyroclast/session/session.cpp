@@ -50,9 +50,8 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
         "whether phases creep cannot change in a run: [materials.NAME.creep] is there from the start");
   if (!old.asks_for_hottest() && changed.asks_for_hottest())
     throw Error(
-        "materials.NAME.contraction cannot come into a run with materials.on_cooling = \"reversible\": what "
-        "was "
-        "the hottest is kept only where it is asked for from the start");
+        "materials.NAME.contraction cannot come into a run with materials.on_cooling = \"reversible\": the "
+        "highest temperature is kept only where a deck asks for it from the start");
 }
 
 }  // namespace
@@ -221,10 +220,8 @@ void Session::change_stages(const std::vector<std::string>& changes, const std::
 void Session::change_materials(const std::vector<std::string>& changes) {
   for (const std::string& change : changes)
     if (!change.starts_with("materials.") && !change.starts_with("contacts."))
-      throw Error(
-          fmt::format("{}: in a run only keys of [materials] and [contacts] change, and those of later "
-                      "stages",
-                      key_of(change)));
+      throw Error(fmt::format("{}: in a run only keys of [materials], [contacts] and later stages change",
+                              key_of(change)));
   if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
   Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes);
   Setup setup = read(deck);

@@ -84,7 +84,7 @@ void warn_of_first_strain(const Section& root, const Setup& setup) {
       unstrained, setup.heat.initial);
   if (const auto heat = root.optional_section("heat"))
     heat->warn("initial", strained + (stress_free ? ""
-                                                  : ": a stage that heats it does so gradually; "
+                                                  : ": a stage that heats the body does so gradually; "
                                                     "coupling.stress_free says another temperature"));
   else if (coupling)
     coupling->warn(kStressFree, strained);

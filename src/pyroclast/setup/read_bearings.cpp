@@ -13,7 +13,7 @@ ReadBearing read_bearing(const Section& s, const DeckSpace& space) {
   Bearing& bearing = read.bearing;
   bearing.name = s.text("name", "of the bearing, and of the sets that come with it");
   if (s.has("side")) {
-    bearing.side = s.text("side", "side of the specimen that it covers from end to end");
+    bearing.side = s.text("side", "side of the specimen that the bearing covers from end to end");
     for (const char* key : {"at", "width"})
       if (s.has(key)) s.error(key, "either side, or at and width; not both");
   } else {
@@ -29,14 +29,14 @@ ReadBearing read_bearing(const Section& s, const DeckSpace& space) {
   }
   bearing.thickness = s.quantity("thickness", unit::length, Range::positive(), "away from the specimen");
   bearing.material =
-      s.text("material", "platen", "what it is made of: a table of [materials], at 20 °C in every run");
+      s.text("material", "platen", "of the bearing: a table of [materials], at 20 °C in every run");
   bearing.interface = read.interface.name = bearing.name;
   BearingInterface& interface = read.interface;
   interface.contact = s.choice<BearingContact>(
       "contact",
       {{"frictional", BearingContact::frictional, "bears no tension, and slips by Coulomb's law"},
        {"glued", BearingContact::glued, "stays elastic and never parts"}},
-      "how it meets the specimen");
+      "how the bearing meets the specimen");
   if (interface.contact == BearingContact::frictional)
     interface.friction = s.number("friction", Range::non_negative().usually(0.0, 1.0),
                                   "coefficient of friction between bearing and specimen");
@@ -59,7 +59,7 @@ std::vector<ReadBearing> read_bearings(const Section& root, const DeckSpace& spa
   std::vector<ReadBearing> bearings;
   for (const Section& s :
        root.optional_sections("bearings",
-                              "blocks beside the specimen by which it is loaded or held, any number; see "
+                              "blocks beside the specimen that load or hold the specimen, any number; see "
                               "[Bearings](../do/bodies.md#bearings)")) {
     ReadBearing read = read_bearing(s, space);
     const auto same = [&](const ReadBearing& other) { return other.bearing.name == read.bearing.name; };

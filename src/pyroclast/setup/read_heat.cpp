@@ -45,7 +45,7 @@ HeatedFaces read_faces(const Section& s, const DeckSpace& space) {
   if (!s.has("faces")) s.error("faces", "is needed: where the boundary acts, such as faces = \"left\"");
   faces.part = s.word_or_text(
       "faces",
-      {{HeatedFaces::kOutline, 0, "all sides, those of holes and notches too"},
+      {{HeatedFaces::kOutline, 0, "all sides, also of holes and notches"},
        {HeatedFaces::kBox, 1, "faces of the outline whose centres lie in a box"}},
       "the name of a side of the specimen, such as left, of the patch under a bearing, also under "
       "a platen, or of a set",
@@ -88,7 +88,7 @@ HeatCondition read_condition(const Section& s, CurveReader& curves) {
        {"convection", Kind::convection, "heat h (T_gas − T) flows in, Eq. (2)"},
        {"radiation", Kind::radiation, "heat ε σ (T_gas⁴ − T⁴) flows in, of absolute temperatures"},
        {"adiabatic", Kind::adiabatic, "no heat flows; holds for all faces of which nothing is said"}},
-      "what happens there")) {
+      "condition on the faces")) {
     case Kind::temperature:
       return PrescribedTemperature{
           curves.read(s, "temperature", unit::temperature, kTemperature, "of the faces")};
@@ -158,7 +158,7 @@ std::optional<Interval> read_range(const Section& s, const HeatConditions& heat)
   }
   if (Interval{ends[0], ends[1]}.holds(heat.initial, absolute_zero))
     return Interval{std::min(ends[0], heat.initial), std::max(ends[1], heat.initial)};
-  s.error("temperature_range", fmt::format("the initial temperature of {} degC is not in it", heat.initial));
+  s.error("temperature_range", fmt::format("must hold the initial temperature of {} degC", heat.initial));
   return std::nullopt;
 }
 
@@ -199,7 +199,7 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
       .gas_conductivity = builtin_curves().at(kAir).curve,
       .jump_distance =
           s.quantity("jump_distance", unit::length, Range::positive().usually(1e-8, 1e-5), kJumpDistance,
-                     "by which the gas seems wider than the opening, for the jumps of "
+                     "length by which the gas seems wider than the opening, for the jumps of "
                      "temperature at the faces"),
       .emissivity = s.quantity("emissivity", unit::dimensionless, Range::fraction(), kEmissivity,
                                "ε of each face; 1 / (2/ε − 1) acts between the two"),
@@ -208,19 +208,20 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
     law.split_below = s.quantity(
         "split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5),
         "conductance below which a contact parts the temperatures of its sides; above twice that it "
-        "joins them; without it 20 λ / ℓ of the specimen; see [Cracks](../understand/heat.md#cracks)");
+        "joins them; without this key 20 λ / ℓ of the specimen; see [Cracks](../understand/heat.md#cracks)");
   const Interval needed = curves.needed();
   if (s.has("gas_conductivity"))
     law.gas_conductivity =
         curves.read(s, "gas_conductivity", unit::conductivity, Range::positive(),
-                    "of the gas in cracks; without it that of air, the builtin air_conductivity");
+                    "of the gas in cracks; without this key air, the builtin air_conductivity");
   else if (!law.gas_conductivity.holds(needed))
-    s.error("gas_conductivity",
-            fmt::format(
-                "is needed: without it that of air is taken, which is given for {:.6g} to {:.6g} degC, but "
-                "the run may come to {:.6g} to {:.6g} degC",
-                law.gas_conductivity.range().lower, law.gas_conductivity.range().upper, needed.lower,
-                needed.upper));
+    s.error(
+        "gas_conductivity",
+        fmt::format(
+            "is needed: without this key the gas is air, whose curve reaches from {:.6g} to {:.6g} degC, but "
+            "the run may come to {:.6g} to {:.6g} degC",
+            law.gas_conductivity.range().lower, law.gas_conductivity.range().upper, needed.lower,
+            needed.upper));
   return law;
 }
 
@@ -228,11 +229,10 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
 
 std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curves) {
   const auto heat = root.optional_section("heat");
-  const auto s =
-      heat ? heat->optional_section("cracks",
-                                    "lets cracks hinder heat; without it heat crosses them as if they "
-                                    "were not there; see [Cracks](../understand/heat.md#cracks)")
-           : std::nullopt;
+  const auto s = heat ? heat->optional_section("cracks",
+                                               "lets cracks hinder heat; without this table heat crosses "
+                                               "cracks freely; see [Cracks](../understand/heat.md#cracks)")
+                      : std::nullopt;
   if (!s) return std::nullopt;
   CrackHeat cracks{
       .law = read_gap_heat(*s, curves), .splits_by_block_size = !s->has("split_below"), .gaps = {}};
@@ -242,15 +242,15 @@ std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curve
                                     "a set of contacts: the name of a notch without width, or of a set; see "
                                     "[Sets](../do/bodies.md#sets)"),
                            gap.quantity("width", unit::length, Range::positive().usually(1e-6, 0.02),
-                                        "between the faces; what the motion opens comes to it"),
+                                        "between the faces at the start; openings by the motion add to it"),
                            fmt::format("{}: {}", gap.where("contacts"), gap.path())});
   return cracks;
 }
 
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves,
                                         const DeckSpace& space) {
-  const auto s =
-      root.optional_section("heat", "how the specimen is heated; without it the specimen stays at 20 °C");
+  const auto s = root.optional_section(
+      "heat", "how the specimen is heated; without this table the specimen stays at 20 °C");
   if (!s) return std::nullopt;
   s->know(
       {"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries", "cracks"});

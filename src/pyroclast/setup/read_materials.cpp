@@ -93,10 +93,10 @@ std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete&
   QuartzStep step;
   step.strain = s.number("quartz_step", Range::between(0.0, 0.02).usually(0.003, 0.0045),
                          "linear strain that quartz in the phase adds to its own expansion or thermal_strain "
-                         "where it turns into its other form, near 573 °C");
+                         "where the quartz turns into its other form, near 573 °C");
   if (s.has("quartz_range")) {
     const auto ends = s.quantities("quartz_range", unit::temperature, Range::at_least(kReferenceTemperature),
-                                   "where it begins and where it ends; 550 and 600 °C unless stated");
+                                   "where the step begins and where it ends; 550 and 600 °C unless stated");
     if (ends.size() == 2 && ends[0] < ends[1])
       step.over = {ends[0], ends[1]};
     else if (!ends.empty())
@@ -167,8 +167,8 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
                                         CurveReader& curves) {
   const auto s = phase.optional_section(
       "creep",
-      "load-induced thermal strain (transient creep): shortening of the phase under stress when "
-      "it is heated for the first time; see [Creep under load](../understand/deck.md#creep-under-load)");
+      "load-induced thermal strain (transient creep): shortening of the phase under stress on its first "
+      "heating; see [Creep under load](../understand/deck.md#creep-under-load)");
   if (!s) return std::nullopt;
   CreepMaterial m;
   m.strain = read_creep_strain(*s, concrete, curves);
@@ -181,12 +181,12 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
                                 "back, so B may stay or rise, but not fall",
                                 m.strain(fall->lower), fall->lower, m.strain(fall->upper), fall->upper));
   }
-  m.level =
-      s->choice<CreepLevel>("of",
-                            {{"concrete", CreepLevel::concrete,
-                              "of the concrete as a whole; the phase, its matrix, creeps more by 1 / R"},
-                             {"phase", CreepLevel::phase, "of this phase"}},
-                            CreepLevel::concrete, "what B is of");
+  m.level = s->choice<CreepLevel>(
+      "of",
+      {{"concrete", CreepLevel::concrete,
+        "B holds for the concrete as a whole; the phase, its matrix, creeps more by 1 / R"},
+       {"phase", CreepLevel::phase, "B holds for this phase"}},
+      CreepLevel::concrete, "material to which B belongs");
   if (m.level == CreepLevel::phase)
     s->know({"share"});
   else if (s->has("share"))
@@ -213,7 +213,7 @@ BlockMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
   BlockMaterial m = read_block_material(s, curves);
   m.residual_ratio = read_residual_ratio(
       s, rules.on_cooling,
-      "share of E at T_max, the highest temperature that was there, that is left at 20 °C: a curve of T_max, "
+      "share of E at T_max, the highest temperature so far, that is left at 20 °C: a curve of T_max, "
       "1 at 20 °C; E falls to it evenly on cooling; see [Cooling](../understand/deck.md#cooling)",
       curves);
   m.thermal_strain = read_thermal_strain(s, rules.expansion_reading, curves);
@@ -227,9 +227,9 @@ BlockMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
   if (s.has("contraction"))
     m.contraction =
         s.quantity("contraction", unit::expansion, Range::any().usually(0.0, 3e-5),
-                   "expansion coefficient where the phase is colder than it was, T_max: free strain "
-                   "is then that at T_max − contraction (T_max − T); without it free strain "
-                   "goes back along its curve; see [Cooling](../understand/deck.md#cooling)");
+                   "expansion coefficient below the highest temperature so far, T_max: free strain is then "
+                   "its value at T_max − contraction (T_max − T); without this key free strain goes back "
+                   "along its curve; see [Cooling](../understand/deck.md#cooling)");
   m.creep = read_creep(s, concrete, curves);
   return m;
 }
@@ -263,8 +263,8 @@ Curve read_property(const Section& s, const PropertyInfo& info, const std::optio
 void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMaterial& m, CurveReader& curves) {
   const auto ratio =
       read_residual_ratio(s, on_cooling,
-                          "share of strengths and fracture energies at T_max, the highest temperature that "
-                          "was there, that is left at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it "
+                          "share of strengths and fracture energies at T_max, the highest temperature so "
+                          "far, that is left at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it "
                           "evenly on cooling; see [Cooling](../understand/deck.md#cooling)",
                           curves);
   if (!ratio) return;
@@ -337,10 +337,9 @@ std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
 /// Reads the pairs of phases that an interface joins: names that follow one another two and two.
 std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
                                                      const std::vector<std::string>& phases) {
-  const auto list =
-      s.optional_texts("between",
-                       "the two phases whose blocks it joins, or several pairs in a row: a, b, c, d; "
-                       "without it those in its name, a_b");
+  const auto list = s.optional_texts("between",
+                                     "the two phases whose blocks these contacts join, or several pairs in a "
+                                     "row: a, b, c, d; without this key the two in the table's name, a_b");
   if (!s.ok()) return {};
   if (!s.has("between")) {
     auto pair = pair_in_name(name, phases);
@@ -536,19 +535,19 @@ void check_complete(const Section& s, const std::vector<InterfaceParameters>& in
 }  // namespace
 
 MaterialRules read_material_rules(const Section& root) {
-  const Section s = root.section("materials", "what the body is made of");
-  return {s.choice<ExpansionReading>(
-              "expansion_reading",
-              {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
-               {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
-              ExpansionReading::secant, "how the coefficients of thermal expansion α are read"),
-          s.choice<OnCooling>("on_cooling",
-                              {{"irreversible", OnCooling::irreversible,
-                                "they stay as at the highest temperature so far: concrete does not heal"},
-                               {"reversible", OnCooling::reversible, "they come back along their curves"}},
-                              OnCooling::irreversible,
-                              "change of E, strengths, fracture energies and stiffnesses where it "
-                              "cools")};
+  const Section s = root.section("materials", "phases and bearings of the body");
+  return {
+      s.choice<ExpansionReading>(
+          "expansion_reading",
+          {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
+           {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
+          ExpansionReading::secant, "how the coefficients of thermal expansion α are read"),
+      s.choice<OnCooling>("on_cooling",
+                          {{"irreversible", OnCooling::irreversible,
+                            "they stay as at the highest temperature so far: concrete does not heal"},
+                           {"reversible", OnCooling::reversible, "they come back along their curves"}},
+                          OnCooling::irreversible,
+                          "change of E, strengths, fracture energies and stiffnesses where the body cools")};
 }
 
 ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
@@ -572,10 +571,9 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
                            "matrix gets the strain that "
                            "gives the concrete's, and neither is stated in [materials]");
   if (s->has("inclusion_weight"))
-    strain.weight = s->number(
-        "inclusion_weight", Range::inside(0.0, 1.0),
-        "weight w of the inclusions in the strain of the concrete; without it from the specimen's share of "
-        "inclusions, by Mori and Tanaka, and Levin");
+    strain.weight = s->number("inclusion_weight", Range::inside(0.0, 1.0),
+                              "weight w of the inclusions in the strain of the concrete; without this key "
+                              "from the specimen's share of inclusions, by Mori and Tanaka, and Levin");
   if (phases.size() > 2)
     s->error(
         "inclusion_ratio",
@@ -622,12 +620,13 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   c.matrix = matrix;
   c.fracture_zone = s.quantity("t_b", unit::length, Range::positive().usually(1e-5, 0.05),
                                "thickness of the fracture zone, t_b");
-  const bool scales = s.choice<bool>("t_b_scaling",
-                                     {{"block size", true,
-                                       "yes, it scales with it, and so do stated stiffnesses, so that the "
-                                       "specimen's E does not depend on it"},
-                                      {"fixed", false, "no, it holds for any block size"}},
-                                     "whether t_b depends on the block size");
+  const bool scales = s.choice<bool>(
+      "t_b_scaling",
+      {{"block size", true,
+        "t_b scales with the block size, and stated stiffnesses with 1 / block size, so that E changes "
+        "little with the number of blocks, see [Block size](../validation/block_size.md)"},
+       {"fixed", false, "t_b is the same for any block size"}},
+      "whether t_b depends on the block size");
   if (scales)
     c.fracture_zone_size =
         s.quantity("t_b_block_size", unit::length, Range::positive(),

@@ -34,7 +34,7 @@ std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen&
                                   "from the lower left corner of a rectangle, the middle of a disc"),
                        s.quantity("y", unit::length, within(1), "likewise")}};
     if (specimen.dimension() == 2) {
-      if (s.has("z")) s.error("z", "a body in the plane has no z; with [specimen] depth it is a solid");
+      if (s.has("z")) s.error("z", "a body in the plane has no z; with [specimen] depth the body is a solid");
     } else if (!s.has("z")) {
       s.error("x", "with y is a point of a solid, whose z is needed too" +
                        (known ? fmt::format("; in the middle it is z = \"{:g} m\"",

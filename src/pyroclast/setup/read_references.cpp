@@ -185,7 +185,7 @@ void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuanti
                            "the file counts it as negative, write sign = {}",
                            sign_to_write));
   else if ((is_stress && size > kMostStress) || (*of.unit == unit::dimensionless && size > kMostStrain))
-    say(size, "it is most likely in another unit, which the header of its column must say");
+    say(size, "the column is most likely in another unit, which its header must say");
 }
 
 /// Reads the values of a reference from a table. Throws Error where the table does not have them.
@@ -326,10 +326,9 @@ Drawn told_by_units(const MeasuredTable& table, const std::vector<Drawn>& drawn)
 /// Reads the short form: a word, or a file whose columns tell by their units which curve it holds.
 Reference read_short(const Section& output, const std::filesystem::path& folder,
                      const std::vector<Drawn>& drawn) {
-  const std::string name = output.text(
-      "reference",
-      "one of [[output.references]] in short: the name of a builtin one, or a file whose columns tell by "
-      "their units what it is of");
+  const std::string name = output.text("reference",
+                                       "one of [[output.references]] in short: the name of a builtin one, or "
+                                       "a file whose units tell the quantities of its columns");
   const auto& words = builtins();
   if (const auto word = std::ranges::find(words, name, &Choice<Builtin>::word); word != words.end())
     return builtin(output, "reference", word->value, drawn);

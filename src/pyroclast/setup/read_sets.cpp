@@ -49,7 +49,8 @@ void read_place_of_set(const Section& s, const DeckSpace& space, SetParameters& 
                  "through it along z");
     set.place = OnLine{from, to};
   } else if (s.has("nearest")) {
-    const auto nearest = s.place("nearest", unit::length, space.of_point(), "what is nearest to this place");
+    const auto nearest =
+        s.place("nearest", unit::length, space.of_point(), "the items nearest to this place");
     set.place = NearestTo{vec_of(nearest.value_or(StatedPlace{}))};
   }
 }
@@ -57,7 +58,7 @@ void read_place_of_set(const Section& s, const DeckSpace& space, SetParameters& 
 Vec<3> read_direction(const Section& s, const DeckSpace& space) {
   const std::string stated = s.word_or_text(
       "direction", {{"x", 0, "to the right"}, {"y", 1, "upwards"}, {"z", 2, "to the back of a solid"}},
-      "x, y or z behind a minus", "along which it is measured");
+      "x, y or z behind a minus", "along which the record is measured");
   const bool is_negative = stated.starts_with('-');
   const std::string axis = stated.substr(is_negative ? 1 : 0);
   Vec<3> direction{};
@@ -85,12 +86,12 @@ RecordParameters read_record(const Section& s, const DeckSpace& space) {
        {"crack_area", RecordKind::crack_area, "the same of a solid"},
        {"crack_opening", RecordKind::crack_opening,
         "mean over a set of contacts, by length, of a solid by area"}},
-      "what is recorded");
+      "recorded quantity");
   if (r.kind == RecordKind::crack_length && space.is_solid())
     s.error("kind", "cracks of a solid have an area: kind = \"crack_area\"");
   if (r.kind == RecordKind::crack_area && !space.is_solid())
     s.error("kind", "cracks in the plane have a length: kind = \"crack_length\"");
-  r.set = s.text("set", "of which it is; see [Sets](../do/bodies.md#sets)");
+  r.set = s.text("set", "set that is recorded; see [Sets](../do/bodies.md#sets)");
   s.know({"other", "direction", "over"});
   if (r.kind == RecordKind::displacement || r.kind == RecordKind::opening ||
       r.kind == RecordKind::temperature)
@@ -128,16 +129,16 @@ std::vector<SetParameters> read_sets(const Section& root, const DeckSpace& space
            "parts of the body that stages, records and heat boundaries name, any number; see "
            "[Sets](../do/bodies.md#sets)")) {
     SetParameters set;
-    set.name = s.text("name", "another than those of the sets that there are anyhow");
+    set.name = s.text("name", "of the set; no name that a set of the program has");
     set.deck_place = fmt::format("{}: {}", s.where("name"), s.path());
     set.of = s.choice<SetOf, SetOf>(
         "of",
         {{"gridpoints", SetOf::gridpoints, "to hold, move, load or watch"},
-         {"faces", SetOf::faces, "those of faces that lie wholly there and meet no other block"},
-         {"blocks", SetOf::blocks, "those of blocks whose centroids lie there"},
+         {"faces", SetOf::faces, "gridpoints of faces that lie wholly there and meet no other block"},
+         {"blocks", SetOf::blocks, "gridpoints of blocks whose centroids lie there"},
          {"contacts", SetOf::contacts, "to watch cracks"}},
-        SetOf::gridpoints, "what it is a set of");
-    set.within = s.text("within", "", "a set that it is a part of; without one, all of the body");
+        SetOf::gridpoints, "items of the set");
+    set.within = s.text("within", "", "a set of which this one is a part; without one, all of the body");
     read_place_of_set(s, space, set);
     if (s.ok() && std::ranges::find(sets, set.name, &SetParameters::name) != sets.end())
       s.error("name", fmt::format("\"{}\" is the name of another set", set.name));

@@ -83,7 +83,7 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
   s.describe(
       "passing", {.value = "list of points [size, share], or { csv = file }", .name = "passing"},
       "grading that was measured, in the place of Fuller's curve: the share that passes each sieve, 100 % "
-      "the largest; straight between sieves, and rescaled to what is larger than d_min");
+      "the largest; straight between sieves, and rescaled to the stones larger than d_min");
   specimen::GradingCurve curve;
   const auto complain = [&](const std::string& what) {
     s.error("passing", what);
@@ -135,11 +135,11 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
       "passing_by",
       {{"area", By::area, "shares are of the area of the circles"},
        {"volume", By::volume,
-        "shares are of the volume of the stones, or their mass: circles are what a plane cuts from spheres, "
-        "see [Specimen](../understand/theory.md#specimen); in a solid they are those of the balls"}},
-      "what the shares of `passing` are of");
+        "shares are of the volume of the stones, or their mass: a plane cuts the circles from spheres, see "
+        "[Specimen](../understand/theory.md#specimen); in a solid the balls have these shares"}},
+      "quantity of which `passing` states shares");
   if (space.is_solid() && s.ok() && by == By::area)
-    s.error("passing_by", "shares of areas are those of a section; a solid takes passing_by = \"volume\"");
+    s.error("passing_by", "shares of areas belong to a section; a solid takes passing_by = \"volume\"");
   const bool has_d_min = s.has("d_min");
   const double d_min =
       has_d_min ? s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter")
@@ -234,8 +234,8 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
       const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
       auto [stone, end] = add(values, row, place);
       if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
-        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place,
-                                phase, phases.size() - 1));
+        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` names 0 to {}", place, phase,
+                                phases.size() - 1));
       stone.phase = phases[static_cast<std::size_t>(phase)];
       stone.place = place;
       a.stones.push_back(std::move(stone));
@@ -316,10 +316,9 @@ specimen::ShapeParameters read_shape(const Section& s, const DeckSpace& space) {
                            s.numbers("elongation", Range::between(1.0, 5.0).usually(1.0, 2.5),
                                      "least and largest length over width of the ellipse"));
   const double turn = 2.0 * std::numbers::pi;
-  const auto angles =
-      s.optional_quantities("orientation", unit::angle, Range::between(-turn, turn),
-                            "least and largest angle of the length from the x axis; without it, "
-                            "all angles are as likely");
+  const auto angles = s.optional_quantities(
+      "orientation", unit::angle, Range::between(-turn, turn),
+      "least and largest angle of the length from the x axis; without this key all angles are as likely");
   if (!angles.empty()) p.orientation = spread_of(s, "orientation", angles);
   if (p.kind == GrainShape::polygon)
     p.corners = spread_of(
@@ -547,8 +546,8 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder, cons
     specimen::Notch notch;
     notch.place = fmt::format("{}: {}", n.where("width"), n.path());
     notch.name = n.text("name", fmt::format("notch_{}", ++number), "of its side");
-    notch.mouth = read_place(n, "mouth", "where it begins, on the outline");
-    notch.tip = read_place(n, "tip", "where it ends, in the specimen; a corner of blocks");
+    notch.mouth = read_place(n, "mouth", "where the notch begins, on the outline");
+    notch.tip = read_place(n, "tip", "where the notch ends, in the specimen; a corner of blocks");
     notch.width =
         n.quantity("width", unit::length, Range::non_negative(), 0.0,
                    "of a slot, which ends in a point at the tip; 0: the blocks on both sides touch, and "
@@ -840,7 +839,8 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std
                                                   const DeckSpace& space) {
   std::vector<specimen::Inclusions> list;
   for (const Section& s : root.optional_sections(
-           "inclusions", "what stands in the matrix beside [aggregates]; placed after these, in turn")) {
+           "inclusions",
+           "circles and fibres in the matrix beside [aggregates]; placed after these, in turn")) {
     enum class Kind { circle, fibre };
     const auto kind = s.choice<Kind>(
         "shape",
@@ -885,9 +885,10 @@ void read_groups(const Section& s, const specimen::NeperTess& tess, const std::v
                   groups.size() == 1 ? "" : "s", fmt::join(groups, ", "));
   if (!s.has("groups")) {
     if (groups.size() > 1 && is_covered)
-      s.warn("file",
-             fmt::format("{}; they have no effect, as [aggregates] or [[inclusions]] say what blocks are of",
-                         found));
+      s.warn(
+          "file",
+          fmt::format("{}; they have no effect, as [aggregates] or [[inclusions]] give blocks their phases",
+                      found));
     else if (groups.size() > 1)
       s.error("file", fmt::format("{}: groups = [...] must say which phase each is, with {} names", found,
                                   groups.size()));
@@ -896,7 +897,7 @@ void read_groups(const Section& s, const specimen::NeperTess& tess, const std::v
   if (groups.empty())
     s.error("groups", "has no meaning here: the file puts its cells into no groups (*group)");
   else if (is_covered)
-    s.error("groups", "has no meaning beside [aggregates] or [[inclusions]], which say what blocks are of");
+    s.error("groups", "has no meaning beside [aggregates] or [[inclusions]], which give blocks their phases");
   else if (names.size() != groups.size())
     s.error("groups", fmt::format("{}, so {} name{} are needed, got {}", found, groups.size(),
                                   groups.size() == 1 ? "" : "s", names.size()));
@@ -924,10 +925,9 @@ void read_regularity(const Section& s, const DeckSpace& space, specimen::BlockPa
     return;
   }
   b.shortest_edge = s.number("shortest_edge", range, 0.0, kMeaning);
-  b.largest_bend = s.quantity(
-      kKey, unit::angle, Range::between(0.0, specimen::kMostBend), kBend,
-      "of a solid: the removal of short edges bends no face between blocks by more, so that no triangle of "
-      "it leaves its mean plane by a larger angle");
+  b.largest_bend = s.quantity(kKey, unit::angle, Range::between(0.0, specimen::kMostBend), kBend,
+                              "of a solid: the removal of short edges bends no face between blocks by more, "
+                              "so that no triangle of a face leaves the mean plane by a larger angle");
   if (s.has(kKey) && b.shortest_edge == 0.0)
     s.warn(kKey, "has no effect without shortest_edge: faces stay plane");
 }
@@ -998,7 +998,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
     const std::vector<std::string> names = s.optional_texts(
         "groups",
         "phases of the groups that the file puts its cells into (`*group`), in the ascending "
-        "order of their numbers; then nothing else says what blocks are of");
+        "order of their numbers; then nothing else gives blocks their phases");
     if (auto tess = read_tessellation(s, file, outline)) {
       read_groups(s, *tess, names, is_covered, b);
       b.tessellation = std::move(tess->tessellation);
@@ -1018,10 +1018,9 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
         "finer blocks");
   } else {
     b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks, with the finer ones"));
-    const auto calibrated =
-        s.integer("calibrated_count", Range::between(0.0, 1e8), 0,
-                  "number of blocks for which the strengths were calibrated, 0 where it is not "
-                  "known: `check` warns where `count` is another");
+    const auto calibrated = s.integer("calibrated_count", Range::between(0.0, 1e8), 0,
+                                      "number of blocks for which the strengths were calibrated, 0 where "
+                                      "this is not known: `check` warns where `count` is another");
     if (calibrated > 0 && calibrated != b.count)
       s.warn("count",
              fmt::format("the strengths of this deck were calibrated for {} blocks; f_c depends on the "
@@ -1202,8 +1201,8 @@ void check_outline(const Section& s, const Outline& outline, const AskedSpecimen
   const bool is_told =
       outline.shape == Shape::tessellation && !kSize.is_usual(outline.width) && outline.unit == 0.0;
   if (key.empty() || is_told || (kSize.is_usual(width) && kSize.is_usual(height))) return;
-  s.warn(key, fmt::format("the outline is {:.6g} m wide and {:.6g} m high, but usually it is {}{}", width,
-                          height, kSize.describe_usual("m"),
+  s.warn(key, fmt::format("the outline is {:.6g} m wide and {:.6g} m high, but usual are {}{}", width, height,
+                          kSize.describe_usual("m"),
                           outline.shape == Shape::cells
                               ? "; are the coordinates in another unit? `vertices_mm` in the file says so"
                               : ""));
@@ -1265,11 +1264,10 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   p.seed = static_cast<std::uint64_t>(
       s.integer("seed", Range::between(0, static_cast<double>(specimen::kLargestSeed)),
                 "of the random numbers; the same seed gives the same specimen"));
-  const auto aggregates =
-      root.optional_section("aggregates",
-                            "coarse aggregates, placed as circles, in a solid as balls, with diameters after "
-                            "Fuller's curve P(d) = (d / d_max)^fuller_exponent, Eq. (16); without it there "
-                            "are none");
+  const auto aggregates = root.optional_section(
+      "aggregates",
+      "coarse aggregates, placed as circles, in a solid as balls, with diameters after "
+      "Fuller's curve P(d) = (d / d_max)^fuller_exponent, Eq. (16); without this table there are none");
   if (aggregates) p.aggregates = read_aggregates(*aggregates, folder, space);
   p.inclusions = read_inclusions(root, folder, space);
   const Section blocks = root.section("blocks", "the tessellation into blocks");

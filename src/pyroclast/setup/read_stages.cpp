@@ -32,10 +32,10 @@ OutputIntervals read_output(const Section& s, bool moves, bool has_platens, Fram
   }
   if (frames_in_time == FramesInTime::needed ||
       (frames_in_time == FramesInTime::optional && s.has("frame_interval")))
-    output.frame_interval = s.quantity(
-        "frame_interval", unit::time, Range::positive(),
-        "frames of the fields at its multiples, of the heating time; with \"conduct\" it is needed, with "
-        "\"expose\" it takes the place of frame_temperature");
+    output.frame_interval =
+        s.quantity("frame_interval", unit::time, Range::positive(),
+                   "frames of the fields at its multiples, of the heating time; \"conduct\" needs this key, "
+                   "\"expose\" takes it in the place of frame_temperature");
   return output;
 }
 
@@ -50,7 +50,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
               .range = range,
               .name = "stress_free"},
              "temperature at which the body was put together, and nothing is strained: thermal strain counts "
-             "from there, and the hottest that was so far is no less; without it 20 °C");
+             "from there, and the highest temperature so far is no less; without this key 20 °C");
   if (!s.is_table("stress_free"))
     return StressFree{{}, {s.quantity("stress_free", unit::temperature, range, "")}, ""};
   const Section frame = s.section("stress_free", "temperature of each gridpoint, as another run left it");
@@ -82,7 +82,7 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   const auto sections =
       root.sections("stages", "the test: stages in this order; see [Stages](../understand/deck.md#stages)");
   std::vector<const StageKind*> chosen;
-  for (const Section& s : sections) chosen.push_back(s.choice("kind", options, "what the stage does"));
+  for (const Section& s : sections) chosen.push_back(s.choice("kind", options, "kind of the stage"));
   const auto any = [&](auto needs) {
     return std::ranges::any_of(chosen, [&](const StageKind* kind) { return needs(kind->needs); });
   };
@@ -97,8 +97,8 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   tables.dimension = space.dimension();
   tables.has_thickness = space.shape != Shape::cylinder;
   constexpr Meaning kOutput =
-      "how often rows and frames are written, both at the end of each stage too; may be left out where no "
-      "key of it is needed";
+      "how often rows and frames are written, both at the end of each stage too; may be left out where the "
+      "deck needs none of its keys";
   const bool needs_output = (moves && tables.has_platens) || frames_in_time == FramesInTime::needed;
   tables.output =
       read_output(needs_output ? root.section("output", kOutput) : root.section_or_none("output", kOutput),
@@ -131,7 +131,7 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
     read.stages.push_back(chosen[i]->read(sections[i], tables));
     read.stages.back()->set_place(fmt::format("{}: {}", sections[i].where("kind"), sections[i].path()));
     const std::string name =
-        sections[i].text("name", "", "for `resume --from-stage`; without one its kind stands for it");
+        sections[i].text("name", "", "for `resume --from-stage`; without one the kind is the name");
     read.names.push_back(name.empty() ? chosen[i]->name : name);
   }
   return read;

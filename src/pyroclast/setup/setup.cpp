@@ -115,10 +115,9 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
     if (!pending || !needs.mechanics) continue;
     sections[i].error(
         "kind",
-        fmt::format(
-            "moves the body, but nobody has handed over to it the temperatures of stage {} ({}); put a "
-            "stage of kind \"expose\" between them, or in the place of that one",
-            *pending + 1, stages[*pending]->kind()));
+        fmt::format("moves the body, but no stage has handed over the temperatures of stage {} ({}); put a "
+                    "stage of kind \"expose\" between them, or in the place of that one",
+                    *pending + 1, stages[*pending]->kind()));
     return;
   }
 }
@@ -287,7 +286,7 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
     if (!is_cylinder(setup.specimen) && lacks(name)) {
       s->error(
           fmt::format("platens need a specimen with the sides bottom, top, left, right, such as a rectangle, "
-                      "or a cylinder; it has no side \"{}\"",
+                      "or a cylinder; this one has no side \"{}\"",
                       name));
       break;
     }

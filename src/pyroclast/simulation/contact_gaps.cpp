@@ -14,8 +14,8 @@ namespace {
 const std::vector<int>& contacts_of(const Model& model, const StatedGap& gap) {
   if (const auto set = model.contact_sets.find(gap.contacts); set != model.contact_sets.end())
     return set->second;
-  throw Error(fmt::format("{}: contacts = \"{}\" is no set of contacts; those of this body are {}", gap.place,
-                          gap.contacts, names_of(model.contact_sets)));
+  throw Error(fmt::format("{}: contacts = \"{}\" is no set of contacts; sets of contacts of this body: {}",
+                          gap.place, gap.contacts, names_of(model.contact_sets)));
 }
 
 }  // namespace

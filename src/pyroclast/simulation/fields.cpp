@@ -145,10 +145,11 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
     {"stress", unit::stress, Item::zone, ValueKind::tensor, true, moves,
      [](R& r, int i, double* to) { put(to, r.motion().read().stress(i)); }, "of a zone"},
     {"strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, moves, put_strain,
-     "of a zone, with the thermal strain and what it has crept"},
+     "of a zone, with the thermal strain and the creep strain"},
     {"creep_strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, creeps,
      [](R& r, int i, double* to) { put(to, creep_of(r, i)); },
-     "what a zone has crept under load, see [Creep under load](../understand/theory.md#creep-under-load); "
+     "strain of a zone by creep under load, see [Creep under "
+     "load](../understand/theory.md#creep-under-load); "
      "only where "
      "a phase creeps. ZZ acts on nothing"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,

@@ -19,7 +19,7 @@ constexpr auto kOutcomes = std::to_array<OutcomeInfo>({
     {Outcome::running, "running", false, "running"},
     {Outcome::completed, "completed", true, "completed"},
     {Outcome::steady, "steady", true, "the temperatures became steady"},
-    {Outcome::not_reached, "not_reached", false, "what the stage was to come to was not reached"},
+    {Outcome::not_reached, "not_reached", false, "the stage did not reach its aim"},
     {Outcome::crushed, "crushed", true, "the specimen was crushed while it was loaded"},
     {Outcome::stress_fallen, "stress_fallen", true, "the stress fell below the stated fraction of the peak"},
     {Outcome::ran_away, "ran_away", true, "the specimen failed: the upper platen ran away"},

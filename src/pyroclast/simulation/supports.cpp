@@ -118,10 +118,9 @@ void Supports::release(const std::string& set, int component, const std::string&
   std::string who = "nothing holds it";
   for (int g : model_.set(set))
     if (holds(g, component))
-      who = fmt::format("what holds it there is another set ({})", place_of(g, component));
-  throw Error(
-      fmt::format("{}: set \"{}\" is to be released along {}, but it is neither held nor driven so: {}",
-                  place, set, "xyz"[component], who));
+      who = fmt::format("another set holds the body there ({})", place_of(g, component));
+  throw Error(fmt::format("{}: set \"{}\" is to be released along {}, but is neither held nor driven so: {}",
+                          place, set, "xyz"[component], who));
 }
 
 void Supports::halt(const std::string& set, int component) {

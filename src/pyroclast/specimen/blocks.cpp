@@ -360,13 +360,13 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
     if (blocks.rounds == most_rounds) {
       if (!blocks.tessellation.cells.empty()) return blocks;
       const Vec<2> at = seeds.position[static_cast<std::size_t>(unfit.front())];
-      throw Error(fmt::format(
-          "{}no tessellation of {} blocks came about in {} rounds: {} cells stay empty or unfit, "
-          "the first near ({:.6g}, {:.6g}) m at the side \"{}\". What the outline has there must be "
-          "some three blocks wide: take more blocks (count){}",
-          parameters.place.empty() ? "" : parameters.place + ": ", parameters.count, most_rounds,
-          unfit.size(), at[0], at[1], side_near(region, at),
-          parameters.radius_spread > 0.0 ? ", or blocks more alike (radius_spread)" : ""));
+      throw Error(
+          fmt::format("{}no tessellation of {} blocks came about in {} rounds: {} cells stay empty or unfit, "
+                      "the first near ({:.6g}, {:.6g}) m at the side \"{}\". The part of the outline there "
+                      "must be some three blocks wide: take more blocks (count){}",
+                      parameters.place.empty() ? "" : parameters.place + ": ", parameters.count, most_rounds,
+                      unfit.size(), at[0], at[1], side_near(region, at),
+                      parameters.radius_spread > 0.0 ? ", or blocks more alike (radius_spread)" : ""));
     }
     draw.redraw(unfit, are_empty, blocks.rounds - (fit ? fit->rounds : 0));
     blocks.seeds_redrawn += static_cast<int>(unfit.size());

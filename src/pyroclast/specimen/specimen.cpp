@@ -69,8 +69,8 @@ void require_valid(const BlockParameters& p) {
   require(p.largest_bend >= 0.0 && p.largest_bend <= kMostBend, "The largest bend", p.largest_bend,
           "0 to pi / 6");
   if (p.tessellation && !p.phases.empty() && p.phase.size() != p.tessellation->cells.size())
-    throw Error(fmt::format("The phases of {} blocks are known; allowed are those of all {}.", p.phase.size(),
-                            p.tessellation->cells.size()));
+    throw Error(fmt::format("The phases of {} blocks are known; allowed are the phases of all {}.",
+                            p.phase.size(), p.tessellation->cells.size()));
   if (p.tessellation) return;
   require(p.count >= 1, "The number of blocks", p.count, "1 or more");
   require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,

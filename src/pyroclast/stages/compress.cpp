@@ -39,9 +39,9 @@ constexpr double kStrainOfControl = 1.1e-3;
 /// Reads the control of a velocity that changes between `velocity` and `fastest_velocity`.
 VelocityControl read_velocity_control(const Section& s, const Compress::Keys& keys) {
   VelocityControl c;
-  c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive(),
-                         "highest velocity; with it the stage [chooses the velocity "
-                         "itself](../do/speed.md)");
+  c.fastest =
+      s.quantity("fastest_velocity", unit::velocity, Range::positive(),
+                 "highest velocity; with this key the stage [chooses the velocity itself](../do/speed.md)");
   if (s.ok() && c.fastest < keys.velocity) s.error("fastest_velocity", "must not be less than velocity");
   if (s.ok() && keys.ramp_time == 0.0)
     s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");
@@ -75,8 +75,8 @@ void read_end(const Section& s, Compress::Keys& keys) {
   } else if (s.has("to_stress")) {
     keys.until = CompressUntil::stress;
     keys.to = s.quantity("to_stress", unit::stress, Range::non_negative().usually(0.0, 200e6),
-                         "the stage ends at this stress on the upper platen: it moves down to a larger one, "
-                         "and up to a smaller");
+                         "the stage ends at this stress on the upper platen: the platen moves down to a "
+                         "larger one, and up to a smaller");
     keys.stop_strain = s.number("stop_strain", strains, kLatestStrain, kStrain);
   } else {
     keys.stop_strain = s.number("stop_strain", strains, kStrain);
@@ -87,9 +87,9 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
   Compress::Keys keys;
   keys.velocity = s.quantity("velocity", unit::velocity, Range::positive().usually(1e-6, 0.01),
                              "of the upper platen; the lowest one with fastest_velocity");
-  keys.ramp_time = s.quantity(
-      "ramp_time", unit::time, Range::non_negative(),
-      "in which velocity is reached; greater than 0 with fastest_velocity, where it also bounds the changes");
+  keys.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(),
+                              "in which the platen reaches velocity; greater than 0 with fastest_velocity, "
+                              "whose changes it bounds too");
   if (s.has("fastest_velocity"))
     keys.control = read_velocity_control(s, keys);
   else

@@ -119,8 +119,8 @@ std::string none_because(const CompressionCurve& curve, std::size_t largest) {
         "the stage ended before a peak: the stress did not fall by {:.0f} % from the largest, {}; {}",
         100.0 * kStrengthRule.fall, where, farther);
   return fmt::format(
-      "the stage ended too soon behind the largest stress, {}: it is a peak if the stress stays below "
-      "it for {:g} of strain; {}",
+      "the stage ended too soon behind the largest stress, {}: the largest stress is a peak if the stress "
+      "stays lower for {:g} of strain; {}",
       where, kStrengthRule.lasting, farther);
 }
 

@@ -25,9 +25,9 @@ std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables)
   keys.change = s.quantity("change", unit::temperature_difference, Range::positive(), keys.change,
                            "another row when a temperature has changed by so much since the last one");
   if (s.has("steady_rate"))
-    keys.steady_rate =
-        s.quantity("steady_rate", unit::heating_rate, Range::positive(),
-                   "the stage ends earlier when it is [steady](../understand/heat.md#steady-state)");
+    keys.steady_rate = s.quantity(
+        "steady_rate", unit::heating_rate, Range::positive(),
+        "the stage ends earlier when temperatures are [steady](../understand/heat.md#steady-state)");
   keys.frame_interval = tables.output.frame_interval;
   return std::make_unique<Conduct>(keys);
 }

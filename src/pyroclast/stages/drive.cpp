@@ -107,7 +107,7 @@ std::optional<ActionKind> kind_of(const Section& s) {
 
 Drive::Action read_action(const Section& s, double duration, int dimension, CurveReader& curves) {
   Drive::Action a;
-  a.set = s.text("set", "set of gridpoints that it acts on; see [Sets](../do/bodies.md#sets)");
+  a.set = s.text("set", "set of gridpoints that move or bear the load; see [Sets](../do/bodies.md#sets)");
   a.place = fmt::format("{}: {}", s.where("set"), s.path());
   const auto kind = kind_of(s);
   s.know(
@@ -123,7 +123,7 @@ Drive::Action read_action(const Section& s, double duration, int dimension, Curv
   };
   const auto read_change = [&] {
     a.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(), 0.0,
-                             "time in which it changes evenly from its earlier value to the new one");
+                             "time in which the value changes evenly from the earlier to the new one");
     if (s.ok() && !at_most(a.ramp_time, duration))
       s.error("ramp_time",
               "must end within the duration of the stage: else the stated value is never reached");
@@ -142,7 +142,7 @@ Drive::Action read_action(const Section& s, double duration, int dimension, Curv
       break;
     case ActionKind::velocity:
       a.amount = s.quantity("velocity", unit::velocity, Range::any().usually(-0.1, 0.1),
-                            "of that component; at the end of the stage it is held where it is");
+                            "of that component, which is held in its place when the stage ends");
       a.components = {read_along("component of the motion that is given")};
       read_change();
       break;
@@ -159,7 +159,7 @@ Drive::Action read_action(const Section& s, double duration, int dimension, Curv
                             "on the faces of the set that meet no other block; positive against the body");
       a.is_follower =
           s.flag("follower", false,
-                 "whether it stays normal to the faces as they turn; else it keeps its direction");
+                 "whether the pressure stays normal to the faces as they turn; else it keeps its direction");
       read_change();
       break;
   }
@@ -205,10 +205,9 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
           "the stage ends when the record's size has passed its [peak](../understand/theory.md#peaks), and "
           "fallen below this share of it");
       if (s.has("least_peak"))
-        u.least_peak = s.quantity(
-            "least_peak", unit, Range::positive(),
-            "a peak counts when it is greater; where it is not stated, from when what is recorded is "
-            "[beyond noise](../do/bodies.md#drives)");
+        u.least_peak = s.quantity("least_peak", unit, Range::positive(),
+                                  "a peak counts when it is greater; without this key, when the record is "
+                                  "[beyond noise](../do/bodies.md#drives)");
       break;
     case Drive::Until::Kind::rate_above:
       u.value = s.quantity("rate_above", rate, Range::positive(),
@@ -229,13 +228,13 @@ Drive::Control read_control(const Section& s, const std::vector<RecordParameters
   const auto found = std::ranges::find(records, c.record, &RecordParameters::name);
   if (s.ok() && (found == records.end() || found->kind != RecordKind::opening))
     s.error("record", "must be the name of a [[record]] of kind opening");
-  c.rate = s.quantity("rate", unit::velocity, Range::any(), "at which it opens");
+  c.rate = s.quantity("rate", unit::velocity, Range::any(), "at which the record grows");
   c.stiffness =
       s.quantity("stiffness", unit::stiffness, Range::positive(),
-                 "of the pair of forces that holds it: some four times the steepest softening that it holds");
-  c.response_time =
-      s.quantity("response_time", unit::time, Range::positive(),
-                 "in which the loads take over what the pair bears: longer than waves need through the body");
+                 "of the pair of forces that holds the opening: some four times the steepest softening");
+  c.response_time = s.quantity(
+      "response_time", unit::time, Range::positive(),
+      "in which the loads take over the force of the pair: longer than waves need through the body");
   return c;
 }
 
@@ -250,8 +249,8 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
        s.optional_sections("until", "conditions of which the first that is met ends the stage"))
     keys.until.push_back(read_until(own, tables.records));
   if (const auto own = s.optional_section("control",
-                                          "an opening whose growth is given: the forces of the stage become "
-                                          "what it takes; see [Control](../do/bodies.md#control)")) {
+                                          "an opening whose growth is given: the forces of the stage follow "
+                                          "from it; see [Control](../do/bodies.md#control)")) {
     keys.control = read_control(*own, tables.records);
     const auto is_force = [](const Drive::Action& a) { return a.kind == ActionKind::force; };
     if (s.ok() && std::ranges::none_of(
@@ -268,13 +267,11 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
         s.number("unbalanced_ratio", Range::positive().usually(1e-8, 0.01),
                  "the stage ends when all ramps have ended and the body rests: unbalanced over "
                  "applied forces are below this");
-  keys.look_interval =
-      s.quantity("look_interval", unit::time, Range::positive(), keys.duration / kLooks,
-                 "between two rows of history.csv; where it is not stated, 1/200 of the duration");
-  keys.frame_interval = s.quantity(
-      "frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
-      "between two frames of the fields; where it is not stated, 1/10 of the duration; there is one behind "
-      "each peak of the first force, or stress, too");
+  keys.look_interval = s.quantity("look_interval", unit::time, Range::positive(), keys.duration / kLooks,
+                                  "between two rows of history.csv; without this key 1/200 of the duration");
+  keys.frame_interval = s.quantity("frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
+                                   "between two frames of the fields; without this key 1/10 of the duration; "
+                                   "one more follows each peak of the first force, or stress");
   keys.records = tables.records;
   keys.results = read_record_results(s, tables.records, tables.has_thickness);
   return std::make_unique<Drive>(std::move(keys));
@@ -926,14 +923,13 @@ void Drive::add_control(StageReport& report, double work) const {
   report.results.push_back({"largest_load_with_control_N", kept_.largest_with_pair});
   report.results.push_back({"control_error_of_largest_load", of_peak, ResultOf::computation});
   report.results.push_back({"control_work_over_loading_work", of_work, ResultOf::computation});
-  report.lines.push_back(
-      fmt::format("control of {}: the largest load is {:.4g} N, and {:.4g} N with what the pair bore beside "
-                  "it ({:+.2g} %); the pair "
-                  "bore up to {:.2g} % of it, and did {:.2g} % of the work",
-                  keys_.control->record, peak, kept_.largest_with_pair, 100.0 * of_peak,
-                  100.0 * share(kept_.largest_pair, peak), 100.0 * of_work));
+  report.lines.push_back(fmt::format(
+      "control of {}: the largest load is {:.4g} N, and {:.4g} N with the force of the pair beside this "
+      "({:+.2g} %); the pair bore up to {:.2g} % of that load, and did {:.2g} % of the work",
+      keys_.control->record, peak, kept_.largest_with_pair, 100.0 * of_peak,
+      100.0 * share(kept_.largest_pair, peak), 100.0 * of_work));
   if (std::max(of_peak, of_work) > kLeftToPair)
-    report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
+    report.warnings.push_back(report.lines.back() + ": a slower rate leaves the pair less");
 }
 
 Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {

@@ -93,9 +93,10 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
       "most_cycles", 1, &Coupling::most_cycles,
       "an exchange that did not come to rest within so many steps is flagged, and the next one follows");
   if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
-  c.predictor = s.flag("predictor", general ? general->predictor : false,
-                       "whether an exchange first moves the body to where the last one foretells it to rest; "
-                       "stages of kind heat only");
+  c.predictor =
+      s.flag("predictor", general ? general->predictor : false,
+             "whether an exchange first moves the body to the resting place that the last one foretells; "
+             "stages of kind heat only");
   c.failure_strain =
       number("failure_strain", Range::inside(0.0, 1.0).usually(5e-4, 0.05), &Coupling::failure_strain,
              "the specimen has failed when its ends approach by this at one temperature");
@@ -115,7 +116,8 @@ ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables)
   else
     own.know({"platen"});
   if (keys.coupling.predictor && !tables.has_platens)
-    own.error("kind", "coupling.predictor needs the table [platens]: it moves a body between platens");
+    own.error("kind",
+              "coupling.predictor needs the table [platens]: a predictor moves a body between platens");
   return keys;
 }
 

@@ -45,7 +45,7 @@ void read_strength(const Section& s, const std::filesystem::path& folder, Load::
               .unit = unit::stress,
               .range = range,
               .name = "strength of a run"},
-             "strength that level is a share of");
+             "strength of which level is a share");
   std::string of = "as the deck states it";
   if (s.is_table("f_c")) {
     const Section own = s.section("f_c", "the strength of another run");
@@ -158,8 +158,9 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
   report.results.push_back({"steps", kept_.steps, ResultOf::computation});
   report.results.push_back({"strain", last_value(history, "strain", rows), ResultOf::computation});
   if (outcome == Outcome::crushed) {
-    report.lines.push_back(fmt::format("crushed: it bore {:.2f} MPa at most of the {:.2f} MPa of the load",
-                                       borne, keys_.stress * 1e-6));
+    report.lines.push_back(
+        fmt::format("crushed: the specimen bore {:.2f} MPa at most of the {:.2f} MPa of the load", borne,
+                    keys_.stress * 1e-6));
     report.warnings.push_back(report.lines.back());
   }
   return report;

@@ -59,7 +59,7 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
        {"at_peak", Kind::at_peak, "value of a record at the peak of another"},
        {"work", Kind::work, "of a force over a displacement or opening: the area under the curve"},
        {"formula", Kind::formula, "of the results before it, in SI, and of thickness and weight"}},
-      "what it is");
+      "kind of the result");
   s.know({"value", "record", "of", "over", "formula", "unit"});
   switch (r.kind) {
     case Kind::given: {
@@ -71,22 +71,22 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
     case Kind::peak:
     case Kind::largest:
     case Kind::last:
-      r.record = found("record", "of which it is");
+      r.record = found("record", "record whose value is taken");
       break;
     case Kind::at_peak:
-      r.record = found("record", "of which it is");
-      r.other = found("of", "record whose peak it is");
+      r.record = found("record", "record whose value is taken");
+      r.other = found("of", "record with the peak");
       break;
     case Kind::work:
       r.record = found("record", "the force");
-      r.other = found("over", "displacement or opening over which it works");
+      r.other = found("over", "displacement or opening over which the force works");
       if (s.ok() && r.record.kind != RecordKind::force) s.error("record", "must be of kind force");
       if (s.ok() && !is_length(r.other.kind)) s.error("over", "must be of kind displacement or opening");
       r.unit = std::string(unit::energy.si);
       break;
     case Kind::formula:
       r.formula = s.text("formula", "of the names of results before it, and of thickness and weight");
-      r.unit = s.text("unit", "1", "of what the formula gives, which itself is in SI");
+      r.unit = s.text("unit", "1", "of the formula's value, which itself is in SI");
       try {
         evaluate(r.formula, known);
       } catch (const Error& error) {

@@ -28,7 +28,7 @@ std::unique_ptr<Stage> read_settle(const Section& s, const StageTables&) {
 StageKind settle_kind() {
   return {
       "settle",
-      "lets the body come to rest under its weight, an upper platen lying on it; strains, displacements and "
+      "lets the body come to rest under its weight, with the upper platen on top; strains, displacements and "
       "openings count from there",
       {},
       read_settle};

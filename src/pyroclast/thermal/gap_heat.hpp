@@ -16,10 +16,10 @@ struct ContactGap {
 /// jumps of temperature at its molecules' last collisions (Kennard 1938); and radiation between two grey
 /// parallel faces.
 struct GapHeat {
-  double bridges = 0.0;        ///< conductance of an intact contact, W/(m² K)
-  Curve gas_conductivity;      ///< conductivity of the gas, W/(m K), over the temperature
-  double jump_distance = 0.0;  ///< length, m, by which the gas seems wider than the opening; greater than 0
-  double emissivity = 0.0;     ///< emissivity of each face, 0 to 1
+  double bridges = 0.0;    ///< conductance of an intact contact, W/(m² K)
+  Curve gas_conductivity;  ///< conductivity of the gas, W/(m K), over the temperature
+  double jump_distance = 0.0;  ///< m by which the gas seems wider than the opening; greater than 0
+  double emissivity = 0.0;  ///< emissivity of each face, 0 to 1
   /// Conductance below which a contact parts the temperatures of its two sides, W/(m² K); above twice this
   /// value it joins them again.
   double split_below = 0.0;

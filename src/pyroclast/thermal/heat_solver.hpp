@@ -41,7 +41,7 @@ inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
      [](const HeatLedger& h) { return h.boundary.convection; }},
     {"radiation", "heat_radiation_J", LedgerSide::put_in, "by radiation",
      [](const HeatLedger& h) { return h.boundary.radiation; }},
-    {"error", "heat_error_J", LedgerSide::error, "what came in less what is stored",
+    {"error", "heat_error_J", LedgerSide::error, "heat that came in, less heat stored",
      [](const HeatLedger& h) { return h.error(); }},
 });
 

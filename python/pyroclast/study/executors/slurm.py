@@ -288,7 +288,7 @@ class _Queue:
                 continue
             if run not in begun and not self._has_results:
                 raise Error(f"tasks end before they begin a run, {times} times: {last or 'they say nothing'}; "
-                            f"{self._book.log(array, task)} has what the last one said")
+                            f"{self._book.log(array, task)} has the output of the last one")
             self._take(given_up(self._left[run], self._runs, f"its task ended {times} times before anything new was "
                                 f"kept; is there memory enough?{said}"))
 

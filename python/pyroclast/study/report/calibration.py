@@ -21,7 +21,7 @@ from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_va
 from .section import PageTable, Section, Shown, nothing
 from .seen import Array, Seen, listed, number, numbers
 
-_MISFIT = ("The misfit is the sum of squares of what is left to the targets, each in standard deviations: of the mean "
+_MISFIT = ("The misfit is the sum of squares of the distances to the targets, each in standard deviations: of the mean "
            "over the seeds, and of the experiment. With as many targets as parameters it can go to 0; about the "
            "number of targets is as good as the scatter allows one to tell.")
 _MISFIT_CAPTION = ("Misfit of each point, by generation of the search; line: the best so far; crosses on the upper "

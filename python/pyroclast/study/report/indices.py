@@ -30,7 +30,7 @@ _MORRIS = ("μ* is the mean size of a parameter's effect over its whole range, i
            "above the μ* that seeds alone give.")
 _MORRIS_CAPTION = ("Left: μ* with 95 % interval (bootstrap over the trajectories), ranked; the vermilion ticks are "
                    "what seeds alone give, at most; below, the seed's share of the variance. Right: μ* and σ; the "
-                   "numbers are those of the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
+                   "numbers stand for the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
 _SHARES = ("The main index of a parameter is the share of the variance that goes when this parameter alone is known; "
            "the total index is the share that stays when all others are known. Their difference are interactions.")
 _SOBOL_CAPTION = ("Main and total indices of the mean over seeds with 95 % intervals (bootstrap over the rows), "
@@ -152,7 +152,7 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
 
 def _interactions(indices: dict[str, Any]) -> str:
     total = float(np.nansum(numbers(indices["first"])))
-    return f"The main indices add up to {number(total, 2)}; what is left to 1 are interactions, and their error."
+    return f"The main indices add up to {number(total, 2)}; the rest to 1 are interactions, and their error."
 
 
 def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> PageTable:

@@ -27,9 +27,9 @@ def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes],
             runs: Sequence[RunPageLink]) -> str:
     """All of the page. pictures: PNG files by the names of figures. runs: pages beside this one."""
     body = together(_warnings(seen), _in_short(sections), _contents(sections),
-                    _heading("What was found", "found") if sections else Markup(),
+                    _heading("Findings", "found") if sections else Markup(),
                     *(_section(section, pictures, _place(i)) for i, section in enumerate(sections)),
-                    _heading("What was run", "run"), _run_table(seen), _run_pages(runs), _varied(seen), _failures(seen),
+                    _heading("Runs", "run"), _run_table(seen), _run_pages(runs), _varied(seen), _failures(seen),
                     _heading("One run again", "again"), _again(seen),
                     _heading("The study file", "file"), element("p", str(seen.setup.file.name), class_="faint"),
                     element("pre", _text(seen.setup.file)), _deck(seen))
@@ -61,7 +61,7 @@ def _beginning(text: str) -> str:
 
 
 def _contents(sections: Sequence[Section]) -> Markup:
-    places = [*((section.title, _place(i)) for i, section in enumerate(sections)), ("What was run", "run"),
+    places = [*((section.title, _place(i)) for i, section in enumerate(sections)), ("Runs", "run"),
               ("One run again", "again"), ("The study file", "file")]
     links = [element("li", element("a", title, href=f"#{place}")) for title, place in places]
     return element("nav", element("ul", *links, class_="contents"), aria_label="Contents")
@@ -88,7 +88,7 @@ def _warnings(seen: Seen) -> Markup:
         left = "" if math.isnan(seen.forecast.seconds) or not seen.forecast.left else \
             f" About {duration(seen.forecast.seconds)} of one core are left."
         said.append(f"This study is not complete: {seen.forecast.known} of {seen.forecast.runs} runs are done."
-                    f"{more}{left} What stands here is of these runs alone.")
+                    f"{more}{left} The results below come from these runs alone.")
     if seen.none_because:
         said.append(f"Nothing could be found yet: {seen.none_because}")
     if failed := sum(row["state"] not in (DONE, NOT_RUN) for row in seen.rows):

@@ -23,13 +23,13 @@ _MOST_PAIRS = 6  # parameters of a pairs plot
 _MOST_DRAWN = 2000  # draws in a panel
 _BINS = 25
 
-_MEANING = ("The posterior is what the targets leave of the ranges: values that the surrogates take to the targets "
-            "within the scatter of the seeds, the sd of the experiment and the surrogates' error. A parameter is not "
-            f"determined where its standard deviation is above {NOT_DETERMINED:g} of that of its range.")
+_MEANING = ("The posterior is the part of the ranges that the targets leave: values that the surrogates take to the "
+            "targets within the scatter of the seeds, the sd of the experiment and the surrogates' error. A parameter "
+            f"is not determined where its standard deviation is above {NOT_DETERMINED:g} of that of its range.")
 _PAIRS_CAPTION = "Draws of the posterior: each parameter alone (line: the prior) and in pairs. Grey: not determined."
 _SPREAD_CAPTION = ("Posterior standard deviation over the prior's, both as shares of the range; at 1 the targets say "
                    "nothing. Grey: not determined.")
-_CHECK = ("Runs at draws of the posterior, against what the surrogates say there, in standard deviations of that "
+_CHECK = ("Runs at draws of the posterior, against the surrogates' predictions, in standard deviations of that "
           "difference. Where the surrogates hold, 95 % lie within ± 2.")
 _CHECK_CAPTION = "True runs minus predictions at draws of the posterior, in standard deviations; band: ± 2."
 

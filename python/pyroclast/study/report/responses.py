@@ -26,7 +26,7 @@ _MEANING = ("A standardised rank regression coefficient says by how many standar
             "moves when the parameter moves by one of its own; 1 or −1 is an output that this parameter alone orders. "
             "Spearman's correlation says the same of the parameter alone, without taking the others out.")
 _EFFECTS = ("Rank effects with 95 % intervals (bootstrap over the points). Grey: not told from the seeds. The seed's "
-            "bar is the root of its share of the variance, which is what a coefficient is of a straight line.")
+            "bar is the root of its share of the variance, as a coefficient is of a straight line.")
 _CURVES = ("Means over seeds of all points (grey dots), and their mean by classes of one parameter with its 95 % "
            "interval (Student's t over the points, all other parameters vary).")
 _CONTOURS = "Mean over seeds between the points of the grid (dots); crosses: no value."

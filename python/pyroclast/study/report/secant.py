@@ -14,8 +14,8 @@ from .drawing import output_label, panels, parameter_label, value_text
 from .section import PageTable, Section, Shown
 from .seen import Seen, listed, number, numbers
 
-_ROUNDS = ("Each round is one point with all seeds. Every parameter is changed until its own target is met; what it does "
-           "to the other targets is learned on the way.")
+_ROUNDS = ("Each round is one point with all seeds. Every parameter is changed until its own target is "
+           "met; the study learns its effect on the other targets on the way.")
 _ROUNDS_CAPTION = "Means over the seeds by round; band: the target and its standard deviation; vermilion: the best round."
 _OPEN = ("As many targets as parameters are met by one point, whatever else the deck says. Numbers that no parameter "
          "changes are as the deck has them: these targets say nothing of them.")
