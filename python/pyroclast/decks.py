@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 from typing import Any, Union
 
@@ -91,6 +91,15 @@ def is_list_of_tables(value: object) -> bool:
     return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
 
 
+def _plain(value: Any) -> Any:
+    """With dicts in the place of tables of decks."""
+    if isinstance(value, Mapping):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    return value
+
+
 def _key(name: str) -> str:
     return name if _PLAIN_KEY.fullmatch(name) else toml(name)
 
@@ -171,7 +180,8 @@ class Deck:
         return _core.written(self._raw(self._placeholders(), with_files=False))
 
     def __getitem__(self, path: str) -> Any:
-        """The value at a path: a Quantity for a text that is one, a dict for a table, a function as it was given.
+        """The value at a path: a Quantity for a text that is one, a `DeckTable` for a table, a tuple for a list, a
+        function as it was given.
 
         Raises KeyError where there is none.
         """
@@ -183,6 +193,14 @@ class Deck:
                 node = node[part]
             except (KeyError, IndexError, TypeError):
                 raise KeyError(path) from None
+        return self._wrapped(path, node)
+
+    def _wrapped(self, path: str, node: Any) -> Any:
+        """A value so that none of its changes is lost: each reaches the deck, or is refused."""
+        if isinstance(node, dict):
+            return DeckTable(self, path)
+        if isinstance(node, list):
+            return tuple(self._wrapped(f"{path}[{i}]", entry) for i, entry in enumerate(node))
         if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)) and _core.is_quantity(node):
             return Quantity(float(match[1]), match[2])
         return node
@@ -215,7 +233,7 @@ class Deck:
                 self[f"{path}.{_key(name)}"] = entry
             return
         if is_list_of_tables(value):
-            entries: Any = value
+            entries: Any = _plain(value)  # views of this deck would change while it is written anew
             self._rebuild(lambda tables: _list_at(tables, path).__setitem__(slice(None), entries), path)
             return
         self._functions.pop(path, None)
@@ -299,6 +317,7 @@ class Deck:
         """Appends a table to a list of tables: `deck.append("stages", kind="settle", ...)`, or to one in another:
         `deck.append("stages[1].drives", set="left", hold=["x"])`. Returns the deck.
         """
+        keys = _plain(keys)
         before = (self._text, dict(self._functions))
         number = len(self[table]) if table in self else 0
         if "[" in table:
@@ -404,6 +423,41 @@ class Deck:
 
     def __repr__(self) -> str:
         return f"<Deck {self._name}>"
+
+
+class DeckTable(MutableMapping[str, Any]):
+    """A table of a deck: `deck["specimen"]["seed"] = 2` and `deck["specimen"].update(seed=2)` change the deck.
+
+    It holds no values of its own: each is read from the deck, and KeyError is raised once the deck has no such table.
+    """
+
+    def __init__(self, deck: Deck, path: str):
+        self._deck, self._path = deck, path
+
+    def _keys(self) -> dict[str, Any]:
+        node: Any = tomllib.loads(self._deck.text)
+        for part in _parts(self._path):
+            node = node[part]
+        found: dict[str, Any] = node
+        return found
+
+    def __getitem__(self, key: str) -> Any:
+        return self._deck[f"{self._path}.{key}"]
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        self._deck[f"{self._path}.{_key(key)}"] = value
+
+    def __delitem__(self, key: str) -> None:
+        del self._deck[f"{self._path}.{key}"]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._keys())
+
+    def __len__(self) -> int:
+        return len(self._keys())
+
+    def __repr__(self) -> str:
+        return f"<DeckTable {self._path}: {self._keys()}>"
 
 
 def without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:

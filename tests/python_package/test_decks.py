@@ -5,7 +5,7 @@ import pickle
 import tomllib
 
 import pyroclast
-from pyroclast import K, MPa, minute, mm
+from pyroclast import K, MPa, m, minute, mm
 from small import CASES, Case, deck
 
 
@@ -24,7 +24,7 @@ class Decks(Case):
         starter = pyroclast.Deck(CASES / "starter.toml")
         self.assertEqual(starter["specimen.width"], 150 * mm)
         self.assertEqual(starter["stages[1].kind"], "compress")
-        self.assertEqual(starter["aggregates.sieves"][0], "8 mm")
+        self.assertEqual(starter["aggregates.sieves"][0], 8 * mm)
         starter["title"] = "2 fires"
         self.assertEqual(starter["title"], "2 fires")
         self.assertIn("contacts.mortar_mortar.f_t", starter)
@@ -46,6 +46,31 @@ class Decks(Case):
         made["blocks.count"] = 130
         made["stages[1].stop_strain"] = 0.0005
         made.check()
+
+    def test_no_change_of_a_table_is_lost(self):
+        made = deck()
+        table = made["specimen"]
+        table.update(seed=7, width=120 * mm)
+        table["height"] = "0.2 m"
+        made["stages"][1]["stop_strain"] = 0.0005
+        del made["stages"][1]["stop_fraction_of_peak"]
+        told = tomllib.loads(made.text)
+        self.assertEqual((told["specimen"]["seed"], told["specimen"]["width"]), (7, "120.0 mm"))
+        self.assertEqual((table["height"], dict(table)["seed"], len(table)), (0.2 * m, 7, len(told["specimen"])))
+        self.assertEqual(told["stages"][1]["stop_strain"], 0.0005)
+        self.assertNotIn("stop_fraction_of_peak", told["stages"][1])
+        with self.assertRaisesRegex(pyroclast.DeckError, "a unit of length"):
+            table["width"] = 0.1
+        with self.assertRaises(AttributeError):
+            made["stages"].append({"kind": "settle"})  # deck.append("stages", ...) is the way
+        other = pyroclast.Deck(CASES / "starter.toml")
+        other["stages"] = (made["stages"][0], *made["stages"])
+        self.assertEqual([stage["kind"] for stage in other["stages"]], ["settle", "settle", "compress"])
+        other["stages"] = other["stages"][1:]  # tables of its own
+        self.assertEqual(other["stages"], made["stages"])
+        del made["platens"]
+        with self.assertRaises(KeyError):
+            made["platens"]["height"]
 
     def test_errors_have_the_texts_and_places_of_the_program(self):
         text = (CASES / "starter.toml").read_text().replace("count = 1000", "cuont = 1000")
