@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import pathlib
 import re
+from typing import Any
 
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.builders.html import StandaloneHTMLBuilder
+from sphinx.environment.adapters.toctree import TocTree
 from sphinx.writers.html import HTMLTranslator
 
 project = "Pyroclast"
@@ -39,6 +43,7 @@ autodoc_typehints_format = "short"
 autodoc_default_options = {"members": True, "special-members": "__getitem__, __setitem__, __delitem__, __contains__"}
 latex_engine = "xelatex"  # letters such as λ stand in the text
 latex_documents = [("understand/theory", "theory.tex", "Pyroclast: theory manual", author, "howto")]
+latex_appendices = ["understand/references"]
 latex_elements = {"papersize": "a4paper", "pointsize": "10pt", "figure_align": "H"}
 latex_show_urls = "no"
 
@@ -76,6 +81,28 @@ def _keep_number(app: Sphinx, tree: nodes.document, name: str) -> None:
                 node[:] = [nodes.Text(f"\\begin{{equation*}}{node.astext().strip()}\\end{{equation*}}")]
 
 
+@functools.lru_cache(maxsize=None)
+def _navigation(builder: StandaloneHTMLBuilder, folder: str) -> str:
+    """All of the navigation as pages of a folder link it, with no page current."""
+    tree = TocTree(builder.env).get_toctree_for(f"{folder}-", builder, collapse=False, titles_only=True, maxdepth=-1)
+    return builder.render_partial(tree)["fragment"]
+
+
+def _share_navigation(app: Sphinx, name: str, template: str, context: dict[str, Any], doctree: object) -> None:
+    """The theme has Sphinx make the navigation anew for every page, which is half of the build. Here pages of a folder
+    share one, in which the entries of the page and of the pages above it are marked as Sphinx marks them.
+    """
+    if "toctree" not in context:
+        return
+    text = _navigation(app.builder, name[: name.rfind("/") + 1])
+    for page in TocTree(app.env).get_toctree_ancestors(name):
+        link = app.builder.get_relative_uri(f"{name}-", page)
+        plain = f'"><a class="reference internal" href="{link}"'
+        marked = '"><a class="current reference internal" href="#"' if page == name else plain
+        text = text.replace(plain, f" current{marked}", 1)
+    context["toctree"] = lambda **asked: text
+
+
 def _list_parameters(app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]) -> None:
     """Lines of a docstring that begin with "width: " tell what a parameter means; they become a list."""
     told, in_list = [], False
@@ -110,5 +137,6 @@ def _complete_theme(app: Sphinx, error: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml_block, None))
     app.connect("doctree-resolved", _keep_number)
+    app.connect("html-page-context", _share_navigation, priority=400)  # before the theme's
     app.connect("build-finished", _complete_theme)
     app.connect("autodoc-process-docstring", _list_parameters)
