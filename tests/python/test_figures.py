@@ -330,7 +330,7 @@ class PicturesOfTheDocs(unittest.TestCase):
         self.assertGreater(len(cracked_ones), 14)
         for name in sorted(cracked_ones | {"hot_concrete_levels", "levels"}):
             with self.subTest(name), Image.open(IMAGES / f"{name}.png") as picture:
-                colours = np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0).astype(int)
+                colours = np.array([colour for _, colour in picture.convert("RGB").getcolors(256**3)])
                 wanted = np.round(255 * np.array(to_rgba(style.TENSION_COLOUR)[:3]))
                 self.assertLess(np.abs(colours - wanted).sum(axis=1).min(), self.NEAR)
 
@@ -1173,7 +1173,8 @@ class ReferencesOfTheDeck(HeatedTest):
                            (json.dumps([self.table("stress", "strain", x=[0, "x"])]), "'x' is no list of finite numbers"),
                            (json.dumps([self.table("stress", 1)]), "'name', 'of' and 'over' are not all texts")):
             (self.compressed / "references.json").write_text(text)
-            self.assert_fails(["run", self.compressed], "references.json", part)
+            with writing_alone("stress_strain"):
+                self.assert_fails(["run", self.compressed], "references.json", part)
 
 
 def stress_strain_text(test: ReferencesOfTheDeck, folder: Path) -> str:
