@@ -16,6 +16,7 @@
 #include "pyroclast/solid/laguerre.hpp"
 #include "pyroclast/solid/regularisation.hpp"
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/placement.hpp"
 
 namespace pyroclast::solid {

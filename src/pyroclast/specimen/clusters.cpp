@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
