@@ -34,7 +34,8 @@ class _Browser:
         options = webdriver.ChromeOptions()
         options.binary_location = shutil.which("chromium")
         # root, as in containers, has no sandbox
-        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"):
+        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+                     "--enable-unsafe-swiftshader"):  # WebGL by the processor, without a warning
             options.add_argument(word)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)

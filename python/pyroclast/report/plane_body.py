@@ -21,7 +21,7 @@ from ..mesh import Mesh
 from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
 
-_MEET = 1e-9  # of the size of a body: points so near to each other are one
+MEET = 1e-9  # of the size of a body: points so near to each other are one
 FINE = 1e-6  # of the size of a body: the step of places and displacements
 STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5}
 """Wanted steps: MPa, K, m, 1."""
@@ -65,8 +65,8 @@ def _sides(mesh: Mesh, corner: np.ndarray, following: np.ndarray) -> np.ndarray:
     if not len(lines):
         return np.zeros((0, 4), int)
     middle = 0.5 * (corner + corner[following])
-    tolerance = _MEET * float(np.ptp(corner, axis=0).max())
-    place = _places(np.concatenate([middle, lines[:, 1]]), tolerance)
+    tolerance = MEET * float(np.ptp(corner, axis=0).max())
+    place = meeting(np.concatenate([middle, lines[:, 1]]), tolerance)
     of_edge, of_contact = place[:len(middle)], place[len(middle):]
     order = np.argsort(of_edge, kind="stable")
     start = np.searchsorted(of_edge[order], of_contact)
@@ -79,7 +79,7 @@ def _sides(mesh: Mesh, corner: np.ndarray, following: np.ndarray) -> np.ndarray:
     return np.column_stack(ends)
 
 
-def _places(points: np.ndarray, tolerance: float) -> np.ndarray:
+def meeting(points: np.ndarray, tolerance: float) -> np.ndarray:
     """(n,) whole numbers, the same for points that meet."""
     place = np.zeros(len(points), np.int64)
     for values in points.T:

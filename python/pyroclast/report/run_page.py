@@ -15,8 +15,8 @@ from .judging import Card, cards, stage_verdict, verdict, worst
 from .bodies import fitted
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "specimen.js", "downloads.js", "common.js",
-            "run_curve.js", "run_piece.js", "run_specimen.js", "run_probes.js", "run_tabs.js", "run.js")
+_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "outside.js", "specimen.js", "downloads.js",
+            "common.js", "run_curve.js", "run_piece.js", "run_specimen.js", "run_probes.js", "run_tabs.js", "run.js")
 MOST_TEXT = 9_500_000  # characters of packed numbers on a page
 _MOST_FACTS = 40
 

@@ -1,7 +1,8 @@
 """A solid with the fields of its frames, packed for a page: polyhedra that move as rigid bodies by small turns, and the
 contacts that ever become cracks.
 
-A page cuts the polyhedra, which are convex, by a plane across x, y or z: each cut is a convex polygon.
+A page cuts the polyhedra, which are convex, by a plane across x, y or z: each cut is a convex polygon. From outside it
+shows their triangles, and contacts on the sides of the two blocks that they join.
 """
 
 from __future__ import annotations
@@ -14,7 +15,9 @@ from ..files import read_array
 from ..mesh import BlockMesh
 from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
-from .plane_body import FINE, PackedBody, STEPS, about_body, exact_steps, packed_damage, read_finite
+from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite
+
+_SAME = 1e-6  # cosines of one angle differ by less
 
 
 def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
@@ -58,7 +61,11 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         arrays["interface"] = packed_whole(contacts.interface[kept], 1)
         arrays["extent"] = packed_floats(contacts.extent[kept])
         arrays["number"] = packed_whole(kept, 4)
-        arrays["cell"] = packed_steps(contacts.points[contacts.cells[kept]].reshape(len(kept), 12), fine, 4)
+        cells = contacts.points[contacts.cells[kept]]
+        arrays["cell"] = packed_steps(cells.reshape(len(kept), 12), fine, 4)
+        arrays["face"], arrays["face_triangle"], arrays["triangle_face"] = (
+            packed_whole(values, 4) for values in _faces(cells, point, triangle, owner, is_outer))
+        arrays["trace"] = packed_whole(_traces(cells, point, triangle, is_outer), 4)
         for mode, damage in damages.items():
             arrays[f"damage_{mode}"] = packed_damage(damage[:, kept])
         arrays["opening"] = packed_steps(columns["opening"][:, kept], STEPS["opening"])
@@ -75,6 +82,86 @@ def _of_blocks(blocks: BlockMesh, number: np.ndarray) -> np.ndarray:
     material = np.empty(number.max() + 1, int)
     material[number] = blocks.material
     return material
+
+
+def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of the three edges of each triangle, one triangle after the other, (3 T, 3), m: their middles, and the ways from
+    there to the third corner.
+    """
+    corners = point[triangle]
+    middle = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    return middle.reshape(-1, 3), (np.roll(corners, -2, axis=1) - middle).reshape(-1, 3)
+
+
+def _faces(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
+           is_outer: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(K,) face of each contact, -1 where it is not found; (F,) triangles of such faces, on both blocks; their faces.
+
+    A face is where two blocks meet.
+    """
+    blocks = int(owner.max()) + 1
+    inner = np.flatnonzero(~is_outer)
+    beside = _blocks_beside(cells, point, triangle[inner], owner[inner])
+    centre = meeting(point[triangle[inner]].mean(axis=1), MEET * float(np.ptp(point, axis=0).max()))
+    order = np.argsort(centre, kind="stable")  # two blocks have each of these triangles
+    same = np.flatnonzero(np.diff(centre[order]) == 0)
+    one, two = order[same], order[same + 1]
+    other = np.full(len(inner), -1)
+    other[one], other[two] = owner[inner][two], owner[inner][one]
+
+    def pair(one: np.ndarray, two: np.ndarray) -> np.ndarray:
+        return np.where(np.minimum(one, two) < 0, -1, np.minimum(one, two) * blocks + np.maximum(one, two))
+
+    of_contact, of_triangle = pair(*beside.T), pair(owner[inner], other)
+    faces = np.unique(of_contact[of_contact >= 0])
+    shown = np.isin(of_triangle, faces)
+    return (np.where(of_contact < 0, -1, np.searchsorted(faces, of_contact)), inner[shown],
+            np.searchsorted(faces, of_triangle[shown]))
+
+
+def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray) -> np.ndarray:
+    """(K, 2) blocks that contacts join; -1 where they are not found.
+
+    Both have a triangle on the edge behind the contact's point, and those two go from there as the contact's cell does.
+    cells: (K, 4, 3), m. triangle: (T, 3), those between blocks. owner: (T,), their blocks.
+    """
+    middle, inward = _edges(point, triangle)
+    place = meeting(np.concatenate([middle, cells[:, 1]]), MEET * float(np.ptp(point, axis=0).max()))
+    of_edge, of_cell = place[:len(middle)], place[len(middle):]
+    order = np.argsort(of_edge, kind="stable")
+    first, last = (np.searchsorted(of_edge[order], of_cell, side) for side in ("left", "right"))
+    count = last - first
+    cell = np.repeat(np.arange(len(cells)), count)
+    edge = order[np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)]
+    along = (cells[:, 1] - cells[:, 0])[cell]
+    way, side = ((v - along * ((v * along).sum(axis=1) / (along**2).sum(axis=1))[:, None])
+                 for v in ((cells[:, 2] - cells[:, 1])[cell], inward[edge]))
+    cosine = (way * side).sum(axis=1) / np.sqrt((way**2).sum(axis=1) * (side**2).sum(axis=1))
+    nearest = np.lexsort((-cosine, cell))
+    beside = np.full((len(cells), 2), -1)
+    begin = np.cumsum(count) - count
+    several = np.flatnonzero(count > 1)
+    one, other = nearest[begin[several]], nearest[begin[several] + 1]
+    same = np.abs(cosine[one] - cosine[other]) < _SAME
+    beside[several[same]] = owner[np.c_[edge[one], edge[other]][same] // 3]
+    return beside
+
+
+def _traces(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, is_outer: np.ndarray) -> np.ndarray:
+    """(K,) where contacts show outside: twice an outer triangle whose edge they lie on, and 1 more where that edge is
+    the one before their point; -1 where they do not.
+    """
+    outer = np.flatnonzero(is_outer)
+    middle = _edges(point, triangle[outer])[0]
+    ends = cells[:, [1, 3]].reshape(-1, 3)
+    place = meeting(np.concatenate([middle, ends]), MEET * float(np.ptp(point, axis=0).max()))
+    known, at = np.unique(place[:len(middle)], return_index=True)
+    wanted = place[len(middle):].reshape(-1, 2)
+    row = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
+    shows = known[row] == wanted
+    half = shows.argmax(axis=1)
+    found = 2 * outer[at[row[np.arange(len(cells)), half]] // 3] + half
+    return np.where(shows.any(axis=1), found, -1)
 
 
 class _Reader:

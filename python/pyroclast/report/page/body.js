@@ -69,6 +69,9 @@ class Body {
     return [u, v];
   }
 
+  // Makes the polygons of a view that has none before it is painted; here they are there.
+  polygons() {}
+
   // Puts all corners where they are in a frame, with displacements magnified.
   place(frame, magnification) {
     const a = this.arrays,
@@ -252,8 +255,8 @@ class Body {
     this.scale = scale;
   }
 
-  // Paints all blocks into pixels (0xAABBGGRR). `colour(b)` is that of a block. Returns the block of each pixel, -1 for
-  // none.
+  // Paints all blocks into pixels (0xAABBGGRR). `colour(b, p)` is that of a block, with the number of its polygon.
+  // Returns the block of each pixel, -1 for none. Stretches are so short that loops take less time than `fill`.
   paint(pixels, W, H, colour) {
     if (!this.ids || this.ids.length !== W * H) this.ids = new Int32Array(W * H);
     const ids = this.ids.fill(-1),
@@ -271,18 +274,20 @@ class Body {
       const start = Math.max(0, Math.ceil(top - 0.5)),
         end = Math.min(H - 1, Math.floor(low - 0.5));
       if (end < start) continue;
-      from.fill(Infinity, start, end + 1);
-      to.fill(-Infinity, start, end + 1);
+      for (let y = start; y <= end; y++) {
+        from[y] = Infinity;
+        to[y] = -Infinity;
+      }
       for (let i = first[p], before = first[p + 1] - 1; i < first[p + 1]; before = i++)
         this.edge(before, i, start, end, from, to);
       const b = this.owner ? this.owner[p] : p,
-        ink = colour(b);
+        ink = colour(b, p);
       for (let y = start; y <= end; y++) {
         const a = y * W + Math.max(0, Math.ceil(from[y] - 0.5)),
           z = y * W + Math.min(W, Math.ceil(to[y] - 0.5));
-        if (z > a) {
-          pixels.fill(ink, a, z);
-          ids.fill(b, a, z);
+        for (let k = a; k < z; k++) {
+          pixels[k] = ink;
+          ids[k] = b;
         }
       }
     }
@@ -292,8 +297,9 @@ class Body {
 
   // Widens the stretch of each line of pixels by an edge of a block.
   edge(i, j, start, end, from, to) {
-    const {px, py} = this;
-    const [u, v] = py[i] <= py[j] ? [i, j] : [j, i];
+    const {px, py} = this,
+      u = py[i] <= py[j] ? i : j,
+      v = u === i ? j : i;
     const slope = (px[v] - px[u]) / (py[v] - py[u]);
     for (let y = Math.max(start, Math.ceil(py[u] - 0.5)); y <= Math.min(end, Math.ceil(py[v] - 0.5) - 1); y++) {
       const x = px[u] + (y + 0.5 - py[u]) * slope;

@@ -75,8 +75,8 @@ function table(host, head, rows) {
   }
 }
 
-// A body of the plane or a solid.
-const bodyOf = (about, arrays, frames) => new (about.solid ? SolidBody : Body)(about, arrays, frames);
+// A body of the plane, or a plane through a solid.
+const bodyOf = (about, arrays, frames) => new (about.solid ? CutBody : Body)(about, arrays, frames);
 
 // Into a key: the scale of a field that blocks are coloured by.
 function tellScale(key, body, field) {

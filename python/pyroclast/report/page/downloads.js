@@ -25,6 +25,7 @@ const csv = (head, rows) => [head, ...rows].map((row) => row.map(cell).join(",")
 
 // A frame of a body as SVG: polygons in their colours and cracks as lines.
 function frameAsSvg(body, W, H, colour, strokes, title) {
+  body.polygons();
   const parts = [
     `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}">`,
     `<title>${title.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"})[c])}</title>`,
@@ -33,7 +34,8 @@ function frameAsSvg(body, W, H, colour, strokes, title) {
     let path = "";
     for (let i = body.first[p]; i < body.first[p + 1]; i++)
       path += `${path ? " " : ""}${body.px[i].toFixed(1)},${body.py[i].toFixed(1)}`;
-    const fill = css(colour(body.owner ? body.owner[p] : p));
+    const light = body.light ? body.light[p] : 1,
+      fill = css(colour(body.owner ? body.owner[p] : p).map((v) => Math.round(v * light)));
     parts.push(`<polygon points="${path}" fill="${fill}" stroke="${fill}" stroke-width=".4"/>`);
   }
   for (const {colour: stroke, width, lines} of strokes)

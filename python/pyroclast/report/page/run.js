@@ -53,6 +53,16 @@ class RunPage extends RunTabs {
         },
         p: () => this.specimen.probe && this.pin(...this.specimen.probe),
         l: () => this.toggleLine(),
+        ...(this.body.axes
+          ? {
+              a: () => this.turn(-TURN_STEP, 0),
+              d: () => this.turn(TURN_STEP, 0),
+              w: () => this.turn(0, -TURN_STEP),
+              s: () => this.turn(0, TURN_STEP),
+              "+": () => this.zoom(ZOOM_STEP),
+              "-": () => this.zoom(1 / ZOOM_STEP),
+            }
+          : {}),
       }[e.key];
       if (!act) return;
       e.preventDefault();

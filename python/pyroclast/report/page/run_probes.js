@@ -2,15 +2,12 @@
 
 class RunProbes extends RunSpecimen {
   pointer() {
-    const canvas = $("body");
-    const at = (e) => {
-      const box = canvas.getBoundingClientRect(),
-        k = this.specimen.W / box.width;
-      return [(e.clientX - box.left) * k, (e.clientY - box.top) * k];
-    };
-    let from = null;
+    const canvas = $("body"),
+      at = (e) => this.pixelOf(e);
+    let from = null,
+      before = null;
     canvas.addEventListener("pointerdown", (e) => {
-      from = at(e);
+      from = before = at(e);
       canvas.setPointerCapture(e.pointerId);
       if (this.specimen.across) e.preventDefault();
     });
@@ -20,6 +17,10 @@ class RunProbes extends RunSpecimen {
       if (from && s.across) {
         s.across = [from[0] / s.W, from[1] / s.H, here[0] / s.W, here[1] / s.H];
         this.redraw();
+      } else if (from && this.body.axes) {
+        const k = Math.PI / s.W;
+        this.turn(k * (here[0] - before[0]), k * (here[1] - before[1]));
+        before = here;
       } else this.point(...here);
     });
     canvas.addEventListener("pointerup", (e) => {
@@ -32,6 +33,13 @@ class RunProbes extends RunSpecimen {
     canvas.addEventListener("pointerleave", () => {
       $("tip").hidden = true;
     });
+  }
+
+  // Of an event, in pixels of the picture.
+  pixelOf(e) {
+    const box = $("body").getBoundingClientRect(),
+      k = this.specimen.W / box.width;
+    return [(e.clientX - box.left) * k, (e.clientY - box.top) * k];
   }
 
   found(x, y) {

@@ -1,5 +1,8 @@
 // The specimen of a run, frame by frame.
 
+const ZOOM_STEP = 1.25;
+const TURN_STEP = Math.PI / 24; // radians
+
 class RunSpecimen extends RunPiece {
   makeSpecimen() {
     const s = (this.specimen = new Specimen($("body"), this.body));
@@ -47,18 +50,59 @@ class RunSpecimen extends RunPiece {
     addEventListener("beforeprint", () => this.fourFrames());
   }
 
-  // A solid is seen as a plane through it, or from outside.
+  // A solid is seen as a plane through it, or from outside, from one of its sides or turned.
   makeViews() {
+    const cut = this.body;
+    let outside = null; // made when it is first asked for
     const look = () => {
-      const [axis, side] = $("view").value.split(" ");
-      this.body.look(axis, $("place").value / 100, +side);
-      $("place").disabled = side !== "0";
+      const [axis, side] = $("view").value.split(" "),
+        isCut = side === "0";
+      if (!isCut && !outside) {
+        outside = new OutsideBody(cut.about, cut.arrays, cut.frames);
+        outside.ranges = cut.ranges;
+      }
+      this.body = this.specimen.body = isCut ? cut : outside;
+      if (isCut) cut.look(axis, $("place").value / 100);
+      else if (side) outside.lookFrom(axis, +side);
+      $("across").hidden = !isCut;
+      $("around").hidden = isCut;
       this.width = null;
       this.fit();
-      $("place_now").textContent = side === "0" ? `${axis} = ${number(1e3 * this.body.offset)} mm` : "";
+      $("place_now").textContent = isCut ? `${axis} = ${number(1e3 * cut.offset)} mm` : "";
     };
     $("view").onchange = $("place").oninput = look;
-    $("place_now").textContent = `z = ${number(1e3 * this.body.offset)} mm`;
+    $("place_now").textContent = `z = ${number(1e3 * cut.offset)} mm`;
+    $("alone").parentElement.hidden = !cut.modes.length;
+    $("alone").onchange = () => {
+      outside.alone = $("alone").checked;
+      this.redraw();
+    };
+    $("nearer").onclick = () => this.zoom(ZOOM_STEP);
+    $("farther").onclick = () => this.zoom(1 / ZOOM_STEP);
+    $("body").addEventListener(
+      "wheel",
+      (e) => {
+        if (!this.body.axes || document.activeElement !== $("body")) return; // else the wheel moves the page
+        e.preventDefault();
+        this.zoom(Math.exp(-0.0015 * e.deltaY), ...this.pixelOf(e));
+      },
+      {passive: false},
+    );
+  }
+
+  // Turns a solid that is seen from outside, radians.
+  turn(right, up) {
+    if (!this.body.axes) return;
+    this.body.turnBy(right, up);
+    $("view").value = "turned";
+    this.redraw();
+  }
+
+  zoom(factor, x = this.specimen.W / 2, y = this.specimen.H / 2) {
+    const {body, specimen: s} = this;
+    if (!body.axes) return;
+    body.zoomBy(factor, ...body.fromPixels(x, y, s.W, s.H));
+    this.redraw();
   }
 
   // The largest magnification that moves blocks by at most a tenth of the body at the end.

@@ -1,8 +1,9 @@
-// A solid, shown as a plane through it or from outside, by the painter of plane bodies. A plane cuts each polyhedron,
-// which is convex, in a convex polygon; it goes with the body, so that displacements along it alone are seen.
+// A solid, shown as a plane through it by the painter of plane bodies. A plane cuts each polyhedron, which is convex,
+// in a convex polygon; it goes with the body, so that displacements along it alone are seen.
 
 const IN_PLANE = {x: [2, 1], y: [0, 2], z: [0, 1]}; // axes that a view across x, y, z has to the right and up
 
+// What all views of a solid have.
 class SolidBody extends Body {
   // Overrides what the constructor of a plane body asks for.
   prepare() {
@@ -27,37 +28,54 @@ class SolidBody extends Body {
           if (!this.bearing[b]) this.ends[k] = [Math.min(this.ends[k][0], v), Math.max(this.ends[k][1], v)];
         }
     }
-    this.trianglesOf = Array.from({length: this.blocks}, () => []);
-    const owner = this.ownerOfPoints();
-    for (let t = 0; t < a.triangle.shape[0]; t++) this.trianglesOf[owner[a.triangle.values[3 * t]]].push(t);
-    this.look("z", 0.5);
-  }
-
-  ownerOfPoints() {
-    const owner = new Int32Array(this.points),
-      first = this.arrays.point_first.values;
-    for (let b = 0; b < this.blocks; b++) owner.fill(b, first[b], first[b + 1]);
-    return owner;
+    this.blockOf = new Int32Array(this.points);
+    for (let b = 0; b < this.blocks; b++)
+      this.blockOf.fill(b, a.point_first.values[b], a.point_first.values[b + 1]);
   }
 
   get moves() {
     return "shift_x" in this.arrays;
   }
 
-  // Chooses the view: a plane across an axis at a share of the specimen's size, or from outside along it (side 1, -1).
-  look(axis, share, side = 0) {
-    Object.assign(this, {axis, share, side});
+  // Displacement of the middle of a block, m.
+  displacement(frame, b) {
+    return ["x", "y", "z"].map((axis) => this.arrays[`shift_${axis}`].at(frame, b));
+  }
+
+  whereBlock(b) {
+    return [0, 1, 2].map((k) => this.middles[3 * b + k]);
+  }
+  whereContact(c) {
+    return [0, 1, 2].map((k) => this.arrays.cell.at(c, k));
+  }
+  contactNumber(c) {
+    return this.arrays.number.values[c];
+  }
+  get hasIsotherms() {
+    return false;
+  }
+}
+
+// A plane through a solid, across one of its axes.
+class CutBody extends SolidBody {
+  prepare() {
+    super.prepare();
+    const {triangle} = this.arrays;
+    this.trianglesOf = Array.from({length: this.blocks}, () => []);
+    for (let t = 0; t < triangle.shape[0]; t++) this.trianglesOf[this.blockOf[triangle.values[3 * t]]].push(t);
+    this.look("z", 0.5);
+  }
+
+  // Puts the plane across an axis at a share of the specimen's size.
+  look(axis, share) {
+    Object.assign(this, {axis, share});
     const [right, up] = IN_PLANE[axis],
       k = "xyz".indexOf(axis),
       polygons = [];
-    if (side) this.facing(k, side, polygons);
-    else {
-      const at = this.ends[k][0] + share * (this.ends[k][1] - this.ends[k][0]);
-      this.offset = at;
-      for (let b = 0; b < this.blocks; b++) {
-        const corners = this.cut(b, k, at, right, up);
-        if (corners.length > 2) polygons.push([b, corners]);
-      }
+    this.offset = this.ends[k][0] + share * (this.ends[k][1] - this.ends[k][0]);
+    for (let b = 0; b < this.blocks; b++) {
+      const corners = this.cut(b, k, this.offset, right, up);
+      if (corners.length > 2) polygons.push([b, corners]);
     }
     const count = polygons.reduce((sum, [, corners]) => sum + corners.length, 0);
     Object.assign(this, {
@@ -79,7 +97,7 @@ class SolidBody extends Body {
       for (const corner of corners) this.rest.set(corner, 3 * i++);
       this.first[p + 1] = i;
     });
-    this.traces = side ? null : this.cutCracks(k);
+    this.traces = this.cutCracks(k);
     this.box = this.bounds();
   }
 
@@ -115,21 +133,6 @@ class SolidBody extends Body {
     );
   }
 
-  // Outer triangles that face the eye, from the farthest to the nearest.
-  facing(k, side, polygons) {
-    const {point, triangle, outer} = this.arrays,
-      all = [];
-    for (let b = 0; b < this.blocks; b++)
-      for (const t of this.trianglesOf[b]) {
-        if (!outer.values[t]) continue;
-        const [p, q, r] = [0, 1, 2].map((e) => [0, 1, 2].map((c) => point.at(triangle.values[3 * t + e], c)));
-        const [i, j] = [(k + 1) % 3, (k + 2) % 3];
-        const normal = (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
-        if (normal * side > 0) all.push([side * (p[k] + q[k] + r[k]), b, [p, q, r]]);
-      }
-    for (const [, b, corners] of all.sort((p, q) => p[0] - q[0])) polygons.push([b, corners]);
-  }
-
   // Ends of the line in which the plane cuts each crack, three coordinates each; NaN where it does not.
   cutCracks(k) {
     const ends = new Float64Array(6 * this.contacts).fill(NaN),
@@ -158,11 +161,6 @@ class SolidBody extends Body {
     for (let i = 0; i < this.corners; i++) takeIn(box, this.rest[3 * i + this.right], this.rest[3 * i + this.up]);
     const air = 0.09 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
     return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.5 * air, y1: box.y1 + 0.5 * air};
-  }
-
-  // Displacement of the middle of a block, m.
-  displacement(frame, b) {
-    return ["x", "y", "z"].map((axis) => this.arrays[`shift_${axis}`].at(frame, b));
   }
 
   place(frame, magnification) {
@@ -194,32 +192,19 @@ class SolidBody extends Body {
     ];
   }
 
-  // Cracks that the view shows: none from outside.
+  // Cracks that the plane cuts.
   cracks(frame) {
-    return this.traces ? super.cracks(frame).filter((c) => isFinite(this.traces[6 * c])) : [];
+    return super.cracks(frame).filter((c) => isFinite(this.traces[6 * c]));
   }
 
   line(c) {
     const {frame, magnification} = this.placed,
       {traces, right, up, arrays} = this;
-    if (!traces || !isFinite(traces[6 * c])) return [NaN, NaN, NaN, NaN];
+    if (!isFinite(traces[6 * c])) return [NaN, NaN, NaN, NaN];
     const move = [right, up].map((k) => magnification * arrays[`move_${"xyz"[k]}`].at(frame, c));
     return [
       ...this.toPixels(traces[6 * c + right] + move[0], traces[6 * c + up] + move[1]),
       ...this.toPixels(traces[6 * c + 3 + right] + move[0], traces[6 * c + 3 + up] + move[1]),
     ];
-  }
-
-  whereBlock(b) {
-    return [0, 1, 2].map((k) => this.middles[3 * b + k]);
-  }
-  whereContact(c) {
-    return [0, 1, 2].map((k) => this.arrays.cell.at(c, k));
-  }
-  contactNumber(c) {
-    return this.arrays.number.values[c];
-  }
-  get hasIsotherms() {
-    return false;
   }
 }

@@ -33,11 +33,21 @@ class Specimen {
       value(name)
         .match(/[0-9a-f]{2}/gi)
         .map((t) => parseInt(t, 16));
-    return {value, phases: phaseColours(this.body.about.materials, numbers), bearing: numbers("--bearing")};
+    return {value, numbers, phases: phaseColours(this.body.about.materials, numbers), bearing: numbers("--bearing")};
   }
 
-  // Colour of each block, [r, g, b].
+  // Colour of each block, and behind all blocks of each contact, [r, g, b].
   painter(theme) {
+    const {body} = this,
+      ofBlock = this.blockPainter(theme);
+    return (b) => (b < body.blocks ? ofBlock(b) : this.faceColour(b - body.blocks, theme));
+  }
+
+  faceColour(c, theme) {
+    return this.lit && this.lit.has(c) ? theme.numbers("--lit") : this.strokeOf(c, theme).colour;
+  }
+
+  blockPainter(theme) {
     const {body, colour, frame} = this,
       material = body.arrays.material.values;
     if (colour === "material") return (b) => theme.phases[material[b]];
@@ -64,7 +74,7 @@ class Specimen {
         if (!groups.has(key.name)) groups.set(key.name, {...key, lines: []});
         groups.get(key.name).lines.push(body.line(c));
       }
-      for (const g of [...groups.values()].sort((p, q) => p.order - q.order)) add(g.colour, g.width, g.lines);
+      for (const g of [...groups.values()].sort((p, q) => p.order - q.order)) add(css(g.colour), g.width, g.lines);
     }
     if (this.lit && this.lit.size) {
       const lines = [...this.lit].map((c) => body.line(c)).filter((l) => isFinite(l[0]));
@@ -79,18 +89,18 @@ class Specimen {
     if (cracks === "opening") {
       const opening = Math.max(0, 1e6 * body.arrays.opening.at(frame, c));
       const k = Math.min(5, Math.floor(Math.log2(1 + opening / 5))); // 5, 15, 35, 75, 155 µm
-      return {name: `o${k}`, colour: css(colourAt(ONE_SIDED, (k + 1.5) / 7)), width: 0.8 + 0.5 * k, order: k};
+      return {name: `o${k}`, colour: colourAt(ONE_SIDED, (k + 1.5) / 7), width: 0.8 + 0.5 * k, order: k};
     }
     if (cracks === "age") {
       const [first, last] = body.ages,
         k = Math.round((11 * (body.crackStep[c] - first)) / Math.max(1, last - first));
-      return {name: `a${k}`, colour: css(colourAt(ONE_SIDED, 0.95 - (0.8 * k) / 11)), width: 1.6, order: k};
+      return {name: `a${k}`, colour: colourAt(ONE_SIDED, 0.95 - (0.8 * k) / 11), width: 1.6, order: k};
     }
     const [mode, damage] = body.worst(frame, c),
       whole = damage >= 1;
     return {
       name: `${mode}${whole}`,
-      colour: theme.value(whole ? `--${mode}` : `--${mode}-tint`),
+      colour: theme.numbers(whole ? `--${mode}` : `--${mode}-tint`),
       width: whole ? (mode === "shear" ? 1.4 : 2.4) : 0.9,
       order: whole ? (mode === "shear" ? 3 : 2) : 1,
     };
@@ -99,17 +109,18 @@ class Specimen {
   draw() {
     const {body, frame, W, H, context} = this,
       theme = this.theme();
+    Object.assign(body, {lit: this.lit, crackColoured: this.cracks !== "none"});
     body.place(frame, this.magnification);
     body.project(W, H);
     const colour = this.painter(theme),
       inks = new Map();
     body.paint(this.pixels, W, H, (b) => {
-      const c = colour(b);
-      let value = inks.get(c);
-      if (value === undefined) inks.set(c, (value = ink(c)));
+      let value = inks.get(b);
+      if (value === undefined) inks.set(b, (value = ink(colour(b))));
       return value;
     });
     context.putImageData(this.image, 0, 0);
+    if (body.axes) this.drawFrame(theme);
     context.lineCap = "round";
     for (const {colour: stroke, width, lines} of this.strokes(theme)) this.stroke(stroke, width, lines);
     if (body.hasIsotherms) this.drawIsotherms(theme);
@@ -156,6 +167,26 @@ class Specimen {
       context.strokeText(text, x, y);
       context.fillText(text, x, y);
     });
+  }
+
+  // What tells how a solid is turned: its axes, and the box around it where its blocks are not shown.
+  drawFrame(theme) {
+    const {body, context, ratio, H} = this,
+      [x, y] = [30 * ratio, H - 30 * ratio],
+      ends = body.triad(20 * ratio);
+    if (body.alone) this.stroke(theme.value("--faint"), 0.6 * ratio, body.frameLines);
+    this.stroke(
+      theme.value("--ink"),
+      1.2 * ratio,
+      ends.map((end) => [x, y, x + end.x, y + end.y]),
+    );
+    context.font = `${11 * ratio}px system-ui, sans-serif`;
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.fillStyle = theme.value("--ink");
+    for (const end of ends)
+      if (Math.hypot(end.x, end.y) > 4 * ratio) context.fillText(end.name, x + 1.4 * end.x, y + 1.4 * end.y);
+    context.textBaseline = "alphabetic";
   }
 
   drawAcross(theme) {
