@@ -8,6 +8,7 @@ shows their triangles, and contacts on the sides of the two blocks that they joi
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..results import Frame, Results
 from .packing import packed_floats, packed_steps, packed_whole
 from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite
 
+_OPENING = 1e-6  # m, wanted step: ten times that of the plane, as a solid has so many more contacts
 _SAME = 1e-6  # cosines of one angle differ by less
 
 
@@ -51,29 +53,32 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         kind = name.split("_")[0]
         if kind in ("shift", "turn"):
             arrays[name] = packed_steps(column, fine if kind == "shift" else fine / size)
-        elif kind not in ("damage", "opening", "move", "crack"):
+        elif kind not in ("damage", "opening", "crack"):
             arrays[name] = packed_steps(column, STEPS[kind])
+    notes = ["blocks of a solid move as rigid bodies"] if run.moves else []
     if modes:
-        damages = {mode: columns[f"damage_{mode}"] for mode in modes}
         steps = exact_steps(run, columns["crack_step"][-1])
         kept = np.flatnonzero(steps >= 0)
+        cells = contacts.points[contacts.cells[kept]]
+        beside = _blocks_beside(cells, point, triangle[~is_outer], owner[~is_outer])
+        if (lost := int((beside[:, 0] < 0).sum())):
+            notes.append(f"{lost} cracks whose two blocks are not found")
+            kept, cells, beside = (values[beside[:, 0] >= 0] for values in (kept, cells, beside))
+        face, arrays["face_triangle"], arrays["triangle_face"] = _faces(beside, point, triangle, owner, is_outer)
+        first_of = np.unique(face, return_index=True)[1]
+        arrays["face"] = packed_whole(face, 4)
+        arrays["middle"] = packed_steps(cells[first_of, 2], fine, 4)
+        arrays["cell"] = packed_whole(_cell_points(cells, point, of_point[by_block], beside[:, 0]), 4)
+        arrays["trace"] = packed_whole(_traces(cells, point, triangle, is_outer), 4)
         arrays["crack_step"] = packed_whole(steps[kept], 4)
         arrays["interface"] = packed_whole(contacts.interface[kept], 1)
         arrays["extent"] = packed_floats(contacts.extent[kept])
         arrays["number"] = packed_whole(kept, 4)
-        cells = contacts.points[contacts.cells[kept]]
-        arrays["cell"] = packed_steps(cells.reshape(len(kept), 12), fine, 4)
-        arrays["face"], arrays["face_triangle"], arrays["triangle_face"] = (
-            packed_whole(values, 4) for values in _faces(cells, point, triangle, owner, is_outer))
-        arrays["trace"] = packed_whole(_traces(cells, point, triangle, is_outer), 4)
-        for mode, damage in damages.items():
-            arrays[f"damage_{mode}"] = packed_damage(damage[:, kept])
-        arrays["opening"] = packed_steps(columns["opening"][:, kept], STEPS["opening"])
-        for i, axis in enumerate("xyz"):
-            arrays[f"move_{axis}"] = packed_steps(columns["move"][:, kept, i], fine)
+        for mode in modes:
+            arrays[f"damage_{mode}"] = packed_damage(columns[f"damage_{mode}"][:, kept])
+        arrays["opening"] = packed_steps(columns["opening"][:, kept], _OPENING)
     about = {**about_body(run), "solid": True,
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
-    notes = ["blocks of a solid move as rigid bodies"] if run.moves else []
     return PackedBody(about, arrays, taken, notes + left_out)
 
 
@@ -93,30 +98,47 @@ def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndar
     return middle.reshape(-1, 3), (np.roll(corners, -2, axis=1) - middle).reshape(-1, 3)
 
 
-def _faces(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
-           is_outer: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(K,) face of each contact, -1 where it is not found; (F,) triangles of such faces, on both blocks; their faces.
+def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
+           is_outer: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
+    """(K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
 
-    A face is where two blocks meet.
+    A face is where two blocks meet. beside: (K, 2), those of each contact.
     """
     blocks = int(owner.max()) + 1
     inner = np.flatnonzero(~is_outer)
-    beside = _blocks_beside(cells, point, triangle[inner], owner[inner])
-    centre = meeting(point[triangle[inner]].mean(axis=1), MEET * float(np.ptp(point, axis=0).max()))
+    centre = meeting(point[triangle[inner]].mean(axis=1), _near(point))
     order = np.argsort(centre, kind="stable")  # two blocks have each of these triangles
     same = np.flatnonzero(np.diff(centre[order]) == 0)
     one, two = order[same], order[same + 1]
-    other = np.full(len(inner), -1)
+    other = owner[inner].copy()
     other[one], other[two] = owner[inner][two], owner[inner][one]
 
-    def pair(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-        return np.where(np.minimum(one, two) < 0, -1, np.minimum(one, two) * blocks + np.maximum(one, two))
+    def pair(blocks_: np.ndarray) -> np.ndarray:
+        return blocks_.min(axis=1) * blocks + blocks_.max(axis=1)
 
-    of_contact, of_triangle = pair(*beside.T), pair(owner[inner], other)
-    faces = np.unique(of_contact[of_contact >= 0])
+    of_triangle = pair(np.c_[owner[inner], other])
+    faces, face = np.unique(pair(beside), return_inverse=True)
     shown = np.isin(of_triangle, faces)
-    return (np.where(of_contact < 0, -1, np.searchsorted(faces, of_contact)), inner[shown],
-            np.searchsorted(faces, of_triangle[shown]))
+    return (face.ravel(), packed_whole(inner[shown], 4),
+            packed_whole(np.searchsorted(faces, of_triangle[shown]), 4))
+
+
+def _cell_points(cells: np.ndarray, point: np.ndarray, of_point: np.ndarray, block: np.ndarray) -> np.ndarray:
+    """(K, 3) gridpoints of a block that lie at a contact's point, at the next one of the face and at the one before."""
+    ends = np.stack([cells[:, 0], 2.0 * cells[:, 1] - cells[:, 0], 2.0 * cells[:, 3] - cells[:, 0]], axis=1)
+    place = meeting(np.concatenate([point, ends.reshape(-1, 3)]), _near(point))
+    count = int(of_point.max()) + 1
+    known, wanted = place[:len(point)], place[len(point):].reshape(-1, 3)
+    _, known = np.unique(np.r_[known, wanted.ravel()], return_inverse=True)
+    key = known.ravel()[:len(point)] * count + of_point
+    order = np.argsort(key, kind="stable")
+    found = np.searchsorted(key[order], known.ravel()[len(point):].reshape(-1, 3) * count + block[:, None])
+    return order[np.minimum(found, len(order) - 1)]
+
+
+def _near(point: np.ndarray) -> float:
+    """m: points so near to each other are one."""
+    return MEET * float(np.ptp(point, axis=0).max())
 
 
 def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray) -> np.ndarray:
@@ -126,7 +148,7 @@ def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, o
     cells: (K, 4, 3), m. triangle: (T, 3), those between blocks. owner: (T,), their blocks.
     """
     middle, inward = _edges(point, triangle)
-    place = meeting(np.concatenate([middle, cells[:, 1]]), MEET * float(np.ptp(point, axis=0).max()))
+    place = meeting(np.concatenate([middle, cells[:, 1]]), _near(point))
     of_edge, of_cell = place[:len(middle)], place[len(middle):]
     order = np.argsort(of_edge, kind="stable")
     first, last = (np.searchsorted(of_edge[order], of_cell, side) for side in ("left", "right"))
@@ -154,7 +176,7 @@ def _traces(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, is_outer
     outer = np.flatnonzero(is_outer)
     middle = _edges(point, triangle[outer])[0]
     ends = cells[:, [1, 3]].reshape(-1, 3)
-    place = meeting(np.concatenate([middle, ends]), MEET * float(np.ptp(point, axis=0).max()))
+    place = meeting(np.concatenate([middle, ends]), _near(point))
     known, at = np.unique(place[:len(middle)], return_index=True)
     wanted = place[len(middle):].reshape(-1, 2)
     row = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
@@ -186,7 +208,7 @@ class _Reader:
 
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
         run, found = self._run, {}
-        blocks, contacts = run.mesh.blocks, run.mesh.contacts
+        blocks = run.mesh.blocks
         if self._heated:
             of_zones = run.gridpoint_temperature(frame)[blocks.zones].mean(axis=1)
             found["temperature"] = np.bincount(self._number, self._share * of_zones)
@@ -202,9 +224,9 @@ class _Reader:
         xx, yy, zz, xy, yz, xz = (1e-6 * np.bincount(self._number, self._share * stress[:, i]) for i in range(6))
         principal = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1))
         found.update(stress_y=yy, stress_1=principal[:, 2], stress_2=principal[:, 0])
-        for mode in run.crack_modes:
-            found[f"damage_{mode}"] = run.contact_field(frame, f"{mode}_damage [1]")
-        found["crack_step"] = run.contact_field(frame, "crack_step [1]")
-        found["opening"] = run.contact_field(frame, "opening [m]")
-        found["move"] = run.contact_displacement(frame)[contacts.cells[:, 0]]
+        damages = {f"damage_{mode}": run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
+        if damages:
+            is_damaged = np.max(list(damages.values()), axis=0) > 0.0
+            found.update(damages, crack_step=run.contact_field(frame, "crack_step [1]"),
+                         opening=np.where(is_damaged, run.contact_field(frame, "opening [m]"), 0.0))
         return found

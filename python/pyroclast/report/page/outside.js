@@ -238,18 +238,16 @@ class OutsideBody extends SolidBody {
 
   // Half an edge outside on which a contact lies, pixels; NaN where it is hidden or the contact lies inside.
   line(c) {
-    const {cell, trace} = this.arrays,
+    const {trace, triangle} = this.arrays,
       hidden = [NaN, NaN, NaN, NaN],
       t = trace.values[c] >> 1;
     if (this.alone || t < 0) return hidden;
     if (this.facingOf(t) <= 0) return hidden;
-    const {frame, magnification: m} = this.placed,
-      {triangle} = this.arrays,
-      {view, W, H} = this,
-      move = ["x", "y", "z"].map((axis) => (m ? m * this.arrays[`move_${axis}`].at(frame, c) : 0));
-    const [p, q] = [0, trace.values[c] & 1 ? 9 : 3].map((from) =>
-      this.seen(...[0, 1, 2].map((k) => cell.at(c, from + k) - this.centre[k] + move[k])),
-    );
+    const {view, W, H} = this,
+      [p, q] = [0, trace.values[c] & 1 ? 9 : 3].map((from) => {
+        const at = this.moved(c, [...this.cells.subarray(12 * c + from, 12 * c + from + 3)], this.placed);
+        return this.seen(...at.map((v, k) => v - this.centre[k]));
+      });
     // a place on the triangle beside the line shows its block where nothing is before it
     const corners = [0, 1, 2].map((e) => 3 * triangle.values[3 * t + e]),
       [x, y] = [0, 1].map((k) => 0.4 * (p[k] + q[k]) + (0.2 / 3) * corners.reduce((sum, i) => sum + view[i + k], 0));

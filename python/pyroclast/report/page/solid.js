@@ -31,6 +31,47 @@ class SolidBody extends Body {
     this.blockOf = new Int32Array(this.points);
     for (let b = 0; b < this.blocks; b++)
       this.blockOf.fill(b, a.point_first.values[b], a.point_first.values[b + 1]);
+    if (this.contacts) this.prepareContacts();
+  }
+
+  // The blocks that contacts join, and the cells that contacts are drawn as: their point, the middle of the next edge,
+  // that of the face, and that of the edge before.
+  prepareContacts() {
+    const {cell, face, face_triangle: of, triangle_face: faces, middle, point, triangle} = this.arrays,
+      blocks = new Int32Array(2 * middle.shape[0]).fill(-1);
+    of.values.forEach((t, k) => {
+      const b = this.blockOf[triangle.values[3 * t]],
+        f = 2 * faces.values[k];
+      if (blocks[f] < 0) blocks[f] = b;
+      else if (blocks[f] !== b) blocks[f + 1] = b;
+    });
+    this.beside = Int32Array.from({length: 2 * this.contacts}, (_, i) => blocks[2 * face.values[i >> 1] + (i & 1)]);
+    this.cells = new Float64Array(12 * this.contacts);
+    for (let c = 0; c < this.contacts; c++)
+      for (let k = 0; k < 3; k++) {
+        const [at, next, before] = [0, 1, 2].map((e) => point.at(cell.values[3 * c + e], k));
+        [at, (at + next) / 2, middle.at(face.values[c], k), (at + before) / 2].forEach((v, e) => {
+          this.cells[12 * c + 3 * e + k] = v;
+        });
+      }
+  }
+
+  // How a place of a block moves, m.
+  motion(frame, b, [x, y, z]) {
+    const u = this.displacement(frame, b),
+      w = ["x", "y", "z"].map((axis) => this.arrays[`turn_${axis}`].at(frame, b)),
+      [dx, dy, dz] = [x - this.middles[3 * b], y - this.middles[3 * b + 1], z - this.middles[3 * b + 2]];
+    return [
+      u[0] + w[1] * dz - w[2] * dy,
+      u[1] + w[2] * dx - w[0] * dz,
+      u[2] + w[0] * dy - w[1] * dx,
+    ];
+  }
+
+  // Where a place of a contact is in a frame: between its two blocks.
+  moved(c, place, {frame, magnification}) {
+    const [p, q] = [0, 1].map((k) => this.motion(frame, this.beside[2 * c + k], place));
+    return place.map((v, k) => v + (magnification * (p[k] + q[k])) / 2);
   }
 
   get moves() {
@@ -46,7 +87,7 @@ class SolidBody extends Body {
     return [0, 1, 2].map((k) => this.middles[3 * b + k]);
   }
   whereContact(c) {
-    return [0, 1, 2].map((k) => this.arrays.cell.at(c, k));
+    return [...this.cells.subarray(12 * c, 12 * c + 3)];
   }
   contactNumber(c) {
     return this.arrays.number.values[c];
@@ -135,10 +176,9 @@ class CutBody extends SolidBody {
 
   // Ends of the line in which the plane cuts each crack, three coordinates each; NaN where it does not.
   cutCracks(k) {
-    const ends = new Float64Array(6 * this.contacts).fill(NaN),
-      {cell} = this.arrays;
+    const ends = new Float64Array(6 * this.contacts).fill(NaN);
     for (let c = 0; c < this.contacts; c++) {
-      const four = [0, 3, 6, 9].map((o) => [0, 1, 2].map((i) => cell.at(c, o + i))),
+      const four = [0, 3, 6, 9].map((o) => [...this.cells.subarray(12 * c + o, 12 * c + o + 3)]),
         found = [];
       for (let e = 0; e < 4; e++) {
         const [p, q] = [four[e], four[(e + 1) % 4]];
@@ -164,19 +204,11 @@ class CutBody extends SolidBody {
   }
 
   place(frame, magnification) {
-    const {rest, right, up, middles} = this;
+    const {rest, right, up} = this;
     this.placed = {frame, magnification};
     for (let p = 0; p < this.owner.length; p++) {
-      const b = this.owner[p],
-        u = this.moves ? this.displacement(frame, b) : [0, 0, 0];
-      const w = this.moves ? ["x", "y", "z"].map((axis) => this.arrays[`turn_${axis}`].at(frame, b)) : [0, 0, 0];
       for (let i = this.first[p]; i < this.first[p + 1]; i++) {
-        const d = [0, 1, 2].map((c) => rest[3 * i + c] - middles[3 * b + c]);
-        const move = [
-          u[0] + w[1] * d[2] - w[2] * d[1],
-          u[1] + w[2] * d[0] - w[0] * d[2],
-          u[2] + w[0] * d[1] - w[1] * d[0],
-        ];
+        const move = this.moves ? this.motion(frame, this.owner[p], rest.subarray(3 * i, 3 * i + 3)) : [0, 0, 0];
         this.x[i] = rest[3 * i + right] + magnification * move[right];
         this.y[i] = rest[3 * i + up] + magnification * move[up];
       }
@@ -198,13 +230,11 @@ class CutBody extends SolidBody {
   }
 
   line(c) {
-    const {frame, magnification} = this.placed,
-      {traces, right, up, arrays} = this;
+    const {traces, right, up} = this;
     if (!isFinite(traces[6 * c])) return [NaN, NaN, NaN, NaN];
-    const move = [right, up].map((k) => magnification * arrays[`move_${"xyz"[k]}`].at(frame, c));
-    return [
-      ...this.toPixels(traces[6 * c + right] + move[0], traces[6 * c + up] + move[1]),
-      ...this.toPixels(traces[6 * c + 3 + right] + move[0], traces[6 * c + 3 + up] + move[1]),
-    ];
+    return [0, 3].flatMap((end) => {
+      const at = this.moved(c, [...traces.subarray(6 * c + end, 6 * c + end + 3)], this.placed);
+      return this.toPixels(at[right], at[up]);
+    });
   }
 }
