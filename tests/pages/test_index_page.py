@@ -3,9 +3,12 @@
 SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
 """
 
+import io
 import unittest
 
+import numpy as np
 from browser import RUNS, PageTest, begin, browser
+from PIL import Image
 
 import pyroclast
 from pyroclast.report import write_page
@@ -47,6 +50,20 @@ class Index(PageTest):
                     "const l = document.getElementById('level'); l.value = 'bad'; l.onchange()")
         self.assertIn("broken", names())
         self.assertNotIn("thermal_wall", names())
+        self.assert_silent()
+
+    def test_pictures_made_for_a_white_page_are_dark_on_a_dark_one(self):
+        folder = self.folder / "runs"
+        folder.mkdir()
+        self.copy(RUNS / "starter", name="runs/starter")
+        page = write_page([folder])
+        means = {}
+        for scheme in ("light", "dark"):
+            browser.open(page, scheme=scheme)
+            png = browser.driver.find_element("css selector", ".run img").screenshot_as_png
+            means[scheme] = np.asarray(Image.open(io.BytesIO(png)).convert("L")).mean()
+        self.assertGreater(means["light"], 140.0)
+        self.assertLess(means["dark"], 110.0)
         self.assert_silent()
 
 
