@@ -58,6 +58,8 @@ def read(folder: str | Path) -> Results:
         return Results(place)
     if not place.is_dir():
         raise Error(f"{place}: is not a folder")
+    if Lock(place).writer is Writer.THERE:
+        raise Error(f"{place}: the run in it has only begun: there is no history yet")
     if any((place / name).exists() for name in ("specimen/specimen.json", "specimen.json")):
         raise Error(f"{place}: holds a specimen and no run; pyroclast.SpecimenFolder reads it")
     runs = sorted({path.parent for path in place.glob("*/history.csv")})
@@ -65,6 +67,16 @@ def read(folder: str | Path) -> Results:
         raise Error(f"{place}: holds no run, but folders of runs: {runs[0].name}"
                     + (f" and {len(runs) - 1} more" if len(runs) > 1 else ""))
     raise Error(f"{place}: holds no run: there is neither history.csv nor summary.json")
+
+
+def read_at_once(folder: str | Path) -> Results:
+    """The same of a run that may go on: the end is read first and the history last, so that it has the row of each frame,
+    and all that a summary tells.
+    """
+    run = read(folder)
+    run._known_end = run._end
+    run.summary, run._frames, run.history  # noqa: B018 - they keep what they read
+    return run
 
 
 def is_of_run(folder: Path) -> bool:
@@ -84,6 +96,7 @@ class Results:
     """
 
     _table = Table
+    _known_end: tuple[Writer, bool] | None = None
 
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
@@ -116,8 +129,7 @@ class Results:
     @cached_property
     def summary(self) -> dict:
         """summary.json; of a run that was killed and has none, one without results."""
-        path = self.folder / "summary.json"
-        return read_json(path) if path.exists() else {"stages": []}
+        return read_json(self.folder / "summary.json") if self._end[1] else {"stages": []}
 
     @cached_property
     def manifest(self) -> dict:
@@ -173,9 +185,16 @@ class Results:
     @property
     def outcome(self) -> str:
         """How the run ended; of one without a summary that it is running, or how it broke off."""
-        if (self.folder / "summary.json").exists():
+        writer, has_summary = self._end
+        if has_summary:
             return str(self.summary.get("outcome", "over"))
-        return {Writer.THERE: "running", Writer.DIED: "killed", Writer.NONE: "broken off"}[Lock(self.folder).writer]
+        return {Writer.THERE: "running", Writer.DIED: "killed", Writer.NONE: "broken off"}[writer]
+
+    @property
+    def _end(self) -> tuple[Writer, bool]:
+        """Who writes into the folder, and whether it has a summary: asked in this order, as a run leaves its folder
+        behind its summary."""
+        return self._known_end or (Lock(self.folder).writer, (self.folder / "summary.json").exists())
 
     @property
     def warnings(self) -> list[str]:
@@ -471,10 +490,9 @@ class Results:
     @cached_property
     def frames(self) -> list[Frame]:
         """Saved states of all stages, in order; none when the run saved no fields."""
-        path = self.folder / "fields" / "frames.csv"
-        if not path.exists():
+        t = self._frames
+        if t is None:
             return []
-        t = self._table(path, may_be_empty=True)
         if not self.moves:
             return [Frame(number, stage, 0, time, np.nan, np.nan, temperature, time)
                     for number, stage, time, temperature in zip(t.whole("frame").tolist(), t.whole("stage").tolist(),
@@ -483,6 +501,11 @@ class Results:
         whole = [t.whole(name, none=0).tolist() for name in ("frame", "stage", "step")]
         pressed = [t[name] if name in t else [np.nan] * t.rows for name in ("strain", "stress_MPa")]
         return [Frame(*values) for values in zip(*whole, t["time_s"], *pressed, *heat)]
+
+    @cached_property
+    def _frames(self) -> Table | None:
+        path = self.folder / "fields" / "frames.csv"
+        return self._table(path, may_be_empty=True) if path.exists() else None
 
     @property
     def loaded_frames(self) -> list[Frame]:

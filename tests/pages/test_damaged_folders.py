@@ -4,12 +4,16 @@ import os
 import pathlib
 import shutil
 import unittest
+from unittest import mock
 
 import h5py
 import numpy as np
 from browser import RUNS, FolderTest
 
 from pyroclast.errors import Error
+from pyroclast.files import Table
+from pyroclast.report.run_page import run_page
+from pyroclast.results import Results, read, read_at_once
 
 _CELLS = "VTKHDF/CellData"
 
@@ -100,6 +104,44 @@ class Damaged(FolderTest):
             shutil.copytree(RUNS / "fire_one_side", runs / "whole")
             self.damaged(name, _empty).rename(runs / "half")
             self.assertIn("whole", self.page_of(runs).read_text())
+
+
+class Changing(FolderTest):
+    """A run that another process writes while its page is made."""
+
+    def test_of_a_run_that_begins_anew_the_page_is_that_of_the_new_one(self):
+        run = self.copy(RUNS / "starter")
+
+        def begin_anew(results):
+            shutil.rmtree(run)
+            (self.copy(RUNS / "compression") / "manifest.json").touch()  # a copy keeps the time
+            return "half of one run, half of another"
+
+        steps = iter([begin_anew, run_page])
+        with mock.patch("pyroclast.report.run_page", side_effect=lambda results: next(steps)(results)):
+            self.assertIn("5,000 blocks", self.page_of(run).read_text())
+        with mock.patch("pyroclast.report.run_page", side_effect=begin_anew), \
+                self.assertRaisesRegex(Error, "begins anew in this folder again and again"):
+            self.page_of(run)
+
+    def test_the_history_has_the_row_of_each_frame(self):
+        run = self.copy(RUNS / "compression")
+        late = {path: path.read_text() for path in (run / "history.csv", run / "fields" / "frames.csv")}
+        for path, text in late.items():
+            lines = text.splitlines(keepends=True)
+            path.write_text("".join(lines[:len(lines) // 2]))
+
+        def read_and_go_on(path, **more):
+            table = Table(path, **more)
+            for other, text in late.items():
+                other.write_text(text)
+            return table
+
+        with mock.patch.object(Results, "_table", staticmethod(read_and_go_on)):
+            results = read_at_once(run)
+        self.assertLess(len(results.frames), len(read(run).frames))
+        self.assertGreaterEqual(results.history["step"][-1], results.frames[-1].step)
+        self.assertEqual(results.history.rows, read(run).history.rows)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,8 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     if not most:
         return RunData(data, notes)
     if not run.has_fields or not run.frames:
-        notes.append("the run keeps no fields, so there is no specimen to look at")
+        yet = "has no fields yet" if run.outcome == "running" else "keeps no fields"
+        notes.append(f"the run {yet}, so there is no specimen to look at")
         return RunData(data, notes)
     rows = rows_of_frames(run)
     row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
