@@ -43,7 +43,6 @@ autodoc_typehints_format = "short"
 autodoc_default_options = {"members": True, "special-members": "__getitem__, __setitem__, __delitem__, __contains__"}
 latex_engine = "xelatex"  # letters such as λ stand in the text
 latex_documents = [("understand/theory", "theory.tex", "Pyroclast: theory manual", author, "howto")]
-latex_appendices = ["understand/references"]
 latex_elements = {"papersize": "a4paper", "pointsize": "10pt", "figure_align": "H"}
 latex_show_urls = "no"
 

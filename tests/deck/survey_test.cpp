@@ -338,7 +338,7 @@ What is done, one after the other.
 
 | key | value | unit | allowed | default | meaning |
 |---|---|---|---|---|---|
-| `kind` | one of `"press"`, `"fire"` |  |  | needed | What the stage does. |
+| `kind` | one of `"press"`, `"fire"` |  |  | needed | Kind of the stage. |
 
 ### `kind = "press"`
 
