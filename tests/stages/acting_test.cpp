@@ -104,10 +104,10 @@ TEST(Acting, UnlikeHoldsAreRefused) {
   EXPECT_EQ(refused(drive("duration = \"1 s\"", up + moved) + drive("duration = \"1 s\"", kBottom)),
             "no Error was thrown");
   EXPECT_TRUE(says(refused(drive("duration = \"1 s\"", does("left", "release = [\"x\"]") + kBottom)),
-                   "it is neither held nor driven so: nothing holds it"));
+                   "is neither held nor driven so: nothing holds it"));
   EXPECT_TRUE(says(refused(drive("duration = \"1 s\"", kBottom) +
                            drive("duration = \"1 s\"", does("corner", "release = [\"x\"]"))),
-                   "what holds it there is another set (deck.toml:"));
+                   "another set holds the body there (deck.toml:"));
   EXPECT_TRUE(says(
       refused(drive("duration = \"1 s\"", kBottom + does("left", "force = \"1 kN\"\ndirection = [1, 0]")) +
               drive("duration = \"1 s\"", does("left", "velocity = \"1 mm/s\"\ndirection = \"x\""))),
