@@ -546,7 +546,8 @@ class ReferencesOfTheDeck(UserTest):
         for rows, parts in (("0,0\n-0.001,-20\n-0.002,-35\n", ("the stress reaches -35 MPa; figures draw compression",
                                                               "write sign = [-1, -1]")),
                             ("0,0\n0.001,20000000\n0.002,35000000\n", ("most likely in another unit",)),
-                            ("0,0\n0.1,20\n0.2,35\n", ("the strain reaches 0.2 (no unit); the column is most likely",))):
+                            ("0,0\n0.1,20\n0.2,35\n",
+                             ("the strain reaches 0.2 (no unit); the column is most likely",))):
             with self.subTest(rows):
                 self.write(f"strain,stress_MPa\n{rows}", "warned.csv")
                 done = self.pyroclast("check", self.deck('file = "warned.csv"\nof = "stress"'))
