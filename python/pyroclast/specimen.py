@@ -305,6 +305,11 @@ class SolidSpecimen:
         return self._core.phase
 
     @property
+    def block_size(self) -> NDArray[np.float64] | None:
+        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
+        return np.array(self._core.block_size) if self._core.block_size else None
+
+    @property
     def shares(self) -> dict[str, float]:
         """Share of the volume that each phase takes [1]."""
         return dict(zip(self._core.phases, self._core.shares))

@@ -322,6 +322,52 @@ class WithoutShortEdges(unittest.TestCase):
             self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
 
 
+class Finer(unittest.TestCase):
+    def test_finer_blocks_are_kept_to_the_bit(self):
+        """A run begun again at a checkpoint, one of another number of threads, and one of blocks from a file."""
+        place = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, place)
+        deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        deck["blocks"] = {"size": "20 mm", "shortest_edge": 0.35,
+                          "finer": [{"near": "top", "size": "12 mm", "distance": "10 mm"}]}
+        deck.update(aggregates={"fraction": 0.1, "d_min": "20 mm", "sieves": []},
+                    output={"history_strain": 2e-5, "fields": False})
+        for key, value in (("stop_strain", 6e-4), ("ramp_time", "2 ms"), ("velocity", "4 mm/s")):
+            deck[f"stages[1].{key}"] = value
+        with pyroclast.Run(deck, out=place / "out", threads=1) as run:
+            run.finish()
+            made = run.specimen
+        sizes = made.block_size
+        self.assertEqual(sizes.shape, made.phase.shape)
+        self.assertAlmostEqual(sizes.min(), 12e-3, places=15)
+        self.assertAlmostEqual(sizes.max(), 20e-3, places=15)
+        facts = json.loads((place / "out/specimen/specimen.json").read_text())
+        self.assertEqual((facts["smallest_block_size_m"], facts["largest_block_size_m"]), (sizes.min(), sizes.max()))
+        told = subprocess.run([PROGRAM, "check", "out/deck.toml"], cwd=place, capture_output=True, text=True, check=True)
+        self.assertIn("from 12.000 mm where they are finest to 20.000 mm", told.stdout)
+        self.assertIn("between others t_b goes with their size", told.stdout)
+        made.save(place / "cylinder.json")
+        read = pyroclast.SolidSpecimen.read(place / "cylinder.json")
+        for what in ("vertices", "neighbours", "phase", "block_size"):
+            np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
+        good = json.loads((place / "cylinder.json").read_text())
+        for wrong, words in (([1.0], "cells, but the sizes of 1"), (["a"], r"block_size_m\[0\]: must be a size in m"),
+                             ([0.0, *good["block_size_m"][1:]], "cell 0 .from 0. has the size 0")):
+            (place / "wrong.json").write_text(json.dumps({**good, "block_size_m": wrong}))
+            with self.assertRaisesRegex(pyroclast.Error, words):
+                pyroclast.SolidSpecimen.read(place / "wrong.json")
+        deck["specimen"] = read
+        with pyroclast.Run(deck, out=place / "read", threads=2) as run:
+            run.finish()
+        done = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked", "--no-figures"],
+                              cwd=place, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        want = (place / "out/history.csv").read_bytes()
+        self.assertGreater(want.count(b"\n"), 10)
+        for name in ("read", "forked"):
+            self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
+
+
 class Script(unittest.TestCase):
     """A run of a solid in this process."""
 

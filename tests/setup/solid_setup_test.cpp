@@ -315,5 +315,133 @@ TEST(SolidDeck, AProbeHasThreeCoordinates) {
   expect_in("probes", message(with_more(deck, probe + "z = \"200 mm\"\n")));
 }
 
+/// Adds finer blocks to a deck of blocks of a size.
+std::string finer(const std::string& deck, const std::string& near,
+                  const std::string& sizes = "size = \"12 mm\"\ndistance = \"15 mm\"\n") {
+  return with_more(deck, "[[blocks.finer]]\n" + near + "\n" + sizes);
+}
+
+/// The solid, and the cylinder, by the size of their blocks.
+std::string sized_solid() {
+  return with(solid(), "count = 60", "size = \"20 mm\"");
+}
+std::string sized_cylinder() {
+  return with(cylinder(), "count = 60", "size = \"20 mm\"");
+}
+
+TEST(FinerBlocksOfSolids, CountIsOfAllAndSizeOfThoseFarAway) {
+  const auto by_size = read(finer(sized_solid(), "near = \"top\"")).specimen;
+  EXPECT_EQ(by_size.largest_block_size(), 20e-3);
+  // 844 blocks of 20 mm; the fine layer alone has 15 mm x 150 mm x 150 mm, 195 of 12 mm in the place of 42
+  EXPECT_GT(by_size.blocks.count, 844 + 150);
+  EXPECT_LT(by_size.blocks.count, 844 + 450);
+  const auto by_count =
+      read(finer(with(solid(), "count = 60", fmt::format("count = {}", by_size.blocks.count)),
+                 "near = \"top\""))
+          .specimen;
+  EXPECT_EQ(by_count.blocks.count, by_size.blocks.count);
+  EXPECT_NEAR(by_count.blocks.largest_size, 20e-3, 0.05e-3);  // the count is rounded
+}
+
+// Promise: a part of a solid is a face of it, a seat, a set, or a place; a pair stands for all z.
+TEST(FinerBlocksOfSolids, StandNearWhateverHasANameOrAPlace) {
+  const auto part = [](const std::string& deck, const std::string& near) {
+    return read(finer(deck, near)).specimen.blocks.finer.front();
+  };
+  const auto top = part(sized_solid(), "near = \"top\"");
+  ASSERT_EQ(top.pieces.size(), 1U);
+  ASSERT_EQ(top.pieces[0].size(), 4U);
+  for (const Vec<3>& corner : top.pieces[0]) EXPECT_EQ(corner[1], 0.3);
+  EXPECT_EQ(part(sized_solid(), "near = \"outline\"").pieces.size(), 6U);
+  const auto rim = part(sized_cylinder(), "near = \"rim\"");
+  EXPECT_GE(rim.pieces.size(), 24U);
+  for (const auto& piece : rim.pieces) EXPECT_EQ(piece.size(), 4U);
+  const auto end = part(sized_cylinder(), "near = \"bottom\"");
+  ASSERT_EQ(end.pieces.size(), 1U);
+  EXPECT_GE(end.pieces[0].size(), 24U);
+  const auto along = part(sized_solid(), "at = [\"75 mm\", \"150 mm\"]");
+  EXPECT_TRUE(along.is_along_z);
+  const auto point = part(sized_solid(), "at = [\"75 mm\", \"150 mm\", \"75 mm\"]");
+  EXPECT_FALSE(point.is_along_z);
+  EXPECT_EQ(point.pieces, (std::vector<specimen::FinerPiece>{{{{0.075, 0.15, 0.075}}}}));
+  const auto line = part(sized_solid(), "line = [[\"0 mm\", \"0 mm\"], [\"9 mm\", \"9 mm\"]]");
+  EXPECT_TRUE(line.is_along_z);
+  const auto box =
+      part(sized_solid(), "box = [[\"0 mm\", \"0 mm\", \"0 mm\"], [\"9 mm\", \"9 mm\", \"9 mm\"]]");
+  EXPECT_EQ(box.box->back(), (Vec<3>{{9e-3, 9e-3, 9e-3}}));
+  const std::string set = "[[sets]]\nname = \"a\"\nbox = [[\"0 mm\", \"0 mm\"], [\"9 mm\", \"9 mm\"]]\n";
+  const auto of_set = part(with_more(sized_solid(), set), "near = \"a\"");
+  EXPECT_TRUE(of_set.is_along_z);
+  EXPECT_EQ(of_set.box->back(), (Vec<3>{{9e-3, 9e-3}}));
+  const auto unused = read(finer(with_more(sized_solid(), set), "near = \"a\"")).unused_sets;
+  EXPECT_TRUE(unused.empty());
+}
+
+// Promise: the seats of a disc are parts, and sides of its rim are about as long as the blocks there; those
+// of a cylinder as the largest blocks along them, so that a fine end leaves them as they are.
+TEST(FinerBlocksOfSolids, RoundBodiesHaveSidesAboutAsLongAsTheirBlocks) {
+  const std::string disc = with(with(with(shipped_case("disc_3d"), "count = 2700", "size = \"10 mm\""),
+                                     "fraction = 0.28", "fraction = 0.0"),
+                                "diameter = \"150 mm\"\ndepth", "diameter = \"150 mm\"\ndepth");
+  const std::string sizes = "size = \"5 mm\"\ndistance = \"10 mm\"\n";
+  const auto even = read(disc).specimen, fine = read(finer(disc, "near = \"upper_strip\"", sizes)).specimen;
+  EXPECT_NEAR(fine.extent(), even.extent(), 1e-12);
+  const auto sides_above = [](const AskedSpecimen& specimen, double height) {
+    return std::ranges::count_if(specimen.prism->section().pieces(), [&](const specimen::Piece& piece) {
+      return height > 0.0 ? piece.from[1] > height : piece.from[1] < height;
+    });
+  };
+  EXPECT_GT(sides_above(fine, 0.06), 1.4 * sides_above(even, 0.06));
+  EXPECT_EQ(sides_above(fine, -0.06), sides_above(even, -0.06));
+  EXPECT_EQ(fine.blocks.finer[0].pieces.size(), 2U);  // the seat's chords
+  const auto sides = [](const std::string& deck) {
+    return read(deck).specimen.prism->section().pieces().size();
+  };
+  const std::string cylinder = with(sized_cylinder(), "size = \"20 mm\"", "size = \"12 mm\"");
+  EXPECT_EQ(sides(finer(cylinder, "near = \"top\"", sizes)), sides(cylinder));
+  EXPECT_GT(sides(finer(cylinder, "near = \"rim\"", sizes)), 2 * sides(cylinder));
+}
+
+TEST(FinerBlocksOfSolids, WrongOnesAreRefusedWithTheirPlace) {
+  const auto says = [](const std::string& deck, const char* const key, const char* const words) {
+    const std::string complaint = message(deck);
+    expect_in("deck.toml:", complaint);
+    expect_in(key, complaint);
+    expect_in(words, complaint);
+  };
+  const std::string distance = "distance = \"12 mm\"\n";
+  says(finer(sized_solid(), "near = \"tpo\""), "blocks.finer[0].near", "did you mean \"top\"?");
+  says(finer(sized_cylinder(), "near = \"left\""), "blocks.finer[0].near", "must be one of");
+  says(finer(sized_solid(), "near = \"top\"", "size = \"20 mm\"\n" + distance), "blocks.finer[0].size",
+       "must be less than the size of the other blocks, 20 mm");
+  says(finer(solid(), "near = \"top\""), "blocks.count", "take more, or a smaller distance");
+  says(finer(sized_solid(), "near = \"top\"\nat = [\"0 mm\", \"0 mm\"]"), "blocks.finer[0]", "not several");
+  says(finer(sized_solid(), "box = [[\"0 mm\", \"0 mm\"], [\"9 mm\", \"9 mm\", \"9 mm\"]]"),
+       "blocks.finer[0].box", "two pairs, which stand for all z");
+  says(finer(sized_solid(), "box = [[\"0 mm\", \"0 mm\", \"9 mm\"], [\"9 mm\", \"9 mm\", \"0 mm\"]]"),
+       "blocks.finer[0].box", "inside out");
+  says(finer(with(plane(), "count = 60", "size = \"20 mm\""), "at = [\"0 mm\", \"0 mm\", \"0 mm\"]"),
+       "blocks.finer[0].at", "no z");
+  says(finer(sized_solid(), "near = \"top\"", "size = \"1 um\"\n" + distance), "blocks.size", "blocks");
+}
+
+// Promise: contacts are as much stiffer as blocks are smaller, so that the modulus stays.
+TEST(FinerBlocksOfSolids, ContactsFollowTheirSizeSoThatTheModulusStays) {
+  std::string even = with(with(solid(), "count = 60", "count = 300"), "[blocks]", "[blocks]\n#");
+  even = with(even, "shortest_edge = 0.2", "shortest_edge = 0.35");
+  const auto graded = finer(even, "near = \"left\"", "size = \"14 mm\"\ndistance = \"10 mm\"\n");
+  const auto modulus = [](const std::string& deck) {
+    const auto simulation = make_simulation(read(deck));
+    return estimate_modulus(simulation->model(), simulation->materials());
+  };
+  const double scaled = modulus(graded);
+  EXPECT_NEAR(scaled, modulus(even), 0.03 * scaled);
+  const std::string fixed = "t_b_scaling = \"fixed\"";
+  EXPECT_GT(std::abs(modulus(with(graded, "t_b_scaling = \"block size\"", fixed)) /
+                         modulus(with(even, "t_b_scaling = \"block size\"", fixed)) -
+                     1.0),
+            0.0);
+}
+
 }  // namespace
 }  // namespace pyroclast

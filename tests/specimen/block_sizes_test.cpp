@@ -23,9 +23,9 @@ constexpr double kSlopeOfSize = 0.4 / 2.2;
 BlockParameters finer_near(const Vec<2>& from, const Vec<2>& to, double largest, const Region& region) {
   BlockParameters p;
   p.shortest_edge = 0.2;
-  p.finer.push_back({.pieces = {{from, to}}, .box = {}, .size = kFine, .distance = kReach});
+  p.finer.push_back({.pieces = {{resized<3>(from), resized<3>(to)}}, .size = kFine, .distance = kReach});
   p.largest_size = largest;
-  p.count = static_cast<int>(std::lround(SizedArea(region, p.finer).blocks(largest)));
+  p.count = static_cast<int>(std::lround(SizedExtent(room_of_blocks(region), p.finer).blocks(largest)));
   return p;
 }
 
@@ -49,13 +49,15 @@ std::map<int, double> size_in_bands(const Tessellation& t, Band band_of) {
 
 // Promise: blocks are finer near a point too, such as the tip of a notch.
 TEST(BlockSizes, AreFineAroundAPoint) {
-  const Vec<2> tip{{0.1, 0.05}};
-  const BlockSizes sizes(4e-3, 8e-3, {{.pieces = {{tip, tip}}, .size = 2e-3, .distance = 5e-3}});
-  EXPECT_EQ(sizes.at(tip), 2e-3);
-  EXPECT_EQ(sizes.at({{0.1, 0.0549}}), 2e-3);
-  EXPECT_EQ(sizes.at({{0.1, 0.2}}), 8e-3);
+  const FinerPart at_tip{.pieces = {{{{0.1, 0.05}}}}, .size = 2e-3, .distance = 5e-3};
+  const BlockSizes sizes(4e-3, 8e-3, {at_tip});
+  EXPECT_EQ(sizes.at(Vec<2>{{0.1, 0.05}}), 2e-3);
+  EXPECT_EQ(sizes.at(Vec<2>{{0.1, 0.0549}}), 2e-3);
+  EXPECT_EQ(sizes.at(Vec<2>{{0.1, 0.2}}), 8e-3);
+  EXPECT_EQ(sizes.at(Vec<3>{{0.1, 0.05, 0.0049}}), 2e-3);
+  EXPECT_DOUBLE_EQ(sizes.at(Vec<3>{{0.1, 0.05, 0.016}}), 4e-3);  // 11 mm beyond, a fifth more in 1.1 sizes
   const Region region = Region::rectangle(0.2, 0.1);
-  const SizedArea area(region, {{.pieces = {{tip, tip}}, .size = 2e-3, .distance = 5e-3}});
+  const SizedExtent area(room_of_blocks(region), {at_tip});
   const double even = region.area() / 64e-6;
   EXPECT_GT(area.blocks(8e-3), even + 15.0);  // a circle of 5 mm has 20 blocks of 2 mm, and 1 of 8 mm
   ASSERT_TRUE(area.largest_for(600));
@@ -64,33 +66,100 @@ TEST(BlockSizes, AreFineAroundAPoint) {
 
 TEST(BlockSizes, GrowByAFifthFromBlockToBlockUpToTheLargest) {
   const BlockSizes sizes(4e-3, 8e-3, {{.pieces = {{{{0, 0}}, {{0, 1}}}}, .size = 2e-3, .distance = 5e-3}});
-  EXPECT_EQ(sizes.at({{5e-3, 0.5}}), 2e-3);
+  const auto at = [&](double x) { return sizes.at(Vec<2>{{x, 0.5}}); };
+  EXPECT_EQ(at(5e-3), 2e-3);
   double place = 5e-3, here = 2e-3;
   for (int blocks = 0; here < 8e-3; ++blocks) {
     ASSERT_LT(blocks, 9);
     const double next = std::min(1.2 * here, 8e-3);
     place += 0.5 * (here + next);
-    EXPECT_NEAR(sizes.at({{place, 0.5}}), next, 1e-12);
+    EXPECT_NEAR(at(place), next, 1e-12);
     here = next;
   }
-  EXPECT_EQ(sizes.at({{0.5, 0.5}}), 8e-3);
-  EXPECT_EQ(sizes.relative({{0.5, 0.5}}), 2.0);
+  EXPECT_EQ(at(0.5), 8e-3);
+  EXPECT_EQ(sizes.relative(Vec<2>{{0.5, 0.5}}), 2.0);
   const BlockSizes half = sizes.scaled_to(2e-3);
-  for (const double x : {0.0, 0.01, 0.02, 0.5})
-    EXPECT_DOUBLE_EQ(half.at({{x, 0.5}}), 0.5 * sizes.at({{x, 0.5}}));
+  for (const double x : {0.0, 0.01, 0.02, 0.5}) EXPECT_DOUBLE_EQ(half.at(Vec<2>{{x, 0.5}}), 0.5 * at(x));
+}
+
+// Promise: the distance from a face is that from its plane over it, and that from its edge or corner beside
+// it, whichever way its corners go; z does not count for a part along all z.
+TEST(BlockSizes, AreFineNearAFaceABoxAndAlongZ) {
+  constexpr double kSize = 1e-3, kLargest = 1.0, kDistance = 1e-2;
+  const auto distance = [&](FinerPart part, const Vec<3>& place) {
+    part.size = kSize;
+    part.distance = kDistance;
+    return (BlockSizes(0.5, kLargest, {part}).at(place) - kSize) / kSlopeOfSize + kDistance;
+  };
+  FinerPiece face{{{0, 0, 1}}, {{2, 0, 1}}, {{2, 1, 1}}, {{0, 1, 1}}};
+  for (int sense = 0; sense < 2; ++sense) {
+    EXPECT_NEAR(distance({.pieces = {face}}, {{1.9, 0.1, 0.7}}), 0.3, 1e-12);
+    EXPECT_NEAR(distance({.pieces = {face}}, {{1.0, 1.3, 1.4}}), 0.5, 1e-12);
+    EXPECT_NEAR(distance({.pieces = {face}}, {{2.1, 1.2, 1.2}}), 0.3, 1e-12);
+    // the nearest of several
+    FinerPiece other = face;
+    for (Vec<3>& corner : other) corner[2] = 0.6;
+    EXPECT_NEAR(distance({.pieces = {face, other}}, {{1.0, 0.5, 0.7}}), 0.1, 1e-12);
+    EXPECT_NEAR(distance({.pieces = {other, face}}, {{1.0, 0.5, 0.9}}), 0.1, 1e-12);
+    std::ranges::reverse(face);
+  }
+  const std::array<Vec<3>, 2> box{{{{0, 0, 0}}, {{1, 1, 1}}}};
+  EXPECT_NEAR(distance({.box = box}, {{0.5, 1.3, 1.4}}), 0.5, 1e-12);
+  EXPECT_NEAR(distance({.box = box, .is_along_z = true}, {{0.5, 1.3, 9.0}}), 0.3, 1e-12);
+  EXPECT_NEAR(distance({.pieces = {{{{0, 0}}}}, .is_along_z = true}, {{0.3, 0.4, 7.0}}), 0.5, 1e-12);
 }
 
 // The integral of 1 / size² over a strip beside a side, in closed form.
-TEST(SizedArea, CountsBlocksAsTheIntegralDoes) {
+TEST(SizedExtent, CountsBlocksAsTheIntegralDoes) {
   const Region region = Region::rectangle(0.2, 0.1);
   const std::vector<FinerPart> finer{{.pieces = {{{{0, 0}}, {{0, 0.1}}}}, .size = kFine, .distance = kReach}};
   const double largest = 6e-3, growing = (largest - kFine) / kSlopeOfSize;
   const double expected = 0.1 * (kReach / (kFine * kFine) + (1 / kFine - 1 / largest) / kSlopeOfSize +
                                  (0.2 - kReach - growing) / (largest * largest));
-  const SizedArea sized(region, finer);
+  const SizedExtent sized(room_of_blocks(region), finer);
   EXPECT_NEAR(sized.blocks(largest) / expected, 1.0, 0.01);  // pieces are as wide as a block
   EXPECT_NEAR(sized.largest_for(sized.blocks(largest)).value(), largest, 1e-9);
   EXPECT_FALSE(sized.largest_for(200.0).has_value());
+}
+
+// The integral of 1 / size³ over a box beside one of its faces, and around its middle, in closed form.
+TEST(SizedExtent, CountsBlocksOfSpaceAsTheIntegralDoes) {
+  const Room<3> body{{}, {{0.2, 0.1, 0.1}}, 0.2 * 0.1 * 0.1, {}};
+  const FinerPart left{.pieces = {{{{0, 0, 0}}, {{0, 0.1, 0}}, {{0, 0.1, 0.1}}, {{0, 0, 0.1}}}},
+                       .size = kFine,
+                       .distance = kReach};
+  const double largest = 6e-3, growing = (largest - kFine) / kSlopeOfSize, cube = std::pow(largest, 3);
+  const double expected = 0.01 * (kReach / std::pow(kFine, 3) +
+                                  (1 / (kFine * kFine) - 1 / (largest * largest)) / (2.0 * kSlopeOfSize) +
+                                  (0.2 - kReach - growing) / cube);
+  const SizedExtent sized(body, {left});
+  EXPECT_NEAR(sized.blocks(largest) / expected, 1.0, 0.02);  // boxes are as wide as a block
+  EXPECT_NEAR(sized.largest_for(sized.blocks(largest)).value(), largest, 1e-9);
+  const FinerPart middle{.pieces = {{{{0.1, 0.05, 0.05}}}}, .size = kFine, .distance = kReach};
+  constexpr int kShells = 10'000;
+  double around = body.extent / cube;
+  for (int i = 0; i < kShells; ++i) {
+    const double width = (kReach + growing) / kShells, r = (i + 0.5) * width;
+    const double size = kFine + kSlopeOfSize * std::max(0.0, r - kReach);
+    around += 4.0 * std::numbers::pi * r * r * width * (1.0 / std::pow(size, 3) - 1.0 / cube);
+  }
+  EXPECT_NEAR(SizedExtent(body, {middle}).blocks(largest) / around, 1.0, 0.03);
+}
+
+// Promise: places are drawn as often as there are blocks, in space too.
+TEST(PlaceDraw, DrawsPlacesAsOftenAsThereAreBlocks) {
+  const Room<3> body{{}, {{0.2, 0.1, 0.1}}, 0.2 * 0.1 * 0.1, {}};
+  const FinerPart left{.pieces = {{{{0, 0, 0}}, {{0, 0.1, 0}}, {{0, 0.1, 0.1}}, {{0, 0, 0.1}}}},
+                       .size = kFine,
+                       .distance = kReach};
+  const BlockSizes sizes(4e-3, 6e-3, {left});
+  const PlaceDraw draw(body, sizes);
+  Random random(1);
+  constexpr int kDraws = 20'000;
+  int fine = 0;
+  for (int i = 0; i < kDraws; ++i) fine += draw.draw(random)[0] < kReach ? 1 : 0;
+  const double share = 0.01 * kReach / std::pow(kFine, 3) / SizedExtent(body, {left}).blocks(6e-3);
+  EXPECT_NEAR(fine / double(kDraws), share, 4.0 * std::sqrt(share / kDraws) + 0.02 * share);
 }
 
 TEST(FinerBlocks, HaveTheirSizesNearAndFarAndTileTheBody) {
@@ -186,7 +255,8 @@ TEST(FinerBlocks, FollowGrains) {
   p.superposition = Superposition::follow;
   p.blocks.finer.push_back({.pieces = {{{{0, 0}}, {{0, 0.3}}}}, .size = 2.5e-3, .distance = 20e-3});
   p.blocks.largest_size = 5e-3;
-  p.blocks.count = static_cast<int>(std::lround(SizedArea(p.region, p.blocks.finer).blocks(5e-3)));
+  p.blocks.count =
+      static_cast<int>(std::lround(SizedExtent(room_of_blocks(p.region), p.blocks.finer).blocks(5e-3)));
   const Specimen s = make_specimen(p);
   EXPECT_EQ(std::ssize(s.tessellation.cells), p.blocks.count);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.02 * s.fraction_placed);

@@ -37,6 +37,14 @@ std::string describe_phases(const Specimen& s, const char* blocks, std::size_t b
   return text;
 }
 
+/// Returns the line that tells the sizes of blocks; none where they are alike.
+std::string describe_sizes(const std::vector<double>& sizes) {
+  if (sizes.empty()) return {};
+  const auto [smallest, largest] = std::ranges::minmax(sizes);
+  return fmt::format("                from {:.3f} mm where they are finest to {:.3f} mm\n", kMilli * smallest,
+                     kMilli * largest);
+}
+
 std::string describe_specimen(const specimen::Specimen& s) {
   const auto& m = s.metrics;
   std::string text = describe_phases(s, "blocks", s.tessellation.cells.size(), s.aggregates.size(), "area");
@@ -44,11 +52,7 @@ std::string describe_specimen(const specimen::Specimen& s) {
     text += fmt::format("                {}\n", skeleton);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
-  if (!s.size.empty()) {
-    const auto [smallest, largest] = std::ranges::minmax(s.size);
-    text += fmt::format("                from {:.3f} mm where they are finest to {:.3f} mm\n",
-                        kMilli * smallest, kMilli * largest);
-  }
+  text += describe_sizes(s.size);
   text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",
                       kMilli * m.shortest_edge, m.shortest_edge_cell, kMilli * m.shortest_edge_at[0],
                       kMilli * m.shortest_edge_at[1]);
@@ -69,6 +73,7 @@ std::string describe_specimen(const solid::SolidSpecimen& s) {
         kMilli * c.from, kMilli * c.to, c.asked, c.placed, c.stones, c.superposed, c.without_a_block);
   text += fmt::format("blocks          mean size {:.3f} mm, {:.1f} zones, faces of up to {} corners\n",
                       kMilli * m.mean_size, m.zones_per_block, m.most_corners);
+  text += describe_sizes(s.size);
   text += fmt::format(
       "                shortest edge {:.3g} mm, lowest zone {:.3g} mm, of block {}; {} seeds redrawn\n",
       kMilli * m.shortest_edge, kMilli * m.lowest_zone, m.lowest_zone_cell, m.seeds_redrawn);

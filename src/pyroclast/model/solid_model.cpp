@@ -128,7 +128,8 @@ const char* quarter_of(const Vec<3>& normal) {
 
 std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex& complex,
                                         const std::vector<int>& material,
-                                        const std::function<int(int, int)>& interface_between) {
+                                        const std::function<int(int, int)>& interface_between,
+                                        const std::vector<double>& size) {
   const int first_block = model.block_count();
   std::vector<std::vector<int>> vertices;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
@@ -145,7 +146,8 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
   for (const auto& [corners, inner, outer, side] : complex.faces)
     if (outer >= 0)
       model.join_faces(gridpoints(inner, corners), gridpoints(outer, corners),
-                       interface_between(material[inner], material[outer]));
+                       interface_between(material[inner], material[outer]),
+                       size.empty() ? 0.0 : 0.5 * (size[inner] + size[outer]));
   return vertices;
 }
 
@@ -176,8 +178,8 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
 
   add_bearings(true);
   const int first_block = model.block_count();
-  const auto vertices =
-      add_cells(model, complex, specimen.phase, [&](int a, int b) { return table.between(a, b); });
+  const auto vertices = add_cells(
+      model, complex, specimen.phase, [&](int a, int b) { return table.between(a, b); }, specimen.size);
   name_blocks(model, first_block);
   name_contacts(model, "specimen", 0);
   add_bearings(false);
@@ -211,7 +213,8 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
       std::vector<int> opposite;
       for (const int v : corners) opposite.push_back(blocks[i].inner(v));
       const int first_contact = model.contact_count();
-      model.join_faces(its, opposite, blocks[i].interface);
+      model.join_faces(its, opposite, blocks[i].interface,
+                       specimen.size.empty() ? 0.0 : specimen.size[inner]);
       name_contacts(model, bearings[i].name, first_contact);
     }
   }

@@ -15,10 +15,12 @@ inline constexpr std::array<const char*, 4> kQuartersOfRim{"rim_left", "rim_righ
 /// Adds the cells of a complex to a model as blocks, cell by cell, and joins the faces of neighbours.
 /// \param material           material of each cell, index into Model::material_names
 /// \param interface_between  function from two materials to an index into Model::interface_names
+/// \param size               size that each cell was to have, m, which contacts follow; empty: all alike
 /// \return for each cell, the vertices of the complex at which its gridpoints stand, in their order
 std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex& complex,
                                         const std::vector<int>& material,
-                                        const std::function<int(int, int)>& interface_between);
+                                        const std::function<int(int, int)>& interface_between,
+                                        const std::vector<double>& size = {});
 
 /// Makes a solid specimen and its bearings into a model, as make_concrete_model does in the plane, with the
 /// same sets. A bearing is a prism over the polygons of the blocks on its side; its sets are in the order of

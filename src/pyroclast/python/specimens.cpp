@@ -131,6 +131,7 @@ void bind_solid_specimens(py::module_& m) {
                              })
       .def_property_readonly("cells", [](const SolidSpecimen& s) { return arrays_of(s.complex.cells); })
       .def_property_readonly("phase", [](const SolidSpecimen& s) { return array_of(s.phase); })
+      .def_readonly("block_size", &SolidSpecimen::size)
       .def_property_readonly("phases", [](const SolidSpecimen& s) { return s.phases; })
       .def_property_readonly("shares", [](const SolidSpecimen& s) { return s.fraction; })
       .def_property_readonly("volume", [](const SolidSpecimen& s) { return s.body.volume(); })

@@ -110,6 +110,10 @@ void add_common(nlohmann::ordered_json& json, const Specimen& s, std::size_t blo
   json["covered_fraction"] = s.covered_fraction;
   for (std::size_t i = 0; i < s.phases.size(); ++i) json["fraction"][s.phases[i]] = s.fraction[i];
   json["mean_block_size_m"] = s.metrics.mean_size;
+  if (s.size.empty()) return;
+  const auto [smallest, largest] = std::ranges::minmax(s.size);
+  json["smallest_block_size_m"] = smallest;
+  json["largest_block_size_m"] = largest;
 }
 
 void write_made(const std::filesystem::path& folder, const specimen::Specimen& s,
@@ -118,11 +122,6 @@ void write_made(const std::filesystem::path& folder, const specimen::Specimen& s
   json["width_m"] = s.region.box().width();
   json["height_m"] = s.region.box().height();
   add_common(json, s, s.tessellation.cells.size(), s.aggregates.size());
-  if (!s.size.empty()) {
-    const auto [smallest, largest] = std::ranges::minmax(s.size);
-    json["smallest_block_size_m"] = smallest;
-    json["largest_block_size_m"] = largest;
-  }
   json["mean_edge_m"] = s.metrics.mean_edge;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
   json["edges_removed"] = s.metrics.edges_removed;

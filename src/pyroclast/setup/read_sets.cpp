@@ -12,18 +12,6 @@ namespace pyroclast {
 
 namespace {
 
-/// Reads the two places by which a set is chosen. In a solid two pairs stand for all z between or along them.
-std::array<Vec<3>, 2> read_two(const Section& s, const char* key, const DeckSpace& space, SetParameters& set,
-                               Meaning meaning) {
-  const auto places = s.places(key, unit::length, 2, space.of_extrusion(), meaning);
-  if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
-  if (places.size() < 2) return {};
-  if (places[0].z.has_value() != places[1].z.has_value())
-    s.error(key, "must be two pairs, which stand for all z, or two places [x, y, z]");
-  set.is_along_z = space.is_solid() && !places[0].z;
-  return {vec_of(places[0]), vec_of(places[1])};
-}
-
 void read_place_of_set(const Section& s, const DeckSpace& space, SetParameters& set) {
   constexpr const char* kForms[] = {"box", "centre", "line", "nearest"};
   int stated = 0;
@@ -31,23 +19,24 @@ void read_place_of_set(const Section& s, const DeckSpace& space, SetParameters& 
   if (stated > 1) s.error("one of box, centre, line and nearest; not several");
   s.know({"box", "centre", "radius", "line", "nearest"});
   if (s.has("box")) {
-    const auto [low, high] = read_two(
-        s, "box", space, set,
+    const TwoPlaces box = read_two_places(
+        s, "box", space,
         "lower left and upper right corner, which belong to it; in a solid the lower one is in front, "
         "and pairs stand for all z");
-    if (s.ok() && (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]))
-      s.error("box", "is inside out: the lower left corner comes first");
-    set.place = InBox{low, high};
+    require_upright(s, "box", box);
+    set.is_along_z = box.is_along_z;
+    set.place = InBox{box.places[0], box.places[1]};
   } else if (s.has("centre")) {
     const auto centre = s.place("centre", unit::length, space.of_point(), "of a disc, in a solid of a ball");
     set.place = InBall{vec_of(centre.value_or(StatedPlace{})),
                        s.quantity("radius", unit::length, Range::positive(), "of a disc, or ball")};
   } else if (s.has("line")) {
-    const auto [from, to] =
-        read_two(s, "line", space, set,
-                 "the ends of a straight line, which belong to it; in a solid pairs stand for the plane "
-                 "through it along z");
-    set.place = OnLine{from, to};
+    const TwoPlaces line = read_two_places(
+        s, "line", space,
+        "the ends of a straight line, which belong to it; in a solid pairs stand for the plane "
+        "through it along z");
+    set.is_along_z = line.is_along_z;
+    set.place = OnLine{line.places[0], line.places[1]};
   } else if (s.has("nearest")) {
     const auto nearest =
         s.place("nearest", unit::length, space.of_point(), "the items nearest to this place");

@@ -53,4 +53,19 @@ Vec<3> vec_of(const StatedPlace& place) {
   return {{place.x, place.y, place.z.value_or(0.0)}};
 }
 
+TwoPlaces read_two_places(const Section& s, const char* key, const DeckSpace& space, Meaning meaning) {
+  const auto places = s.places(key, unit::length, 2, space.of_extrusion(), meaning);
+  if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
+  if (places.size() < 2) return {};
+  if (places[0].z.has_value() != places[1].z.has_value())
+    s.error(key, "must be two pairs, which stand for all z, or two places [x, y, z]");
+  return {{vec_of(places[0]), vec_of(places[1])}, space.is_solid() && !places[0].z};
+}
+
+void require_upright(const Section& s, const char* key, const TwoPlaces& box) {
+  const auto& [low, high] = box.places;
+  if (s.ok() && (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]))
+    s.error(key, "is inside out: the lower left corner comes first");
+}
+
 }  // namespace pyroclast

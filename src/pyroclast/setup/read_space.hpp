@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -30,5 +31,17 @@ DeckSpace read_space(const Section& root);
 
 /// Returns a place as a vector, m.
 Vec<3> vec_of(const StatedPlace& place);
+
+/// Two places of a deck, m.
+struct TwoPlaces {
+  std::array<Vec<3>, 2> places{};
+  bool is_along_z = false;  ///< true where they stand for all z of a solid
+};
+
+/// Reads two places. In a solid two pairs stand for all z between or along them.
+TwoPlaces read_two_places(const Section& s, const char* key, const DeckSpace& space, Meaning meaning);
+
+/// Records an error where two places are not the lower and the upper corner of a box.
+void require_upright(const Section& s, const char* key, const TwoPlaces& box);
 
 }  // namespace pyroclast

@@ -682,17 +682,44 @@ struct ReadBlocks {
 /// Least number of sides of the polygon by which a solid has a circle.
 constexpr double kFewestSides = 24.0;
 
-/// Returns a polygon of a circle's area around [0, 0], with sides about a block long and the seats of
-/// bearings.
-specimen::Region round_section(double diameter, double length, const ReadBlocks& read,
-                               std::span<const ReadBearing> bearings) {
-  const double area = 0.25 * std::numbers::pi * diameter * diameter;
-  const double side = std::min(read.size_in_solid(area * length), std::numbers::pi * diameter / kFewestSides);
-  const Circle circle{{}, diameter};
-  const auto rim = specimen::Region::polygon(
-      specimen::circle_corners(circle.centre, circle.diameter, side, angles_of(circle, bearings)), {"rim"},
-      true);
-  return with_seats(rim, std::array{circle}, bearings);
+/// Returns the corners of a circle, with sides about a block long.
+/// \param sizes  sizes of blocks where they are finer in parts; else they are of `size`
+template <class SizeAt>
+std::vector<Vec<2>> corners_of(const Circle& circle, double size, const specimen::BlockSizes* sizes,
+                               std::span<const ReadBearing> bearings, SizeAt size_at) {
+  const auto angles = angles_of(circle, bearings);
+  if (!sizes) return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
+  return specimen::circle_corners(circle.centre, circle.diameter, size_at, angles);
+}
+
+/// Round body of space.
+struct RoundBody {
+  Circle circle;
+  solid::Prism::Axis axis;
+  double length;  ///< m
+};
+
+/// Number of places along a round body at which it is asked for the size of blocks.
+constexpr int kPlacesAlong = 64;
+
+/// Returns a polygon of a circle's area, with the seats of bearings. Its sides are about as long as the
+/// largest blocks along them: narrow strips of surface would make flat blocks.
+specimen::Region round_section(const RoundBody& body, const ReadBlocks& read,
+                               const specimen::BlockSizes* sizes, std::span<const ReadBearing> bearings) {
+  const double diameter = body.circle.diameter, area = 0.25 * std::numbers::pi * diameter * diameter,
+               longest = std::numbers::pi * diameter / kFewestSides;
+  const auto side = [&](const Vec<2>& place) {
+    double largest = 0.0;
+    for (int i = 0; i < kPlacesAlong; ++i) {
+      const double along = (i + 0.5) / kPlacesAlong * body.length;
+      largest = std::max(largest, sizes->at(solid::in_space(place, body.axis, along)));
+    }
+    return std::min(largest, longest);
+  };
+  const double even = std::min(read.size_in_solid(area * body.length), longest);
+  const auto rim =
+      specimen::Region::polygon(corners_of(body.circle, even, sizes, bearings, side), {"rim"}, true);
+  return with_seats(rim, std::array{body.circle}, bearings);
 }
 
 /// Returns the body of blocks that were made before. A disc has the seats of bearings, whose ends are corners
@@ -713,19 +740,21 @@ std::vector<std::string> side_names(std::size_t count) {
 }
 
 /// Returns the solid of a deck; a cube stands in for an error.
+/// \param sizes  sizes of blocks where they are finer in parts
 solid::Prism make_prism(const Section& s, const Outline& o, const DeckSpace& space, const ReadBlocks& read,
-                        std::span<const ReadBearing> bearings) {
+                        std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes = nullptr) {
   using enum solid::Prism::Axis;
   const solid::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
   if (!s.ok()) return stand_in;
   try {
     if (o.polyhedra) return body_of(*o.polyhedra, bearings);
-    if (o.shape == Shape::cylinder) return {round_section(o.diameter, o.height, read, {}), y, o.height};
+    if (o.shape == Shape::cylinder)
+      return {round_section({{{}, o.diameter}, y, o.height}, read, sizes, {}), y, o.height};
     const double depth = *space.depth;
     if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
     if (o.shape == Shape::polygon)
       return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
-    return {round_section(o.diameter, depth, read, bearings), z, depth};
+    return {round_section({{{}, o.diameter}, z, depth}, read, sizes, bearings), z, depth};
   } catch (const Error& error) {
     if (o.shape == Shape::polygon)
       s.error("corners", error.what());
@@ -755,10 +784,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const ReadBlock
     std::vector<Circle> circles;
     const auto round = [&](const Circle& circle, double size) {
       circles.push_back(circle);
-      const auto angles = angles_of(circle, bearings);
-      if (!sizes) return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
-      const auto side = [&](const Vec<2>& place) { return sizes->at(place); };
-      return specimen::circle_corners(circle.centre, circle.diameter, side, angles);
+      return corners_of(circle, size, sizes, bearings, [&](const Vec<2>& place) { return sizes->at(place); });
     };
     const double area =
         std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
@@ -936,34 +962,37 @@ void read_regularity(const Section& s, const DeckSpace& space, specimen::BlockPa
 constexpr const char* kTip = "_tip";
 
 /// Reads [[blocks.finer]].
-std::vector<ReadFiner> read_finer(const Section& blocks) {
+std::vector<ReadFiner> read_finer(const Section& blocks, const DeckSpace& space) {
   std::vector<ReadFiner> all;
-  for (const Section& s :
-       blocks.optional_sections("finer",
-                                "parts near which blocks are finer, any number, in the plane; see "
-                                "[Finer blocks](../do/bodies.md#finer-blocks)")) {
+  for (const Section& s : blocks.optional_sections("finer",
+                                                   "parts near which blocks are finer, any number; see "
+                                                   "[Finer blocks](../do/bodies.md#finer-blocks)")) {
     ReadFiner finer{s, {}};
     int stated = 0;
     for (const char* const key : {"near", "box", "line", "at"}) stated += s.has(key) ? 1 : 0;
     if (stated > 1) s.error("one of near, box, line and at; not several");
     s.know({"box", "line", "at"});
-    const auto two = [&](const char* key, Meaning meaning) -> std::array<Vec<2>, 2> {
-      const auto places = vecs(s.places(key, unit::length, 2, meaning));
-      if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
-      if (places.size() < 2) return {};
-      return {places[0], places[1]};
-    };
     if (s.has("box")) {
-      const auto [low, high] =
-          two("box", "lower left and upper right corner of a place near which blocks are finer");
-      if (s.ok() && (low[0] > high[0] || low[1] > high[1]))
-        s.error("box", "is inside out: the lower left corner comes first");
-      finer.part.box = {low, high};
+      const TwoPlaces box = read_two_places(s, "box", space,
+                                            "lower left and upper right corner of a place near which blocks "
+                                            "are finer; in a solid the lower one "
+                                            "is in front, and pairs stand for all z");
+      finer.part.box = box.places;
+      finer.part.is_along_z = box.is_along_z;
+      require_upright(s, "box", box);
     } else if (s.has("line")) {
-      finer.part.pieces.push_back(two("line", "ends of a straight line near which blocks are finer"));
+      const TwoPlaces line = read_two_places(
+          s, "line", space,
+          "ends of a straight line near which blocks are finer; in a solid pairs stand for the plane through "
+          "it along z");
+      finer.part.pieces.push_back({line.places[0], line.places[1]});
+      finer.part.is_along_z = line.is_along_z;
     } else if (s.has("at")) {
-      const Vec<2> at = read_place(s, "at", "a point near which blocks are finer");
-      finer.part.pieces.push_back({at, at});
+      const auto at = s.place("at", unit::length, space.of_extrusion(),
+                              "a point near which blocks are finer; in a solid a pair stands for the line "
+                              "through it along z");
+      finer.part.pieces.push_back({vec_of(at.value_or(StatedPlace{}))});
+      finer.part.is_along_z = space.is_solid() && at && !at->z;
     } else {
       finer.part.name = s.text(
           "near",
@@ -971,7 +1000,8 @@ std::vector<ReadFiner> read_finer(const Section& blocks) {
           "and `_tip`), `outline`, or a set of the deck");
     }
     finer.part.size = s.quantity("size", unit::length, Range::positive(),
-                                 "size of blocks there, the root of their area; less than elsewhere");
+                                 "size of blocks there, the root of their area, in a solid of their volume; "
+                                 "less than elsewhere");
     finer.part.distance = s.quantity(
         "distance", unit::length, Range::positive(),
         "distance up to which blocks have this size; beyond, each is larger than the one before by "
@@ -1035,10 +1065,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
   b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
                              "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
                              "spacing; 0 makes a Voronoi tessellation");
-  if (s.has("finer") && space.is_solid())
-    s.error("finer", "blocks of a solid cannot be finer in parts yet");
-  else
-    read.finer = read_finer(s);
+  read.finer = read_finer(s, space);
   return read;
 }
 
@@ -1052,14 +1079,14 @@ int count_in_range(const Section& blocks, double count) {
 }
 
 /// Returns the names of all parts near which blocks may be finer.
-std::vector<std::string> parts_of(const specimen::Region& region, std::span<const ReadBearing> bearings,
+std::vector<std::string> parts_of(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings,
                                   std::span<const SetParameters> sets) {
   std::vector<std::string> names{"outline"};
   const auto add = [&](const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
-  for (const specimen::Side& side : region.sides()) add(side.name);
-  for (const specimen::Notch& notch : region.notches()) {
+  for (const std::string& side : specimen.sides()) add(side);
+  for (const specimen::Notch& notch : specimen.region.notches()) {
     add(notch.name);
     add(notch.name + kTip);
   }
@@ -1068,81 +1095,110 @@ std::vector<std::string> parts_of(const specimen::Region& region, std::span<cons
   return names;
 }
 
+/// Returns a piece of the plane, of one place or two.
+specimen::FinerPiece piece_of(const Vec<2>& from, const Vec<2>& to) {
+  return {resized<3>(from), resized<3>(to)};
+}
+
+/// Adds the pieces of a body's surface that are of a side, or the whole surface, "outline".
+void add_side(const AskedSpecimen& specimen, const std::string& name, specimen::FinerPart& part) {
+  const bool is_all = name == "outline";
+  if (specimen.prism) {
+    const solid::Prism& prism = *specimen.prism;
+    for (std::size_t plane = 0; plane < prism.planes().size(); ++plane)
+      for (int side = prism.planes()[plane].side; side >= 0; side = prism.whole_of(side))
+        if (is_all || prism.sides()[side] == name) {
+          part.pieces.push_back(prism.corners_on(plane));
+          break;
+        }
+    return;
+  }
+  const auto& sides = specimen.region.sides();
+  for (const specimen::Piece& piece : specimen.region.pieces())
+    for (int side = piece.side; side >= 0; side = sides[side].part_of)
+      if (is_all || sides[side].name == name) {
+        part.pieces.push_back(piece_of(piece.from, piece.to));
+        break;
+      }
+}
+
 /// Gives finer blocks the place of a part by its name. A set without a place has that of the set that it lies
 /// within. Records an error where there is none.
-void find_part(const specimen::Region& region, std::span<const ReadBearing> bearings,
+void find_part(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings,
                std::span<const SetParameters> sets, std::string name, ReadFiner& finer) {
   specimen::FinerPart& part = finer.part;
   if (const auto set = std::ranges::find(sets, name, &SetParameters::name); set != sets.end()) {
-    const auto point = [](const Vec<3>& place) { return resized<2>(place); };
     const auto before = sets.first(static_cast<std::size_t>(set - sets.begin()));
     bool has_place = true;
+    part.is_along_z = set->is_along_z;
     std::visit(Overloaded{[&](const InBox& in) {
-                            part.box = {point(in.low), point(in.high)};
+                            part.box = {in.low, in.high};
                           },
                           [&](const InBall& in) {
-                            part.pieces.push_back({point(in.centre), point(in.centre)});
+                            part.pieces.push_back({in.centre});
                             part.distance += in.radius;
                           },
                           [&](const OnLine& on) {
-                            part.pieces.push_back({point(on.from), point(on.to)});
+                            part.pieces.push_back({on.from, on.to});
                           },
-                          [&](const NearestTo& to) {
-                            part.pieces.push_back({point(to.point), point(to.point)});
-                          },
+                          [&](const NearestTo& to) { part.pieces.push_back({to.point}); },
                           [&](const Everywhere&) { has_place = false; }},
                set->place);
-    if (!has_place) find_part(region, bearings, before, set->within, finer);
+    if (!has_place) find_part(specimen, bearings, before, set->within, finer);
     return;
   }
   if (const auto b = std::ranges::find(bearings, name, [](const ReadBearing& r) { return r.bearing.name; });
       b != bearings.end())
     name = b->bearing.side;
-  const auto& sides = region.sides();
-  for (const specimen::Piece& piece : region.pieces())
-    for (int side = piece.side; side >= 0; side = sides[side].part_of)
-      if (name == "outline" || sides[side].name == name) {
-        part.pieces.push_back({piece.from, piece.to});
-        break;
-      }
-  for (const specimen::Notch& notch : region.notches()) {
-    if (notch.name == name) part.pieces.push_back({notch.mouth, notch.tip});
-    if (notch.name + kTip == name) part.pieces.push_back({notch.tip, notch.tip});
+  add_side(specimen, name, part);
+  for (const specimen::Notch& notch : specimen.region.notches()) {
+    if (notch.name == name) part.pieces.push_back(piece_of(notch.mouth, notch.tip));
+    if (notch.name + kTip == name) part.pieces.push_back({resized<3>(notch.tip)});
   }
   if (!part.pieces.empty()) return;
-  const std::vector<std::string> names = parts_of(region, bearings, sets);
+  const std::vector<std::string> names = parts_of(specimen, bearings, sets);
   finer.section.error("near", fmt::format("must be one of {}; got \"{}\"{}", quoted_list(names), part.name,
                                           did_you_mean(part.name, names, "; ")));
 }
 
+/// Finds the number of all blocks, or the size of those far from finer ones. Records an error where blocks
+/// are too few.
+template <int Dim>
+void find_sizes(const Section& blocks, const specimen::Room<Dim>& body, double size,
+                specimen::BlockParameters& b) {
+  const specimen::SizedExtent<Dim> extent(body, b.finer);
+  if (size > 0.0) {
+    b.largest_size = size;
+    b.count = count_in_range(blocks, extent.blocks(size));
+    return;
+  }
+  const auto largest = extent.largest_for(b.count);
+  if (!largest)
+    blocks.error("count",
+                 fmt::format("the finer blocks, and those that grow from them by a fifth from block to "
+                             "block, are {:.0f} already: take more, or a smaller distance",
+                             extent.blocks(std::numeric_limits<double>::infinity())));
+  b.largest_size = largest.value_or(0.0);
+}
+
 /// Makes blocks finer in parts: finds the places of these, and the number of all blocks, or the size of those
-/// far from them. Records an error where blocks do not become finer, or are too few.
-void make_finer(const Section& s, const Section& blocks, const Outline& outline, ReadBlocks& read,
-                std::span<const ReadBearing> bearings, std::span<const SetParameters> sets,
-                AskedSpecimen& p) {
-  if (!s.ok() || !blocks.ok()) return;
+/// far from them. Tells whether it could; records an error where blocks do not become finer, or are too few.
+bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBearing> bearings,
+                std::span<const SetParameters> sets, const AskedSpecimen& p) {
   specimen::BlockParameters& b = read.parameters;
   for (ReadFiner& finer : read.finer) {
-    if (!finer.part.name.empty()) find_part(p.region, bearings, sets, finer.part.name, finer);
+    if (!finer.part.name.empty()) find_part(p, bearings, sets, finer.part.name, finer);
     b.finer.push_back(finer.part);
   }
   const auto all_ok = [&] {
-    return std::ranges::all_of(read.finer, [](const ReadFiner& finer) { return finer.section.ok(); });
+    return blocks.ok() &&
+           std::ranges::all_of(read.finer, [](const ReadFiner& finer) { return finer.section.ok(); });
   };
-  if (!all_ok()) return b.finer.clear();
-  const specimen::SizedArea area(p.region, b.finer);
-  if (read.size > 0.0) {
-    b.largest_size = read.size;
-    b.count = count_in_range(blocks, area.blocks(read.size));
-  } else {
-    const auto largest = area.largest_for(b.count);
-    if (!largest)
-      blocks.error("count",
-                   fmt::format("the finer blocks, and those that grow from them by a fifth from block to "
-                               "block, are {:.0f} already: take more, or a smaller distance",
-                               area.blocks(std::numeric_limits<double>::infinity())));
-    b.largest_size = largest.value_or(0.0);
-  }
+  if (!all_ok()) return false;
+  if (p.prism)
+    find_sizes(blocks, solid::room_in(*p.prism), read.size, b);
+  else
+    find_sizes(blocks, specimen::room_of_blocks(p.region), read.size, b);
   for (const ReadFiner& finer : read.finer)
     if (blocks.ok() && finer.part.size >= b.largest_size)
       finer.section.error(
@@ -1150,9 +1206,7 @@ void make_finer(const Section& s, const Section& blocks, const Outline& outline,
           fmt::format("must be less than the size of the other blocks, {:.4g} mm{}; got {:.4g} mm",
                       1e3 * b.largest_size, read.size > 0.0 ? "" : ", which follows from blocks.count",
                       1e3 * finer.part.size));
-  if (!all_ok() || !blocks.ok()) return b.finer.clear();
-  const specimen::BlockSizes sizes(std::sqrt(p.region.area() / b.count), b.largest_size, b.finer);
-  p.region = make_region(s, outline, read, bearings, &sizes);
+  return all_ok();
 }
 
 /// Returns the number of blocks of a size. Records an error where it is out of range.
@@ -1272,11 +1326,23 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   p.inclusions = read_inclusions(root, folder, space);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
   ReadBlocks read = read_blocks(blocks, folder, outline, space, aggregates || !p.inclusions.empty());
-  if (space.is_solid())
-    p.prism = make_prism(s, outline, space, read, bearings);
-  else
-    p.region = make_region(s, outline, read, bearings);
-  if (!read.finer.empty()) make_finer(s, blocks, outline, read, bearings, sets, p);
+  const auto make_body = [&](const specimen::BlockSizes* sizes) {
+    if (space.is_solid())
+      p.prism = make_prism(s, outline, space, read, bearings, sizes);
+    else
+      p.region = make_region(s, outline, read, bearings, sizes);
+  };
+  make_body(nullptr);
+  if (!read.finer.empty() && s.ok() && blocks.ok()) {
+    if (make_finer(blocks, read, bearings, sets, p)) {
+      const auto& [count, finer, largest] =
+          std::tie(read.parameters.count, read.parameters.finer, read.parameters.largest_size);
+      const specimen::BlockSizes sizes(std::pow(p.extent() / count, 1.0 / p.dimension()), largest, finer);
+      make_body(&sizes);
+    } else {
+      read.parameters.finer.clear();
+    }
+  }
   p.blocks = std::move(read.parameters);
   if (read.size > 0.0 && p.blocks.count == 0 && s.ok() && blocks.ok())
     p.blocks.count = count_of(blocks, p, read.size);

@@ -24,6 +24,9 @@ using specimen::list_in;
 /// are closer than 1e-7 of it became one.
 constexpr double kOnSide = 1e-6;
 
+/// Name of the list of the sizes that cells were to have.
+constexpr const char* kBlockSize = "block_size_m";
+
 /// Reads the coordinates of a place; throws Json::exception for another number of them.
 template <int Count>
 Vec<Count> place_in_list(const Json& item) {
@@ -187,6 +190,7 @@ std::string polyhedra_text(const SolidSpecimen& specimen) {
   for (const CellFace& face : specimen.complex.faces) json["faces"].push_back(face.corners);
   json["cells"] = specimen.complex.cells;
   json["phase"] = specimen.phase;
+  if (!specimen.size.empty()) json[kBlockSize] = specimen.size;
   return json.dump() + "\n";
 }
 
@@ -217,6 +221,16 @@ Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
       if (std::cmp_greater_equal(read.phase[c], read.phases.size()))
         throw Error(fmt::format("cell {} (from 0) is of phase {} (from 0), but there are {}", c,
                                 read.phase[c], read.phases.size()));
+    if (json.contains(kBlockSize)) {
+      read.size = list_in(json, kBlockSize, "a size in m", specimen::real_in);
+      if (read.size.size() != complex.cells.size())
+        throw Error(
+            fmt::format("there are {} cells, but the sizes of {}", complex.cells.size(), read.size.size()));
+      for (std::size_t c = 0; c < read.size.size(); ++c)
+        if (!(read.size[c] > 0.0) || !std::isfinite(read.size[c]))
+          throw Error(
+              fmt::format("cell {} (from 0) has the size {}; it must be greater than 0", c, read.size[c]));
+    }
     for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
     find_neighbours(complex);
   });
@@ -236,6 +250,7 @@ SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body) {
   require_valid(specimen.complex, body, what);
   specimen.phases = std::move(polyhedra.phases);
   specimen.phase = std::move(polyhedra.phase);
+  specimen.size = std::move(polyhedra.size);
   specimen.fraction.assign(specimen.phases.size(), 0.0);
   for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell)
     specimen.fraction[specimen.phase[cell]] += volume(specimen.complex, cell) / body.volume();

@@ -14,7 +14,9 @@ struct Polyhedra {
   Prism body;
   Complex complex;  ///< its faces are on no side yet
   std::vector<std::string> phases;
-  std::vector<int> phase;   ///< phase of each cell, index into `phases`
+  std::vector<int> phase;  ///< phase of each cell, index into `phases`
+  /// Size that each cell was to have, m, as SolidSpecimen has it; empty where blocks are alike.
+  std::vector<double> size = {};
   std::string origin = {};  ///< text that begins messages, such as the name of a file; may be empty
 };
 
@@ -22,7 +24,8 @@ struct Polyhedra {
 /// each), `faces` (the vertices around each, from 0), `cells` (the faces of each, from 0) and `phase` (of
 /// each cell, from 0), and the table `body`: `axis` ("y" or "z"), `length_m` along it, `section_m` (the
 /// corners of its section, counter-clockwise) and `sides` (their names from each corner on, or one name of a
-/// round section). Stretches of sides are no part of it.
+/// round section). The list `block_size_m` has the size that each block was to have, where they are not
+/// alike. Stretches of sides are no part of it.
 std::string polyhedra_text(const SolidSpecimen& specimen);
 
 /// Reads a file of blocks in space, and turns each face counter-clockwise seen from outside of the first of

@@ -39,7 +39,7 @@ Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std:
   for (const auto& [from, to, side] : section_.pieces()) {
     const Vec<2> along = to - from;
     const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
-    planes_.push_back({in_space(out, 0.0), dot(out, from), side});
+    planes_.push_back({in_space(out, axis_, 0.0), dot(out, from), side});
   }
   const int first_end = static_cast<int>(sides_.size());
   for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"}) {
@@ -47,15 +47,15 @@ Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std:
       throw Error(fmt::format("a side of the section has the name of an end of the prism, \"{}\"", end));
     sides_.emplace_back(end);
   }
-  planes_.push_back({in_space({}, -1.0), 0.0, first_end});
-  planes_.push_back({in_space({}, 1.0), length, first_end + 1});
-  low_ = in_space(section_.box().low, 0.0);
-  high_ = in_space(section_.box().high, length);
+  planes_.push_back({in_space({}, axis_, -1.0), 0.0, first_end});
+  planes_.push_back({in_space({}, axis_, 1.0), length, first_end + 1});
+  low_ = in_space(section_.box().low, axis_, 0.0);
+  high_ = in_space(section_.box().high, axis_, length);
   volume_ = section_.area() * length;
 }
 
-Vec<3> Prism::in_space(const Vec<2>& of_section, double along) const {
-  if (axis_ == Axis::z) return {{of_section[0], of_section[1], along}};
+Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along) {
+  if (axis == Prism::Axis::z) return {{of_section[0], of_section[1], along}};
   return {{of_section[1], along, of_section[0]}};
 }
 
@@ -63,6 +63,24 @@ double Prism::distance(const Vec<3>& point) const {
   double farthest = -std::numeric_limits<double>::infinity();
   for (const Plane& plane : planes_) farthest = std::max(farthest, dot(plane.normal, point) - plane.offset);
   return farthest;
+}
+
+std::vector<Vec<3>> Prism::corners_on(std::size_t plane) const {
+  const auto& pieces = section_.pieces();
+  if (plane < pieces.size()) {
+    const auto& [from, to, side] = pieces[plane];
+    return {in_space(from, axis_, 0.0), in_space(to, axis_, 0.0), in_space(to, axis_, length()),
+            in_space(from, axis_, length())};
+  }
+  std::vector<Vec<3>> corners;
+  for (const specimen::Piece& piece : pieces)
+    corners.push_back(in_space(piece.from, axis_, plane == pieces.size() ? 0.0 : length()));
+  return corners;
+}
+
+specimen::Room<3> room_in(const Prism& body) {
+  return {body.low(), body.high(), body.volume(),
+          [&body](const Vec<3>& point) { return body.distance(point); }};
 }
 
 }  // namespace pyroclast::solid

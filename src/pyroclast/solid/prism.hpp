@@ -5,6 +5,7 @@
 
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/specimen/region.hpp"
+#include "pyroclast/specimen/room.hpp"
 
 namespace pyroclast::solid {
 
@@ -36,6 +37,8 @@ class Prism {
   const std::vector<Plane>& planes() const { return planes_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
+  /// Returns the corners around the face on a plane, m.
+  std::vector<Vec<3>> corners_on(std::size_t plane) const;
   double length() const { return planes_.back().offset; }  ///< Returns the length along the axis, m.
   double volume() const { return volume_; }                ///< Returns the volume, m³.
   const specimen::Region& section() const { return section_; }
@@ -44,8 +47,6 @@ class Prism {
   double distance(const Vec<3>& point) const;
 
  private:
-  Vec<3> in_space(const Vec<2>& of_section, double along) const;
-
   specimen::Region section_;
   Axis axis_ = Axis::z;
   std::vector<std::string> sides_;
@@ -53,5 +54,12 @@ class Prism {
   Vec<3> low_{}, high_{};
   double volume_ = 0.0;
 };
+
+/// Returns a place of a section in space.
+/// \param along  place along the axis, m
+Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along);
+
+/// Returns the room in a body, which must outlive it.
+specimen::Room<3> room_in(const Prism& body);
 
 }  // namespace pyroclast::solid

@@ -31,29 +31,34 @@ constexpr double kRounding = 1e-9;
 /// Edge of a complex that is too short.
 struct ShortEdge {
   std::array<int, 2> ends;  ///< vertices, ascending
-  double length;            ///< m
+  double length;            ///< over the relative size of the blocks there, m
 };
 
 /// Complex whose vertices merge and move. Faces that have vanished have no corners until `clean`.
 class CellRegulariser {
  public:
   CellRegulariser(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                  const RegularCells& asked)
+                  const RegularCells& asked, const specimen::BlockSizes& sizes)
       : complex_(complex),
         body_(body),
         asked_(asked),
         size_(std::cbrt(body.volume() / static_cast<double>(complex.cells.size()))),
         planes_(complex.vertices.size()),
-        faces_at_(complex.vertices.size()),
-        way_(complex.vertices.size(), kFirstWay * size_) {
+        faces_at_(complex.vertices.size()) {
+    for (const Vec<3>& place : complex.vertices) {
+      relative_.push_back(sizes.relative(place));
+      way_.push_back(kFirstWay * size_ * relative_.back());
+    }
     for (std::size_t f = 0; f < complex.faces.size(); ++f)
       for (const int v : complex.faces[f].corners) {
         faces_at_[v].push_back(static_cast<int>(f));
         if (plane[f] >= 0) planes_[v].push_back(plane[f]);
       }
     for (auto& planes : planes_) sort_unique(planes);
-    for (std::size_t cell = 0; cell < complex.cells.size(); ++cell)
-      flatness_.push_back(flatness(complex, cell, size_));
+    for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
+      size_of_cell_.push_back(size_ * mean_relative(complex.cells[cell]));
+      flatness_.push_back(flatness_of(static_cast<int>(cell)));
+    }
   }
 
   RegularisedCells run() {
@@ -100,12 +105,15 @@ class CellRegulariser {
       }
     sort_unique(edges);
     std::vector<ShortEdge> found;
-    double sum = 0.0;
+    double sum = 0.0, of_sizes = 0.0;
     for (const auto& ends : edges) {
-      found.push_back({ends, norm(at(ends[1]) - at(ends[0]))});
-      sum += found.back().length;
+      const double length = norm(at(ends[1]) - at(ends[0]));
+      const double size = 0.5 * (relative_[ends[0]] + relative_[ends[1]]);
+      found.push_back({ends, length / size});
+      sum += length;
+      of_sizes += size;
     }
-    shortest_ = asked_.shortest_edge * sum / static_cast<double>(edges.size());
+    shortest_ = asked_.shortest_edge * sum / of_sizes;
     std::erase_if(found, [this](const ShortEdge& edge) { return edge.length >= shortest_; });
     std::ranges::stable_sort(found, {}, &ShortEdge::length);
     return found;
@@ -115,7 +123,7 @@ class CellRegulariser {
   bool is_small(const std::vector<int>& corners) const {
     for (std::size_t i = 1; i < corners.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        if (norm(at(corners[i]) - at(corners[j])) >= shortest_) return false;
+        if (norm(at(corners[i]) - at(corners[j])) >= shortest_ * relative_[corners.front()]) return false;
     return !corners.empty();
   }
 
@@ -153,7 +161,7 @@ class CellRegulariser {
         faces_at_[kept].push_back(faces[i]);
       }
     }
-    for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+    for (const int cell : cells) flatness_[cell] = flatness_of(cell);
     return true;
   }
 
@@ -267,12 +275,12 @@ class CellRegulariser {
     }
     if (best.empty()) return;
     loop = best;
-    for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+    for (const int cell : cells) flatness_[cell] = flatness_of(cell);
   }
 
   /// Moves a vertex along the planes of the body on which it lies, where that makes zones rounder.
   void move(int vertex) {
-    if (faces_at_[vertex].empty() || way_[vertex] < kShortestWay * size_) return;
+    if (faces_at_[vertex].empty() || way_[vertex] < kShortestWay * size_ * relative_[vertex]) return;
     const std::vector<int> cells = cells_of(faces_at_[vertex]);
     const double before = known_flatness(cells);
     double least = before;
@@ -290,7 +298,7 @@ class CellRegulariser {
       }
     if (least > (1.0 - kLittle) * before) way_[vertex] *= 0.5;
     if (least < before)
-      for (const int cell : cells) flatness_[cell] = flatness(complex_, cell, size_);
+      for (const int cell : cells) flatness_[cell] = flatness_of(cell);
   }
 
   /// Returns the ways in which a vertex may move: the axes, as far as they lie along its planes.
@@ -321,6 +329,21 @@ class CellRegulariser {
     return cells;
   }
 
+  /// Returns the mean relative size of blocks at the corners of a cell's faces.
+  double mean_relative(const std::vector<int>& faces) const {
+    double sum = 0.0, corners = 0.0;
+    for (const int f : faces)
+      for (const int v : complex_.faces[f].corners) {
+        sum += relative_[v];
+        corners += 1.0;
+      }
+    return sum / corners;
+  }
+
+  double flatness_of(int cell) const {
+    return flatness(complex_, static_cast<std::size_t>(cell), size_of_cell_[cell]);
+  }
+
   double known_flatness(const std::vector<int>& cells) const {
     double sum = 0.0;
     for (const int cell : cells) sum += flatness_[cell];
@@ -331,7 +354,7 @@ class CellRegulariser {
   double flatness_up_to(double limit, const std::vector<int>& cells) const {
     double sum = 0.0;
     for (const int cell : cells)
-      if (sum += flatness(complex_, cell, size_); !(sum < limit)) break;
+      if (sum += flatness_of(cell); !(sum < limit)) break;
     return sum;
   }
 
@@ -371,8 +394,10 @@ class CellRegulariser {
   Complex& complex_;
   const Prism& body_;
   RegularCells asked_;
-  double size_;                             ///< of a block, m
-  double shortest_ = 0.0;                   ///< limit of edges, m
+  double size_;                             ///< mean of the blocks, m
+  std::vector<double> relative_;            ///< size of blocks at each vertex before it moved, over the mean
+  std::vector<double> size_of_cell_;        ///< size that each cell was to have, m
+  double shortest_ = 0.0;                   ///< limit of edges, over the relative size of the blocks there, m
   std::vector<std::vector<int>> planes_;    ///< planes of the body on which each vertex lies, ascending
   std::vector<std::vector<int>> faces_at_;  ///< faces at each vertex; none: merged into another
   std::vector<double> way_;                 ///< by which each vertex moves next, m
@@ -383,8 +408,8 @@ class CellRegulariser {
 }  // namespace
 
 RegularisedCells regularise(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                            const RegularCells& asked) {
-  return CellRegulariser(complex, body, plane, asked).run();
+                            const RegularCells& asked, const specimen::BlockSizes& sizes) {
+  return CellRegulariser(complex, body, plane, asked, sizes).run();
 }
 
 }  // namespace pyroclast::solid

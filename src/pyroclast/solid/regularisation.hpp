@@ -3,12 +3,13 @@
 #include <vector>
 
 #include "pyroclast/solid/complex.hpp"
+#include "pyroclast/specimen/block_sizes.hpp"
 
 namespace pyroclast::solid {
 
 /// Asked of the regularisation of cells.
 struct RegularCells {
-  double shortest_edge = 0.0;  ///< fraction of the mean edge below which edges are removed
+  double shortest_edge = 0.0;  ///< fraction of the mean edge there below which edges are removed
   double largest_bend = 0.0;   ///< largest bend of a face, see bend(); rad
 };
 
@@ -25,7 +26,9 @@ struct RegularisedCells {
 /// stay on these, so that the body keeps its volume and its sides. The order of all changes is fixed:
 /// shortest edges first, then face by face and vertex by vertex.
 /// \param plane  plane of the body on which each face lies; -1 within it
+/// \param sizes  sizes of blocks: edges and ways are measured by the size of the blocks there
 RegularisedCells regularise(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                            const RegularCells& asked);
+                            const RegularCells& asked,
+                            const specimen::BlockSizes& sizes = specimen::BlockSizes(1.0));
 
 }  // namespace pyroclast::solid

@@ -4,30 +4,60 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
 
 namespace pyroclast::solid {
 
 namespace {
 
-/// Least distance of seeds, in mean spacings. Seeds placed one by one find no more room from 0.90 on: hard
-/// spheres then take a share of 0.38 (Torquato, Uche and Stillinger, Phys. Rev. E 74 (2006) 061308). At 0.62
-/// the last ones find room in a third of their tries, so that the search ends soon.
+/// Least distance of seeds, in sizes of the blocks there. Seeds placed one by one find no more room from 0.90
+/// on: hard spheres then take a share of 0.38 (Torquato, Uche and Stillinger, Phys. Rev. E 74 (2006) 061308).
+/// At 0.62 the last ones find room in a third of their tries, so that the search ends soon.
 constexpr double kLeastDistance = 0.62;
 
-/// Seeds as balls that may touch.
-class SeedGrid {
- public:
-  SeedGrid(const Prism& body, std::size_t count)
-      : distance_(kLeastDistance * std::cbrt(body.volume() / static_cast<double>(count))),
-        grid_(body.low(), body.high(), distance_) {}
+/// Tries of one seed, after which there is no place.
+constexpr int kMostTries = 1'000'000;
 
-  bool has_room_at(const Vec<3>& point) const { return !grid_.overlaps({point, distance_}, 0.0); }
-  void add(const Vec<3>& point) { grid_.insert({point, distance_}); }
+/// Draws seeds that keep their distance: balls that may touch.
+class SpacedSeedDraw {
+ public:
+  SpacedSeedDraw(const Prism& body, const specimen::BlockSizes& sizes, Random& random)
+      : body_(body), sizes_(sizes), random_(random), grid_(body.low(), body.high(), distance(sizes.mean())) {
+    if (!sizes.is_even()) places_.emplace(room_in(body), sizes);
+  }
+
+  void add(const Vec<3>& point) { grid_.insert({point, distance(sizes_.at(point))}); }
+
+  /// Draws a seed at a place with room.
+  Vec<3> draw() {
+    for (int i = 0; i < kMostTries; ++i) {
+      const Vec<3> point = places_ ? places_->draw(random_) : anywhere();
+      if (body_.distance(point) >= 0.0 || grid_.overlaps({point, distance(sizes_.at(point))}, 0.0)) continue;
+      add(point);
+      return point;
+    }
+    throw Error(fmt::format("after {} blocks there is no place for more: blocks of {:.3g} mm are too large",
+                            grid_.stones().size(), 1e3 * sizes_.mean()));
+  }
 
  private:
-  double distance_;
+  static double distance(double size) { return kLeastDistance * size; }
+
+  Vec<3> anywhere() {
+    Vec<3> point;
+    for (int d = 0; d < 3; ++d) point[d] = random_.uniform(body_.low()[d], body_.high()[d]);
+    return point;
+  }
+
+  const Prism& body_;
+  const specimen::BlockSizes& sizes_;
+  Random& random_;
+  std::optional<specimen::PlaceDraw<3>> places_;  ///< where blocks are not alike
   specimen::GrainGrid<3> grid_;
 };
 
@@ -46,43 +76,35 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Prism& body) {
   return place;
 }
 
-/// Adds seeds at random places with room until there are so many.
-void fill(SeedGrid& grid, const Prism& body, std::size_t count, Random& random, std::vector<Vec<3>>& places) {
-  while (places.size() < count) {
-    Vec<3> point;
-    for (int d = 0; d < 3; ++d) point[d] = random.uniform(body.low()[d], body.high()[d]);
-    if (body.distance(point) >= 0.0 || !grid.has_room_at(point)) continue;
-    grid.add(point);
-    places.push_back(point);
-  }
-}
-
 }  // namespace
 
-SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random) {
-  const double spacing = std::cbrt(body.volume() / count);
-  SeedGrid grid(body, static_cast<std::size_t>(count));
+SolidSeeds spaced_seeds(const Prism& body, const specimen::BlockSizes& sizes, int count, double spread,
+                        Random& random) {
+  SpacedSeedDraw draw(body, sizes, random);
   SolidSeeds seeds;
   auto& places = seeds.position;
-  fill(grid, body, static_cast<std::size_t>(count), random, places);
+  for (int i = 0; i < count; ++i) places.push_back(draw.draw());
   std::ranges::sort(places, {}, [&](const Vec<3>& p) { return place_on_curve(p, body); });
-  for (int i = 0; i < count; ++i)
-    seeds.radius.push_back(0.5 * spacing * random.uniform(1.0 - spread, 1.0 + spread));
+  for (const Vec<3>& place : places)
+    seeds.radius.push_back(0.5 * sizes.at(place) * random.uniform(1.0 - spread, 1.0 + spread));
   return seeds;
 }
 
-void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body, Random& random) {
-  const std::size_t count = seeds.position.size();
-  SeedGrid grid(body, count);
-  std::vector<Vec<3>> places;
-  for (std::size_t i = 0; i < count; ++i)
-    if (!std::ranges::binary_search(which, static_cast<int>(i))) {
-      grid.add(seeds.position[i]);
-      places.push_back(seeds.position[i]);
-    }
-  fill(grid, body, count, random, places);
-  std::size_t next = count - which.size();
-  for (const int i : which) seeds.position[i] = places[next++];
+SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random) {
+  return spaced_seeds(body, specimen::BlockSizes(std::cbrt(body.volume() / count)), count, spread, random);
+}
+
+void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body,
+            const specimen::BlockSizes& sizes, Random& random) {
+  SpacedSeedDraw draw(body, sizes, random);
+  for (std::size_t i = 0; i < seeds.position.size(); ++i)
+    if (!std::ranges::binary_search(which, static_cast<int>(i))) draw.add(seeds.position[i]);
+  for (const int i : which) {
+    Vec<3>& place = seeds.position[i];
+    const double before = sizes.at(place);
+    place = draw.draw();
+    seeds.radius[i] *= sizes.at(place) / before;
+  }
 }
 
 }  // namespace pyroclast::solid

@@ -5,6 +5,7 @@
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/solid/prism.hpp"
+#include "pyroclast/specimen/block_sizes.hpp"
 
 namespace pyroclast::solid {
 
@@ -15,13 +16,19 @@ struct SolidSeeds {
   std::vector<double> radius;    ///< radius of each seed, m; all equal: a Voronoi tessellation
 };
 
-/// Draws seeds at random that keep a distance of 0.62 mean spacings, so that no cell dies out, and numbers
-/// them along Morton's curve, so that cells with near numbers lie near each other.
+/// Draws seeds at random that keep a distance of 0.62 of the size of blocks there, so that no cell dies out,
+/// and numbers them along Morton's curve, so that cells with near numbers lie near each other. Throws Error
+/// when there is no place for so many blocks of these sizes.
 /// \param count   number of seeds, 1 or more
-/// \param spread  spread of the radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2
+/// \param spread  spread of the radii, which are uniform in [1 - spread, 1 + spread] x size / 2
+SolidSeeds spaced_seeds(const Prism& body, const specimen::BlockSizes& sizes, int count, double spread,
+                        Random& random);
+/// The same for blocks alike.
 SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random);
 
-/// Draws some of the seeds anew, which keep their radii and their distance from all others.
-void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body, Random& random);
+/// Draws some of the seeds anew, which keep their distance from all others, and their radii over the size of
+/// blocks there.
+void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body,
+            const specimen::BlockSizes& sizes, Random& random);
 
 }  // namespace pyroclast::solid

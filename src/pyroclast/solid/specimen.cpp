@@ -51,8 +51,7 @@ std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::Speci
 void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, Random& random,
                SolidSpecimen& specimen) {
   const Prism& body = specimen.body;
-  const specimen::Room<3> room{body.low(), body.high(), body.volume(),
-                               [&body](const Vec<3>& point) { return body.distance(point); }};
+  const specimen::Room<3> room = room_in(body);
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     const auto& asked = *kinds[kind];
     specimen.fraction_asked += asked.fraction;
@@ -69,9 +68,9 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
 }
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.
-Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random& random, Team* team,
-                   CellMetrics& done) {
-  SolidSeeds seeds = spaced_seeds(body, p.count, p.radius_spread, random);
+Complex tessellate(const specimen::BlockParameters& p, const specimen::BlockSizes& sizes, const Prism& body,
+                   Random& random, Team* team, CellMetrics& done) {
+  SolidSeeds seeds = spaced_seeds(body, sizes, p.count, p.radius_spread, random);
   const std::string what = fmt::format("Tessellation of {} blocks", p.count);
   for (int round = 0; round < kMostRounds; ++round) {
     LaguerreComplex result = laguerre_complex(seeds, body, team);
@@ -79,7 +78,7 @@ Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random
       require_valid(result.complex, body, what);
       if (p.shortest_edge > 0.0) {
         const auto regular =
-            regularise(result.complex, body, result.plane, {p.shortest_edge, p.largest_bend});
+            regularise(result.complex, body, result.plane, {p.shortest_edge, p.largest_bend}, sizes);
         done.vertices_merged = regular.vertices_merged;
         done.edges_left_short = regular.edges_left_short;
         require_valid(result.complex, body, what);
@@ -87,7 +86,7 @@ Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random
       return std::move(result.complex);
     }
     done.seeds_redrawn += static_cast<int>(result.broken.size());
-    redraw(seeds, result.broken, body, random);
+    redraw(seeds, result.broken, body, sizes, random);
   }
   throw Error(
       fmt::format("{}no tessellation of {} blocks came about in {} rounds: take blocks that are more "
@@ -169,14 +168,12 @@ CellMetrics measure(const Complex& complex, const Prism& body, CellMetrics metri
 
 std::vector<std::string> warnings(const SolidSpecimen& s) {
   std::vector<std::string> lines;
-  const auto is_small = [&](const Ball& ball) {
-    return ball.diameter < kSmallestStone * s.metrics.mean_size;
-  };
-  if (const auto small = std::ranges::count_if(s.balls, is_small); small > 0)
-    lines.push_back(
-        fmt::format("{} of {} stones are smaller than {:g} blocks of {:.1f} mm: such a stone is "
-                    "one or a few blocks, whatever its shape",
-                    small, s.balls.size(), kSmallestStone, 1e3 * s.metrics.mean_size));
+  if (s.small_stones > 0)
+    lines.push_back(fmt::format(
+        "{} of {} stones are smaller than {:g} blocks{}: such a stone is one or a few blocks, whatever its "
+        "shape",
+        s.small_stones, s.balls.size(), kSmallestStone,
+        s.size.empty() ? fmt::format(" of {:.1f} mm", 1e3 * s.metrics.mean_size) : " there"));
   int without = 0;
   for (const SizeClass& c : s.classes) without += c.without_a_block;
   if (without > 0)
@@ -199,7 +196,12 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   specimen.phases = specimen::phases(p);
   const int matrix = place_in(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
-  specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics);
+  const specimen::BlockSizes sizes(std::cbrt(body.volume() / p.blocks.count), p.blocks.largest_size,
+                                   p.blocks.finer);
+  specimen.complex = tessellate(p.blocks, sizes, body, block_random, team, specimen.metrics);
+  specimen.small_stones = static_cast<int>(std::ranges::count_if(specimen.balls, [&](const Ball& ball) {
+    return ball.diameter < kSmallestStone * sizes.at(ball.centre);
+  }));
   const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
   specimen.covered_fraction = superposed.covered_fraction;
   std::vector<double> volumes;
@@ -208,6 +210,8 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
     const int stone = superposed.stone[cell];
     specimen.phase.push_back(stone < 0 ? matrix : specimen.balls[stone].phase);
     volumes.push_back(volume(specimen.complex, cell));
+    if (!sizes.is_even())
+      specimen.size.push_back(sizes.at(zone_cell(specimen.complex, cell).gridpoints.back()));
     specimen.fraction[specimen.phase.back()] += volumes.back() / body.volume();
     if (specimen.phase.back() != matrix) specimen.fraction_superposed += volumes.back() / body.volume();
   }

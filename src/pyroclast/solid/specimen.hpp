@@ -40,12 +40,15 @@ struct SolidSpecimen {
   Complex complex;
   std::vector<std::string> phases;  ///< phases that blocks can have
   std::vector<int> phase;           ///< phase of each cell, index into `phases`
-  std::vector<Ball> balls;          ///< balls as placed, those of each kind largest first
+  /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
+  std::vector<double> size;
+  std::vector<Ball> balls;  ///< balls as placed, those of each kind largest first
   /// Volume of balls asked for and placed, and of blocks that are not matrix, over that of the specimen.
   double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
   double covered_fraction = 0.0;  ///< see SuperposedBalls
   std::vector<double> fraction;   ///< volume of the blocks of each phase over that of the specimen
   std::vector<SizeClass> classes;
+  int small_stones = 0;  ///< stones that are smaller than two of the blocks around them
   CellMetrics metrics;
 };
 

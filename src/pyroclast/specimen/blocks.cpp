@@ -21,6 +21,7 @@
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
+#include "pyroclast/specimen/room.hpp"
 #include "pyroclast/specimen/topology.hpp"
 #include "pyroclast/specimen/united_cells.hpp"
 
@@ -61,9 +62,7 @@ struct BlocksOfGrain {
 };
 
 BlockSizes sizes_of(const BlockParameters& parameters, const Region& region) {
-  const double mean = std::sqrt(region.area() / parameters.count);
-  if (parameters.finer.empty()) return BlockSizes(mean);
-  return {mean, parameters.largest_size, parameters.finer};
+  return {std::sqrt(region.area() / parameters.count), parameters.largest_size, parameters.finer};
 }
 
 /// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
@@ -78,7 +77,7 @@ class SeedDraw {
         random_(random),
         sizes_(sizes_of(parameters, region)),
         outline_(region, sizes_) {
-    if (!sizes_.is_even()) places_.emplace(region, sizes_);
+    if (!sizes_.is_even()) places_.emplace(room_of_blocks(region), sizes_);
     kept_ = outline_.positions().size();
     if (static_cast<int>(kept_) > parameters.count)
       throw Error(fmt::format("{} blocks are too few for this outline: it takes {} by itself",
@@ -275,7 +274,7 @@ class SeedDraw {
   std::span<const Aggregate> grains_;
   Random& random_;
   BlockSizes sizes_;
-  std::optional<PlaceDraw> places_;  ///< where blocks are not alike
+  std::optional<PlaceDraw<2>> places_;  ///< where blocks are not alike
   OutlineSeeds outline_;
   double along_spacing_ = 0.0;  ///< mean distance of seeds along surfaces, m
   std::vector<GrainSeeds::Way> ways_;

@@ -76,13 +76,6 @@ template <int Dim>
 
 }  // namespace
 
-Room<2> room_in(const Region& region) {
-  Room<2> room{region.box().low, region.box().high, region.area(), {}};
-  if (!region.is_rectangle())
-    room.distance = [&region](const Vec<2>& point) { return region.distance_before_cuts(point); };
-  return room;
-}
-
 template <int Dim>
 bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance) {
   const auto is_within = [&](const Vec<Dim>& point, double least) {

@@ -1,26 +1,13 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "pyroclast/base/random.hpp"
+#include "pyroclast/specimen/room.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
-
-/// Room in which stones are placed: a box, or the part of it that a body takes.
-template <int Dim>
-struct Room {
-  Vec<Dim> low, high;  ///< corners of the box, m
-  double extent;       ///< area, m², or volume, m³, of the body
-  /// Distance of a point from the surface of the body, m, negative within; empty where the body is the box.
-  std::function<double(const Vec<Dim>&)> distance;
-};
-
-/// Returns the room in a region, which must outlive it, as it was before notches were cut: a saw goes through
-/// aggregate.
-Room<2> room_in(const Region& region);
 
 /// Tells whether a grain lies within a room and keeps a distance from the room's surface (m).
 template <int Dim>

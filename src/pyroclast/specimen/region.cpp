@@ -171,13 +171,6 @@ Box box_of(std::span<const Vec<2>> points) {
   return box;
 }
 
-double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<2>& to) {
-  const Vec<2> along = to - from;
-  const double squared = dot(along, along);
-  const double share = squared > 0.0 ? std::clamp(dot(point - from, along) / squared, 0.0, 1.0) : 0.0;
-  return norm(point - (from + along * share));
-}
-
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;

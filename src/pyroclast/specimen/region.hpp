@@ -169,6 +169,12 @@ std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter,
                                    std::vector<double> angles = {0.0});
 
 /// Returns the distance of a point from the segment between two others, which may be one, m.
-double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<2>& to);
+template <int Dim>
+double distance_from_segment(const Vec<Dim>& point, const Vec<Dim>& from, const Vec<Dim>& to) {
+  const Vec<Dim> along = to - from;
+  const double squared = dot(along, along);
+  const double share = squared > 0.0 ? std::clamp(dot(point - from, along) / squared, 0.0, 1.0) : 0.0;
+  return norm(point - (from + along * share));
+}
 
 }  // namespace pyroclast::specimen

@@ -133,7 +133,7 @@ struct BlockParameters {
   int count = 0;  ///< number of blocks, with the finer ones
   /// Parts near which blocks are finer; empty: blocks are alike.
   std::vector<FinerPart> finer = {};
-  double largest_size = 0.0;  ///< size of blocks far from these parts, m, see SizedArea
+  double largest_size = 0.0;  ///< size of blocks far from these parts, m, see SizedExtent
   /// Spread of the Laguerre radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0,
   /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;

@@ -1,0 +1,25 @@
+#include "pyroclast/specimen/room.hpp"
+
+#include <utility>
+
+namespace pyroclast::specimen {
+
+namespace {
+
+Room<2> room_with(const Region& region, std::function<double(const Vec<2>&)> distance) {
+  Room<2> room{region.box().low, region.box().high, region.area(), {}};
+  if (!region.is_rectangle()) room.distance = std::move(distance);
+  return room;
+}
+
+}  // namespace
+
+Room<2> room_in(const Region& region) {
+  return room_with(region, [&region](const Vec<2>& point) { return region.distance_before_cuts(point); });
+}
+
+Room<2> room_of_blocks(const Region& region) {
+  return room_with(region, [&region](const Vec<2>& point) { return region.distance(point); });
+}
+
+}  // namespace pyroclast::specimen

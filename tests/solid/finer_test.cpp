@@ -1,0 +1,191 @@
+// Promise: blocks of a solid are as fine near its parts as asked for, in raw and in merged cells, and their
+// contacts know it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/solid/polyhedra.hpp"
+#include "pyroclast/solid/specimen.hpp"
+
+namespace pyroclast::solid {
+namespace {
+
+constexpr double kFine = 5e-3, kLargest = 10e-3, kReach = 12e-3;
+/// With which blocks grow by a fifth from middle to middle.
+constexpr double kSlopeOfSize = 0.4 / 2.2;
+constexpr double kGrowing = (kLargest - kFine) / kSlopeOfSize;  // 27.5 mm
+
+/// Asks for blocks of mortar that are finer near a part.
+specimen::SpecimenParameters finer_near(specimen::FinerPart part, const Prism& body, std::uint64_t seed,
+                                        double shortest_edge) {
+  specimen::SpecimenParameters p;
+  p.seed = seed;
+  p.aggregates.phase = p.matrix;
+  part.size = kFine;
+  part.distance = kReach;
+  p.blocks.finer = {part};
+  p.blocks.largest_size = kLargest;
+  p.blocks.count =
+      static_cast<int>(std::lround(specimen::SizedExtent(room_in(body), p.blocks.finer).blocks(kLargest)));
+  p.blocks.radius_spread = 0.3;
+  p.blocks.shortest_edge = shortest_edge;
+  p.blocks.largest_bend = 20.0 * std::numbers::pi / 180.0;
+  return p;
+}
+
+/// The part by the face of a body on a side.
+specimen::FinerPart on_side(const Prism& body, const std::string& side) {
+  specimen::FinerPart part;
+  for (std::size_t plane = 0; plane < body.planes().size(); ++plane)
+    if (body.sides()[body.planes()[plane].side] == side) part.pieces.push_back(body.corners_on(plane));
+  return part;
+}
+
+/// Extents and numbers of blocks by band.
+using Bands = std::map<int, std::array<double, 2>>;
+
+template <class Band>
+void add_to_bands(const SolidSpecimen& s, Bands& bands, Band band_of) {
+  for (std::size_t cell = 0; cell < s.complex.cells.size(); ++cell) {
+    const int band = band_of(zone_cell(s.complex, cell).gridpoints.back());
+    bands[band][0] += volume(s.complex, cell);
+    ++bands[band][1];
+  }
+}
+
+double size_in(const Bands& bands, int band) {
+  return std::cbrt(bands.at(band)[0] / bands.at(band)[1]);
+}
+
+// Bands of 7 mm beside the left side: up to the distance, over the growth, and beyond.
+TEST(FinerBlocksOfSolids, HaveTheirSizesNearAndFarAndFillTheBody) {
+  const Prism body = cuboid(0.1, 0.06, 0.06);
+  constexpr double kBand = 7e-3;
+  for (const double shortest_edge : {0.0, 0.35}) {
+    Bands bands;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const auto p = finer_near(on_side(body, "left"), body, seed, shortest_edge);
+      const SolidSpecimen s = make_specimen(p, body);
+      require_valid(s.complex, body, "finer blocks");
+      EXPECT_EQ(std::ssize(s.complex.cells), p.blocks.count);
+      ASSERT_EQ(std::ssize(s.size), p.blocks.count);
+      for (std::size_t cell = 0; cell < s.size.size(); ++cell) {
+        const double x = zone_cell(s.complex, cell).gridpoints.back()[0];
+        EXPECT_NEAR(s.size[cell], std::clamp(kFine + kSlopeOfSize * (x - kReach), kFine, kLargest), 1e-12);
+      }
+      add_to_bands(s, bands, [&](const Vec<3>& place) { return static_cast<int>(place[0] / kBand); });
+    }
+    for (int band = 0; band < 10; ++band) {
+      const double middle = (band + 0.5) * kBand;
+      const double size = std::clamp(kFine + kSlopeOfSize * (middle - kReach), kFine, kLargest);
+      EXPECT_NEAR(size_in(bands, band), size, 0.1 * size) << band;
+    }
+    // from the first of the bands that grow to the last, by the blocks between them
+    const int first = 2, last = static_cast<int>((kReach + kGrowing) / kBand) - 1;
+    double blocks = 0.0;
+    for (int band = first; band < last; ++band)
+      blocks += kBand / (0.5 * (size_in(bands, band) + size_in(bands, band + 1)));
+    // 1.2, and the scatter of the seeds
+    EXPECT_LT(std::pow(size_in(bands, last) / size_in(bands, first), 1.0 / blocks), 1.22);
+  }
+}
+
+// Promise: the outside of a cylinder, its end, a line and a point are parts too.
+TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
+  const Prism body = cylinder(0.09, 0.07);
+  const Vec<3> middle{{0.045, 0.035, 0.045}};
+  const auto from_axis = [&](const Vec<3>& p) { return std::hypot(p[0] - middle[0], p[2] - middle[2]); };
+  struct Case {
+    specimen::FinerPart part;
+    std::function<double(const Vec<3>&)> distance;
+  };
+  const std::vector<Case> cases{
+      {on_side(body, "rim"), [&](const Vec<3>& p) { return 0.045 - from_axis(p); }},
+      {on_side(body, "bottom"), [&](const Vec<3>& p) { return p[1]; }},
+      {{.pieces = {{{{middle[0], 0.0, middle[2]}}, {{middle[0], 0.07, middle[2]}}}}}, from_axis},
+      {{.pieces = {{middle}}}, [&](const Vec<3>& p) { return norm(p - middle); }}};
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Bands bands;
+    for (std::uint64_t seed = 1; seed <= 2; ++seed)
+      add_to_bands(make_specimen(finer_near(cases[i].part, body, seed, 0.35), body), bands,
+                   [&](const Vec<3>& place) { return cases[i].distance(place) < kReach ? 0 : 1; });
+    EXPECT_NEAR(size_in(bands, 0), kFine, 0.1 * kFine) << i;
+    EXPECT_GT(size_in(bands, 1), 1.25 * kFine) << i;
+  }
+}
+
+// Promise: edges of fine blocks are merged where they are short against those of blocks of their size.
+TEST(FinerBlocksOfSolids, LoseEdgesThatAreShortForTheirSize) {
+  const Prism body = cuboid(0.1, 0.06, 0.06);
+  const SolidSpecimen s = make_specimen(finer_near(on_side(body, "left"), body, 1, 0.35), body);
+  EXPECT_LT(s.metrics.edges_left_short, 20);
+  EXPECT_LE(s.metrics.largest_bend, 20.0 + 1e-9);
+  std::array<double, 2> sum{}, count{};
+  int short_ones = 0;
+  for (const CellFace& face : s.complex.faces)
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+      const Vec<3>&a = s.complex.vertices[face.corners[i]],
+            &b = s.complex.vertices[face.corners[(i + 1) % face.corners.size()]];
+      const double x = 0.5 * (a + b)[0];
+      const int band = x < kReach ? 0 : x > kReach + kGrowing ? 1 : -1;
+      if (band < 0) continue;
+      sum[band] += norm(b - a);
+      ++count[band];
+      if (band == 0 && norm(b - a) < 0.35 * 0.5 * kLargest) ++short_ones;
+    }
+  // Edges of both are as long over the size of their blocks; a limit for the mean of all would merge many
+  // more of the fine ones.
+  const double fine = sum[0] / count[0] / kFine, coarse = sum[1] / count[1] / kLargest;
+  EXPECT_NEAR(fine / coarse, 1.0, 0.1);
+  EXPECT_GT(short_ones, 50);
+}
+
+// Promise: each contact knows the mean size of its two blocks, one at a bearing that of the block there; a
+// file keeps the sizes to the bit.
+TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
+  const Prism body = cuboid(0.1, 0.06, 0.06);
+  const SolidSpecimen s = make_specimen(finer_near(on_side(body, "top"), body, 1, 0.35), body);
+  const ModelOf<3> model = make_solid_model(s, {}, platens(0.02));
+  const int first = model.block_of(model.set("specimen").front());
+  for (int c = 0; c < model.contact_count(); ++c) {
+    const Joint& joint = model.joint(c);
+    const auto size = [&](int block) { return s.size[static_cast<std::size_t>(block - first)]; };
+    const int a = model.block_of(joint.a), b = model.block_of(joint.b);
+    const double expected = model.is_of_bearing(a)   ? size(b)
+                            : model.is_of_bearing(b) ? size(a)
+                                                     : 0.5 * (size(a) + size(b));
+    EXPECT_EQ(joint.block_size, expected);
+  }
+  Polyhedra read = polyhedra_from(polyhedra_text(s), "blocks.json");
+  EXPECT_EQ(read.size, s.size);
+  EXPECT_EQ(specimen_from(std::move(read), body).size, s.size);
+}
+
+TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
+  const Prism body = cuboid(0.1, 0.06, 0.06);
+  auto p = finer_near(on_side(body, "left"), body, 1, 0.0);
+  p.aggregates = {.phase = "aggregate",
+                  .fraction = 0.1,
+                  .d_min = 0.0099,
+                  .d_max = 0.0101,
+                  .fuller_exponent = 0.5,
+                  .sieves = {0.0099, 0.0101},
+                  .minimum_gap = 0.0005,
+                  .attempts = 100000};
+  p.superposition = specimen::Superposition::fit;
+  const SolidSpecimen s = make_specimen(p, body);
+  const auto far = std::ranges::count_if(s.balls, [](const Ball& ball) { return ball.centre[0] > 0.02; });
+  EXPECT_GE(s.small_stones, far);
+  EXPECT_LT(s.small_stones, std::ssize(s.balls));
+  EXPECT_NE(warnings(s).front().find("smaller than 2 blocks there"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pyroclast::solid
