@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/setup/read_bearings.hpp"
+#include "pyroclast/setup/read_blocks.hpp"
+#include "pyroclast/setup/read_outline.hpp"
+#include "pyroclast/setup/read_space.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
+
+namespace pyroclast {
+
+/// Returns the solid of a deck; a cube stands in for an error.
+/// \param sizes  sizes of blocks where they are finer in parts
+solid::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
+                        const ReadBlocks& read, std::span<const ReadBearing> bearings,
+                        const specimen::BlockSizes* sizes = nullptr);
+
+/// Returns the region of a deck in the plane; a square stands in for an error.
+/// \param sizes  sizes of blocks where they are finer in parts: circles have their sides about as long
+specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadBlocks& read,
+                             std::span<const ReadBearing> bearings,
+                             const specimen::BlockSizes* sizes = nullptr);
+
+/// Records an error for each bearing on a side that the specimen does not have.
+void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings);
+
+}  // namespace pyroclast

@@ -1,0 +1,423 @@
+#include "pyroclast/setup/read_aggregates.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grading_curve.hpp"
+#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/tables/measured_table.hpp"
+#include "pyroclast/tables/read_choice.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Number of random places that are tried for one aggregate or fibre, where the deck states none.
+constexpr int kPlacementAttempts = 100'000;
+
+/// Smallest side of a test specimen over the largest aggregate (EN 12390-1 asks for 3.5).
+constexpr double kFewestAggregatesAcross = 3.0;
+
+/// Largest difference from 1 of the last share of a sieve analysis, as percents leave it.
+constexpr double kAllPass = 1e-9;
+
+constexpr Meaning kPhase = "their material, a table of [materials]";
+
+int read_attempts(const Section& s) {
+  return static_cast<int>(
+      s.integer("attempts", Range::between(1, 1e9), kPlacementAttempts,
+                "random places that are tried for one of them before placing is given up"));
+}
+
+/// File of measurements that a table names by `csv`.
+struct NamedTable {
+  MeasuredTable table;
+  std::vector<ChosenColumn> columns;
+};
+
+/// Reads the file of measurements that `csv` names; returns none after an error.
+/// \param asked  columns asked for; the last of them may be missing in the file, down to `least`
+std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
+                                           std::span<const AskedColumn> asked, std::size_t least) {
+  const std::string file = s.text("csv", "[measured table](measured-tables.md) beside the deck");
+  const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
+  if (!s.ok() || !s.has("csv")) return std::nullopt;
+  try {
+    MeasuredTable table = MeasuredTable::open(folder / file, least);
+    const std::size_t stated = choice.columns.empty() ? table.columns().size() : choice.columns.size();
+    auto columns = table.choose(choice, asked.first(std::clamp(stated, least, asked.size())));
+    s.names_file("csv", folder / file);
+    return NamedTable{std::move(table), std::move(columns)};
+  } catch (const Error& error) {
+    s.error("csv", error.what());
+    return std::nullopt;
+  }
+}
+
+/// Reads a sieve analysis, by ascending size; returns none after an error.
+std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::filesystem::path& folder) {
+  s.describe(
+      "passing", {.value = "list of points [size, share], or { csv = file }", .name = "passing"},
+      "grading that was measured, in the place of Fuller's curve: the share that passes each sieve, 100 % "
+      "the largest; straight between sieves, and rescaled to the stones larger than d_min");
+  specimen::GradingCurve curve;
+  const auto complain = [&](const std::string& what) {
+    s.error("passing", what);
+    return std::nullopt;
+  };
+  if (s.is_table("passing")) {
+    const std::array<AskedColumn, 2> asked{{{"size", unit::length}, {"passing", unit::dimensionless}}};
+    const auto read =
+        read_named_table(s.section("passing", "a sieve analysis: sizes, and the shares that pass"), folder,
+                         asked, asked.size());
+    if (!read) return std::nullopt;
+    try {
+      curve.sizes = read->table.values(read->columns[0], unit::length);
+      curve.shares = read->table.values(read->columns[1], unit::dimensionless);
+    } catch (const Error& error) {
+      return complain(error.what());
+    }
+  } else {
+    for (const auto& [size, share] : s.points("passing", unit::length, unit::dimensionless, "")) {
+      curve.sizes.push_back(size);
+      curve.shares.push_back(share);
+    }
+  }
+  if (!s.ok() || curve.sizes.empty()) return std::nullopt;
+  if (curve.sizes.front() > curve.sizes.back()) {  // laboratories list sieves so
+    std::ranges::reverse(curve.sizes);
+    std::ranges::reverse(curve.shares);
+  }
+  if (curve.sizes.size() < 2 || curve.sizes.front() < 0.0 ||
+      std::ranges::adjacent_find(curve.sizes, std::ranges::greater_equal()) != curve.sizes.end())
+    return complain("must have two sizes or more, which ascend or descend, none below 0");
+  if (curve.shares.back() > 1.0 + kAllPass)
+    return complain(
+        fmt::format("reaches {:.6g}, but where all passes the share is 1, or 100 %: the unit is "
+                    "missing",
+                    curve.shares.back()));
+  if (!std::ranges::is_sorted(curve.shares) || curve.shares.front() < 0.0 ||
+      curve.shares.back() < 1.0 - kAllPass)
+    return complain("must ascend with the size, from 0 % or more to 100 % at the largest");
+  curve.shares.back() = 1.0;
+  return curve;
+}
+
+void read_measured_grading(const Section& s, const std::filesystem::path& folder, const DeckSpace& space,
+                           specimen::AggregateParameters& a) {
+  enum class By { area, volume };
+  const auto curve = read_passing(s, folder);
+  const By by = s.choice<By>(
+      "passing_by",
+      {{"area", By::area, "shares are of the area of the circles"},
+       {"volume", By::volume,
+        "shares are of the volume of the stones, or their mass: a plane cuts the circles from spheres, see "
+        "[Specimen](../understand/theory.md#specimen); in a solid the balls have these shares"}},
+      "quantity of which `passing` states shares");
+  if (space.is_solid() && s.ok() && by == By::area)
+    s.error("passing_by", "shares of areas belong to a section; a solid takes passing_by = \"volume\"");
+  const bool has_d_min = s.has("d_min");
+  const double d_min =
+      has_d_min ? s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter")
+                : 0.0;
+  if (!curve || !s.ok()) return;
+  const double least = has_d_min ? d_min : curve->sizes.front();
+  if (least <= 0.0) {
+    s.error("d_min", "is needed where the smallest size of `passing` is 0");
+    return;
+  }
+  try {
+    const auto cut =
+        specimen::above(by == By::volume && !space.is_solid() ? specimen::of_section(*curve) : *curve, least);
+    a.sieves = cut.sizes;
+    a.passing = cut.shares;
+    a.d_min = cut.sizes.front();
+    a.d_max = cut.sizes.back();
+    a.fuller_exponent = 1.0;
+  } catch (const Error& error) {
+    s.error(has_d_min ? "d_min" : "passing", error.what());
+  }
+}
+
+void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
+  a.d_min = s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter");
+  a.d_max = s.quantity("d_max", unit::length, Range::positive().usually(5e-4, 0.15), "largest diameter");
+  a.fuller_exponent = s.number("fuller_exponent", Range::positive().usually(0.2, 1.0), "of Fuller's curve");
+  const auto between = s.optional_quantities(
+      "sieves", unit::length, Range::positive(),
+      "bounds of the size intervals between d_min and d_max, ascending; without any there is one interval");
+  if (!s.ok()) return;
+  if (a.d_max <= a.d_min) s.error("d_max", "must be greater than d_min");
+  a.sieves = {a.d_min};
+  for (double sieve : between) {
+    if (sieve <= a.sieves.back() || sieve >= a.d_max) {
+      s.error("sieves", "must ascend and lie between d_min and d_max, both excluded");
+      return;
+    }
+    a.sieves.push_back(sieve);
+  }
+  a.sieves.push_back(a.d_max);
+}
+
+double area_of(const specimen::Stone& stone) {
+  return stone.shape ? stone.shape->extent() : specimen::circle_area(stone.diameter);
+}
+
+/// Sets the gradation to that of the stones, which are known.
+void set_gradation_of_stones(specimen::AggregateParameters& a) {
+  std::vector<std::pair<double, double>> sizes;  // diameter and area
+  for (const specimen::Stone& stone : a.stones) sizes.emplace_back(stone.diameter, area_of(stone));
+  std::ranges::stable_sort(sizes, {}, &std::pair<double, double>::first);
+  double passed = 0.0;
+  for (const auto& [size, area] : sizes) {
+    passed += area;
+    if (!a.sieves.empty() && a.sieves.back() == size) {
+      a.passing.back() = passed;
+      continue;
+    }
+    a.sieves.push_back(size);
+    a.passing.push_back(passed);
+  }
+  for (double& share : a.passing) share /= passed;
+  a.d_min = sizes.front().first;
+  a.d_max = sizes.back().first;
+}
+
+/// Columns of a table of stones: three, and the number of the phase, which may be missing.
+using StoneColumns = std::array<AskedColumn, 4>;
+
+/// Reads stones that are known, from a table as a run writes it.
+/// \param add  function of the values by column and the first row of a stone with its place, which returns
+/// the
+///             stone without its phase, and the row behind the stone
+template <class Add>
+void read_known_stones(const Section& s, const std::filesystem::path& folder, const StoneColumns& asked,
+                       specimen::AggregateParameters& a, Add add) {
+  constexpr std::size_t kWithoutPhase = 3;
+  const auto read = read_named_table(s, folder, asked, kWithoutPhase);
+  auto phases = s.optional_texts("phases",
+                                 "names of the phases, by their numbers from 0; without them all stones "
+                                 "are of number 0, and of `phase`");
+  if (phases.empty()) phases = {a.phase};
+  if (!read || !s.ok()) return;
+  a.place = fmt::format("{}: {}", s.where("csv"), s.path());
+  try {
+    std::vector<std::vector<double>> values;  // by column
+    for (std::size_t i = 0; i < read->columns.size(); ++i)
+      values.push_back(read->table.values(read->columns[i], asked[i].unit));
+    for (std::size_t row = 0; row < read->table.rows();) {
+      const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
+      const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
+      auto [stone, end] = add(values, row, place);
+      if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
+        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` names 0 to {}", place, phase,
+                                phases.size() - 1));
+      stone.phase = phases[static_cast<std::size_t>(phase)];
+      stone.place = place;
+      a.stones.push_back(std::move(stone));
+      row = end;
+    }
+  } catch (const Error& error) {
+    s.error("csv", error.what());
+    return;
+  }
+  set_gradation_of_stones(a);
+}
+
+using Columns = std::vector<std::vector<double>>;
+using StoneAndEnd = std::pair<specimen::Stone, std::size_t>;
+
+void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  const Section own = s.section("stones",
+                                "places and diameters of all circles, in the place of a grading: "
+                                "`specimen/aggregates.csv` of a run, or "
+                                "a table of x, y, diameter, and the number of a phase or none");
+  const StoneColumns asked{
+      {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
+  read_known_stones(
+      own, folder, asked, a, [](const Columns& values, std::size_t row, const std::string& place) {
+        if (!(values[2][row] > 0.0))
+          throw Error(fmt::format("{}: the diameter must be greater than 0", place));
+        return StoneAndEnd{{{{values[0][row], values[1][row]}}, values[2][row], {}, {}}, row + 1};
+      });
+}
+
+/// Reads outlines that are known: points of the outline of each grain, in turn.
+void read_outlines(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  const Section own =
+      s.section("outlines",
+                "outlines of all grains, in the place of a grading: `specimen/outlines.csv` of a "
+                "run, or a table of the number of the grain, x, y of a point of its outline, and "
+                "the number of a phase or none; points of a grain follow each other");
+  const StoneColumns asked{{{"grain", unit::dimensionless},
+                            {"x", unit::length},
+                            {"y", unit::length},
+                            {"phase", unit::dimensionless}}};
+  read_known_stones(own, folder, asked, a,
+                    [](const Columns& values, std::size_t row, const std::string& place) {
+                      std::vector<Vec<2>> points;
+                      std::size_t end = row;
+                      for (; end < values[0].size() && values[0][end] == values[0][row]; ++end)
+                        points.push_back({{values[1][end], values[2][end]}});
+                      try {
+                        const auto [outline, centre] = specimen::outline_around(points);
+                        return StoneAndEnd{{centre, outline->width(), {}, {}, outline}, end};
+                      } catch (const Error& error) {
+                        throw Error(fmt::format("{}: {}", place, error.what()));
+                      }
+                    });
+}
+
+/// Reads the least and the largest of numbers that are drawn.
+specimen::Spread spread_of(const Section& s, std::string_view key, const std::vector<double>& bounds) {
+  if (bounds.empty()) return {1.0, 1.0};
+  if (bounds.size() == 2 && bounds[0] <= bounds[1]) return {bounds[0], bounds[1]};
+  s.error(key, "must be two numbers, the least and the largest");
+  return {1.0, 1.0};
+}
+
+specimen::ShapeParameters read_shape(const Section& s, const DeckSpace& space) {
+  using specimen::GrainShape;
+  specimen::ShapeParameters p;
+  p.kind = s.choice<GrainShape>(
+      "kind",
+      {{"ellipse", GrainShape::ellipse, "an ellipse"},
+       {"polygon", GrainShape::polygon, "a convex polygon with corners at random on an ellipse"},
+       {"harmonics", GrainShape::harmonics,
+        "r = 1 + sum D_n cos(n angle + phase_n) with n from 3 to 12, drawn out to its elongation"}},
+      "shape of the grains; without this table they are circles, in a solid balls");
+  if (space.is_solid())
+    s.error("kind", "grains of a solid are balls: other shapes are for bodies of the plane");
+  p.elongation = spread_of(s, "elongation",
+                           s.numbers("elongation", Range::between(1.0, 5.0).usually(1.0, 2.5),
+                                     "least and largest length over width of the ellipse"));
+  const double turn = 2.0 * std::numbers::pi;
+  const auto angles = s.optional_quantities(
+      "orientation", unit::angle, Range::between(-turn, turn),
+      "least and largest angle of the length from the x axis; without this key all angles are as likely");
+  if (!angles.empty()) p.orientation = spread_of(s, "orientation", angles);
+  if (p.kind == GrainShape::polygon)
+    p.corners = spread_of(
+        s, "corners", s.numbers("corners", Range::between(3.0, 24.0), "least and largest number of corners"));
+  else
+    s.know({"corners"});
+  if (p.kind == GrainShape::harmonics) {
+    p.roughness = spread_of(
+        s, "roughness",
+        s.numbers("roughness", Range::between(0.0, 0.2).usually(0.0, 0.1), "least and largest D_3"));
+    p.decay =
+        s.number("decay", Range::between(1.0, 4.0), p.decay,
+                 "exponent by which D_n = D_3 (n / 3)^-decay falls; 5/3 was measured on sands (Barclay and "
+                 "Buckingham 2009)");
+  } else {
+    s.know({"roughness", "decay"});
+  }
+  return p;
+}
+
+specimen::FibreParameters read_fibres(const Section& s) {
+  specimen::FibreParameters f;
+  f.phase = s.text("phase", "fibre", kPhase);
+  f.count = static_cast<int>(s.integer("count", Range::between(0, 1e6), "number of fibres"));
+  f.length = s.quantity("length", unit::length, Range::positive(), "of each fibre");
+  f.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
+                             "between a fibre and aggregates, and between a fibre and the outline");
+  f.attempts = read_attempts(s);
+  f.place = fmt::format("{}: {}", s.where("count"), s.path());
+  return f;
+}
+
+}  // namespace
+
+specimen::AggregateParameters read_aggregates(const Section& s, const std::filesystem::path& folder,
+                                              const DeckSpace& space) {
+  specimen::AggregateParameters a;
+  a.phase = s.text("phase", "aggregate", kPhase);
+  s.know({"stones", "outlines", "grain_shape", "fraction", "minimum_gap", "attempts", "passing", "passing_by",
+          "d_min", "d_max", "fuller_exponent", "sieves"});
+  if (s.has("stones")) {
+    if (space.is_solid())
+      s.error("stones", "are circles of a plane; a solid cannot take stones from a list yet");
+    read_stones(s, folder, a);
+    return a;
+  }
+  if (s.has("outlines")) {
+    if (space.is_solid()) s.error("outlines", "are lines in a plane; a solid cannot take them");
+    read_outlines(s, folder, a);
+    return a;
+  }
+  a.fraction =
+      s.number("fraction", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.5),
+               "area of coarse aggregate over area of the specimen, in a solid volume over volume");
+  a.place = fmt::format("{}: {}", s.where("fraction"), s.path());
+  if (s.has("passing"))
+    read_measured_grading(s, folder, space, a);
+  else
+    read_fuller_grading(s, a);
+  if (const auto shape = s.optional_section(
+          "grain_shape", "shapes of the grains; their size is the sieve that they pass, their width"))
+    a.shape = read_shape(*shape, space);
+  a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
+                             "between two aggregates, and between an aggregate and the outline");
+  a.attempts = read_attempts(s);
+  return a;
+}
+
+std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std::filesystem::path& folder,
+                                                  const DeckSpace& space) {
+  std::vector<specimen::Inclusions> list;
+  for (const Section& s : root.optional_sections(
+           "inclusions",
+           "circles and fibres in the matrix beside [aggregates]; placed after these, in turn")) {
+    enum class Kind { circle, fibre };
+    const auto kind = s.choice<Kind>(
+        "shape",
+        {{"circle", Kind::circle,
+          "circles, in a solid balls, with a gradation of their own: another aggregate, or pores"},
+         {"fibre", Kind::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
+        "shape of the inclusions");
+    if (kind == Kind::fibre && space.is_solid())
+      s.error("shape", "fibres cannot be placed in a solid yet; \"circle\" makes balls");
+    if (kind == Kind::circle)
+      list.emplace_back(read_aggregates(s, folder, space));
+    else
+      list.emplace_back(read_fibres(s));
+  }
+  return list;
+}
+
+void set_fraction(double area_of_specimen, specimen::AggregateParameters& a) {
+  if (a.stones.empty()) return;
+  double area = 0.0;
+  for (const specimen::Stone& stone : a.stones) area += area_of(stone);
+  a.fraction = area / area_of_specimen;
+}
+
+void check_size(const Section& s, const AskedSpecimen& p) {
+  const Vec<3> size = p.high() - p.low();
+  double narrowest = size[0];
+  for (int i = 1; i < p.dimension(); ++i) narrowest = std::min(narrowest, size[i]);
+  const double largest = p.aggregates.d_max;
+  if (p.aggregates.fraction == 0.0 || !p.aggregates.stones.empty()) return;
+  if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
+    s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
+                                 narrowest));
+  else if (kFewestAggregatesAcross * largest > narrowest)
+    s.warn("d_max", fmt::format("the specimen is only {:.1f} times as wide, but usually at least {} times",
+                                narrowest / largest, kFewestAggregatesAcross));
+}
+
+}  // namespace pyroclast
