@@ -328,6 +328,7 @@ class Finer(unittest.TestCase):
         place = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, place)
         deck = pyroclast.Deck(CASES / "starter_3d.toml")
+        del deck["blocks.count"]
         deck["blocks"] = {"size": "20 mm", "shortest_edge": 0.35,
                           "finer": [{"near": "top", "size": "12 mm", "distance": "10 mm"}]}
         deck.update(aggregates={"fraction": 0.1, "d_min": "20 mm", "sieves": []},
