@@ -459,6 +459,17 @@ class DeckTable(MutableMapping[str, Any]):
     def __repr__(self) -> str:
         return f"<DeckTable {self._path}: {self._keys()}>"
 
+    def __or__(self, other: Mapping[str, Any]) -> dict[str, Any]:
+        """A table of its own, which changes nothing in the deck."""
+        return {**self, **other}
+
+    def __ror__(self, other: Mapping[str, Any]) -> dict[str, Any]:
+        return {**other, **self}
+
+    def __ior__(self, other: Mapping[str, Any]) -> DeckTable:
+        self.update(other)
+        return self
+
 
 def without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:
     """A table whose functions stand in `found`, by their paths."""

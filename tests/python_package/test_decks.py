@@ -50,6 +50,11 @@ class Decks(Case):
     def test_no_change_of_a_table_is_lost(self):
         made = deck()
         table = made["specimen"]
+        self.assertEqual((table | {"seed": 9})["seed"], 9)  # a table of its own
+        self.assertEqual(({"seed": 9} | table)["seed"], table["seed"])
+        self.assertNotEqual(table["seed"], 9)
+        table |= {"seed": 8}
+        self.assertEqual(made["specimen.seed"], 8)
         table.update(seed=7, width=120 * mm)
         table["height"] = "0.2 m"
         made["stages"][1]["stop_strain"] = 0.0005
