@@ -101,7 +101,7 @@ class Going(Case):
         self.assertGreaterEqual(run.until(quantity={"stress_MPa": 5.0})["stress_MPa"], 5.0)
         with self.assertRaisesRegex(pyroclast.Error, "ended .completed. before"):
             run.until(strain=0.5)
-        with self.assertRaisesRegex(pyroclast.Error, "until what"):
+        with self.assertRaisesRegex(pyroclast.Error, "until needs a condition"):
             run.until()
         with self.assertRaisesRegex(pyroclast.Error, "no 'streß'"):
             run.until(quantity={"streß": 1.0})
