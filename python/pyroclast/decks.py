@@ -236,6 +236,9 @@ class Deck:
             entries: Any = _plain(value)  # views of this deck would change while it is written anew
             self._rebuild(lambda tables: _list_at(tables, path).__setitem__(slice(None), entries), path)
             return
+        before = (self._text, dict(self._functions), list(self._changes))
+        if re.search(rf"^\[{re.escape(path)}\]", self._text, re.MULTILINE):
+            del self[path]  # a value takes the place of a table
         self._functions.pop(path, None)
         self._changes.append((path, toml(value)))
         try:
@@ -243,7 +246,7 @@ class Deck:
             if isinstance(value, (int, float)) and not isinstance(value, bool) and self._needed_unit(path):
                 raise DeckError([d for d in self._diagnostics() if d.key == path])
         except Exception:
-            self._changes.pop()
+            self._text, self._functions, self._changes = before
             raise
 
     def __delitem__(self, path: str) -> None:

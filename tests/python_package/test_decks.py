@@ -5,7 +5,7 @@ import pickle
 import tomllib
 
 import pyroclast
-from pyroclast import K, MPa, m, minute, mm
+from pyroclast import GPa, K, MPa, degC, m, minute, mm
 from small import CASES, Case, deck
 
 
@@ -73,6 +73,14 @@ class Decks(Case):
         self.assertEqual([stage["kind"] for stage in other["stages"]], ["settle", "settle", "compress"])
         other["stages"] = other["stages"][1:]  # tables of its own
         self.assertEqual(other["stages"], made["stages"])
+        other["materials.mortar"]["E"] = {"table": [["20 degC", "30 GPa"], ["900 degC", "3 GPa"]]}
+        other["materials.mortar"].update(density="2300 kg/m3")
+        del other["materials.aggregate.nu"]  # the deck is written anew, and the curve with it
+        with self.assertRaises(pyroclast.Error):
+            other["materials.mortar.E"] = 30.0
+        self.assertEqual(other["materials.mortar.E.table"][1][0], 900 * degC)
+        other["materials.mortar.E"] = "30 GPa"
+        self.assertEqual(other["materials.mortar.E"], 30 * GPa)
         del made["platens"]
         with self.assertRaises(KeyError):
             made["platens"]["height"]

@@ -8,7 +8,7 @@ import meshio
 import numpy as np
 
 import pyroclast
-from pyroclast import mm
+from pyroclast import m, mm
 from small import PROGRAM, Case, deck, plate
 
 SQUARES = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [4, 5, 9, 8], [6, 7, 11, 10], [8, 9, 13, 12], [9, 10, 14, 13],
@@ -196,7 +196,7 @@ class Arrays(Case):
                                                  unit="m")
         of_cells = plate()
         of_cells["specimen"] = again
-        self.assertEqual(of_cells["specimen"], {"shape": "cells", "file": "cells.json", "thickness": "0.1 m"})
+        self.assertEqual(of_cells["specimen"], {"shape": "cells", "file": "cells.json", "thickness": 0.1 * m})
         of_cells.check()
         np.testing.assert_array_equal(of_cells.make_specimen().vertices, made.vertices)
         folder = self.folder()
