@@ -285,7 +285,7 @@ def names_apart(runs: Sequence[Results], written: Callable[[str], str] = style.p
     """
     names = [written(run.title) for run in runs]
     if len(set(names)) < len(names):
-        ends = _ends_apart([run.folder.resolve() for run in runs])
+        ends = ends_apart([run.folder.resolve() for run in runs])
         names = [written(name) for name in names_by_decks(runs) or ends]
     return [" – ".join([name, *style.warnings_of(run)]) for name, run in zip(names, runs)]
 
@@ -296,7 +296,7 @@ def title_together(axes: Axes, runs: Sequence[Results]) -> None:
         axes.set_title("\n".join(style.lines_of(style.plain(runs[0].title), style.page().letters)))
 
 
-def _ends_apart(folders: Sequence[Path]) -> list[str]:
+def ends_apart(folders: Sequence[Path]) -> list[str]:
     """Of each path as few of its last parts as no other path ends with."""
     ends = []
     for folder in folders:

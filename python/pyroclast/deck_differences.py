@@ -21,7 +21,7 @@ def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
 
     None where decks are missing, do not differ, differ in more than three values, or do not tell all runs apart.
     """
-    decks = [{path: text for path, text in values_of(run.deck).items() if path[0] not in _TELL_NOTHING}
+    decks = [{path: text for path, text in values_of(run.deck).items() if not tells_nothing(path)}
              for run in runs]
     if not all(decks):
         return None
@@ -49,6 +49,11 @@ def written(path: DeckPath) -> str:
     """A path as messages have it, such as "stages[1].duration"."""
     text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)
     return text.removeprefix(".")
+
+
+def tells_nothing(path: DeckPath) -> bool:
+    """Whether a value changes no result."""
+    return path[0] in _TELL_NOTHING
 
 
 def _values(node: Any, path: DeckPath = ()) -> Iterator[tuple[DeckPath, str]]:

@@ -98,7 +98,7 @@ def course_of(run: Results) -> PackedCourse:
     found = marks(run, first, history[by_id[over].column] * by_id[over].factor if goes_back else None)
     stage = history["stage"]
     frames = rows_of_frames(run)
-    needed = {mark.row for mark in found} | set(frames) | {0, history.rows - 1}
+    needed = {row for mark in found for row in mark.rows} | set(frames) | {0, history.rows - 1}
     needed |= set((np.flatnonzero(np.diff(stage)) + 1).tolist())
     rows = _kept(run, [by_id[name].column for name in [over, *drawn] if name], sorted(needed))
     place = {row: i for i, row in enumerate(rows.tolist())}
@@ -107,7 +107,7 @@ def course_of(run: Results) -> PackedCourse:
         "columns": history.names,
         "quantities": [asdict(one) for one in there],
         "over": over, "drawn": drawn,
-        "marks": [{**asdict(mark), "row": place[mark.row]} for mark in found],
+        "marks": [{"id": mark.id, "label": mark.label, "rows": [place[row] for row in mark.rows]} for mark in found],
         "frames": [place[row] for row in frames],
         "stages": _stages(run, stage[rows]),
         "modes": modes,

@@ -14,6 +14,7 @@ from ..results import Results
 GOOD, DOUBT, BAD = "good", "doubt", "bad"
 _LEVELS = (GOOD, DOUBT, BAD)  # from good to bad
 _MOST_CARDS = 8
+STRENGTH = "strength"
 
 
 class Reason(NamedTuple):
@@ -61,6 +62,8 @@ class Card:
     level: str
     reason: str
     mark: str = ""  #: id of the place on the curve that it belongs to
+    number: float | None = None  #: in the unit
+    of: str = ""  #: what was tested, where one has to know it to use the number
 
 
 def worst(reasons: list[Reason]) -> str:
@@ -131,7 +134,9 @@ def cards(run: Results) -> list[Card]:
         for card in _of_stage(stage, reasons, whole):
             found.pop(card.label, None)  # the later one stands later
             found[card.label] = card
-    order = {headline.label: i for i, headline in enumerate(_HEADLINES)}
+    if unmeasured := _unmeasured_strength(run, whole):
+        found[unmeasured.label] = unmeasured
+    order = {headline.label: i for i, headline in enumerate(_HEADLINES)} | {STRENGTH: -1}
     place = {label: i for i, label in enumerate(found)}
     asked = _asked(run)
 
@@ -144,6 +149,25 @@ def cards(run: Results) -> list[Card]:
         return (2 if card.label.startswith("peak_") else 3), place[card.label]
 
     return sorted(found.values(), key=rank)[:_MOST_CARDS]
+
+
+def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
+    """Of a test between platens that measures no strength: what the specimen bore instead."""
+    if not run.has_platens or not run.stages or not run.ends_heated:
+        return None
+    if any("f_c_MPa" in stage.get("results", {}) for stage in run.stages):
+        return None
+    if run.restrained:
+        said = "the platens held the specimen in place while it was heated"
+    elif run.load_stress_MPa:
+        said = f"{'held' if run.critical_temperature is None else 'failed under'} {run.load_stress_MPa:.3g} MPa"
+        loads = [results for results in run.stage_results if results.get("f_c_of_level_MPa")]
+        if run.load_level and loads:
+            said += f" = {run.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
+            said += f" {loads[-1].get('f_c_of_level_is', '')}"
+    else:
+        said = "nothing loaded the specimen"
+    return Card(STRENGTH, "not measured", "", worst(whole), said.strip())
 
 
 def _asked(run: Results) -> list[str]:
@@ -171,7 +195,7 @@ def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> 
         level = worst(reasons)
         said = next((reason.text for reason in reasons if reason.level == level), "the stage came to its end")
         yield Card(headline.label, _number(headline.factor * value, headline.digits), headline.unit, level, said,
-                   headline.mark)
+                   headline.mark, headline.factor * value)
 
 
 def _own_headline(name: str, results: dict[str, Any]) -> _Headline | None:

@@ -20,7 +20,13 @@ _STRETCH = 0.01  # of the rows of the test, over which a drop is measured
 class Mark:
     id: str
     label: str
-    row: int  #: of the history
+    row: int  #: of the history; of a fall its end
+    start: int | None = None  #: row at which a fall begins; None of a place
+
+    @property
+    def rows(self) -> list[int]:
+        """Of a place its row, of a fall its ends."""
+        return [self.row] if self.start is None else [self.start, self.row]
 
 
 def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> list[Mark]:
@@ -46,8 +52,7 @@ def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> 
             found.append(Mark("peak", "peak" if _is_peak(run, leading, peak) else "largest", peak))
             if leading[largest] > leading[peak] * (1.0 + _HIGHER):
                 found.append(Mark("largest", "higher again", largest))
-            if (drop := _largest_drop(run, leading, over)) is not None:
-                found.append(Mark("drop", "largest drop", drop))
+            found += _falls(run, leading, over, peak, _is_peak(run, leading, peak))
     if run.critical_temperature is not None:
         found.append(Mark("end", "failure", int(np.flatnonzero(run.exchanged)[-1])))
     return sorted(found, key=lambda mark: mark.row)
@@ -88,19 +93,30 @@ def _sum(run: Results, ending: str) -> np.ndarray | None:
     return np.nansum(columns, axis=0) if columns else None
 
 
-def _largest_drop(run: Results, values: np.ndarray, over: np.ndarray | None) -> int | None:
-    """The row at which the largest fall within a short stretch is over, in which the test goes on; None where nothing
-    falls, and where several stages move the body and nothing tells which of them unload.
+def _falls(run: Results, values: np.ndarray, over: np.ndarray | None, peak: int,
+           is_peak: bool) -> list[Mark]:
+    """The steepest fall, which is the largest within a short stretch in which the test goes on, and the fall after the
+    peak, down to the least value that the test reached there as it went on.
+
+    Empty where nothing falls, and where several stages move the body and nothing tells which of them unload.
     """
     stretch = max(1, int(_STRETCH * len(values)))
     if len(values) <= stretch:
-        return None
+        return []
     fall = np.nan_to_num(values[:-stretch] - values[stretch:])
+    behind = np.where(np.arange(len(values)) > peak, values, np.nan)
     if over is not None:
         way = np.sign(over[np.nanargmax(values)] - over[np.isfinite(over).argmax()])
         change = np.nan_to_num(way * np.diff(over))
         on, back = (np.r_[0.0, np.cumsum(np.maximum(sign * change, 0.0))] for sign in (1.0, -1.0))
         fall[back[stretch:] - back[:-stretch] > _BACK * (on[stretch:] - on[:-stretch])] = 0.0
+        behind[on - back < np.maximum.accumulate(on - back)] = np.nan
     elif sum(stage.get("kind") != "settle" for stage in run.deck_stages) > 1:
-        return None
-    return int(fall.argmax()) + stretch if fall.max() > 0.0 else None
+        return []
+    found = []
+    if is_peak and np.isfinite(behind).any() and np.nanmin(behind) < values[peak]:
+        found.append(Mark("behind", "fall after the peak", int(np.nanargmin(behind)), peak))
+    if fall.max() > 0.0:
+        start = int(fall.argmax())
+        found.append(Mark("steepest", "steepest fall", start + stretch, start))
+    return found

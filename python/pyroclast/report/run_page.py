@@ -6,8 +6,11 @@ import shlex
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .. import style
 from ..errors import Error
+from ..progress import energies_out, extent_of_cracks
 from ..properties import panels, read_properties
 from ..results import Results, SpecimenFolder
 from .course import course_of, rows_of_frames
@@ -19,6 +22,7 @@ _SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "outside.js", "spe
             "common.js", "run_curve.js", "run_piece.js", "run_specimen.js", "run_probes.js", "run_tabs.js", "run.js")
 MOST_TEXT = 9_500_000  # characters of packed numbers on a page
 _MOST_FACTS = 40
+_SAME_TEMPERATURE = 0.5  # K
 
 
 class RunData(NamedTuple):
@@ -46,7 +50,7 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
         return RunData(data, notes)
     rows = rows_of_frames(run)
     row_of = {frame.number: row for frame, row in zip(run.frames, rows)}
-    marked = {min((row for row in rows if row >= mark.row), default=rows[-1]) for mark in course.marks}
+    marked = {min((row for row in rows if row >= end), default=rows[-1]) for mark in course.marks for end in mark.rows}
     try:
         body = fitted(run, most, lambda frame: row_of[frame.number] in marked)
     except Error as error:
@@ -64,12 +68,12 @@ def run_page(run: Results) -> str:
     """All of the page."""
     data, notes = run_data(run)
     reasons = verdict(run)
-    facts = [_without_formulas(fact) for fact in style.facts_of(run)]
+    facts = [*map(_without_formulas, style.facts_of(run)), *_temperature(run), _tested(run)]
     body = data["body"]
     data["properties"] = _properties(run)
     return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
                 cards=_cards(run, data), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
-                is_solid=bool(body and body["solid"]), steps=_steps(body), specimen=_specimen(run),
+                is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
                 can_crack=bool(run.moves and run.crack_modes), has_properties=bool(data["properties"]))
 
@@ -77,7 +81,26 @@ def run_page(run: Results) -> str:
 def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
     """Those of the run; only one whose place the curve has leads there."""
     places = {mark["id"] for mark in data["course"]["marks"]}
-    return [card if card.mark in places else replace(card, mark="") for card in cards(run)]
+    return [replace(card, mark=card.mark if card.mark in places else "",
+                    of=_tested(run) if card.mark == "peak" and card.unit == "MPa" else "") for card in cards(run)]
+
+
+def _tested(run: Results) -> str:
+    """How much a number of the run stands for: one specimen, of so many blocks."""
+    blocks = run.summary.get("specimen", {}).get("blocks")
+    count = f", {blocks:,} blocks" if isinstance(blocks, int) else ""
+    space = (", in space" if extent_of_cracks(run)[0] == "Area" else ", in the plane") if run.crack_modes else ""
+    seed = run.manifest.get("seed")
+    return f"one specimen{f' (seed {seed})' if seed is not None else ''}{count}{space}"
+
+
+def _temperature(run: Results) -> list[str]:
+    """Of a cold test its temperature."""
+    known = run.history["temperature_degC"]
+    known = known[np.isfinite(known)]
+    if not run.moves or not run.uniform or not len(known) or np.ptp(known) > _SAME_TEMPERATURE:
+        return []
+    return [f"{known[0]:.0f} °C throughout"]
 
 
 def _without_formulas(fact: str) -> str:
@@ -100,7 +123,7 @@ def _shown(value: object) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def _steps(body: dict[str, Any] | None) -> list[tuple[str, str]]:
+def _steps(run: Results, body: dict[str, Any] | None) -> list[tuple[str, str]]:
     """Of what the page rounds, and to which step."""
     if body is None:
         return []
@@ -110,8 +133,9 @@ def _steps(body: dict[str, Any] | None) -> list[tuple[str, str]]:
              "creep_y": ("creep strains", 1.0, "")}
     found = [(label, f"{factor * body['steps'][name]:.3g} {unit}".strip())
              for name, (label, factor, unit) in names.items() if name in body["steps"]]
-    found += [(f"energies that contacts lost by {name.removeprefix('lost_')}", f"{step:.3g} J")
-              for name, step in body["steps"].items() if name.startswith("lost_")]
+    called = {column: label for column, label, *_ in energies_out(run)}
+    found += [(f"energies that contacts lost: {called[f'dissipated_{loss}_J']}", f"{step:.3g} J")
+              for name, step in body["steps"].items() if (loss := name.removeprefix("lost_")) != name]
     return [*found, ("damages", "1/127")] if body["modes"] else found
 
 

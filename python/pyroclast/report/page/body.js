@@ -1,6 +1,9 @@
 // A body of the plane: its blocks painted line by line into pixels, each pixel with the block that it shows, and its
 // cracks as lines. Blocks are convex; the same frame gives the same pixels on every machine.
 
+const ON_SIDE = 1e-4; // of a side: how near to it corners count as on it
+const ONCE_ALONG = 0.15; // of a side: how much longer or shorter a line along it may be
+
 class Body {
   constructor(about, arrays, frames) {
     Object.assign(this, {about, arrays, frames, ranges: {}, kept: {}, owner: null});
@@ -44,7 +47,7 @@ class Body {
     const box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity};
     for (let i = 0; i < this.corners; i++) takeIn(box, corner.at(i, 0), corner.at(i, 1));
     const air = 0.07 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
-    return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.4 * air, y1: box.y1 + 0.4 * air};
+    return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.8 * air, y1: box.y1 + 0.8 * air};
   }
 
   get moves() {
@@ -149,6 +152,7 @@ class Body {
   // What the ends of the colours stand for, over all frames; a few largest values may lie beyond.
   range(field) {
     if (this.ranges[field]) return this.ranges[field];
+    if (field === "temperature" && this.hasIsotherms) return (this.ranges[field] = this.temperatureRange());
     const all = [];
     const every = Math.max(1, Math.floor(this.frames.length / 24));
     for (let f = this.frames.length - 1; f >= 0; f -= every) {
@@ -164,6 +168,20 @@ class Body {
     const low = field === "temperature" ? all[0] : 0,
       high = field === "temperature" ? all[all.length - 1] : at(0.99);
     return (this.ranges[field] = {low, high: high > low ? high : low + 1, isTwoSided: false});
+  }
+
+  // Over all frames and corners, so that its end is the highest temperature that the run tells.
+  temperatureRange() {
+    const {values, width, step} = this.arrays.temperature,
+      isOf = new Uint8Array(this.corners);
+    let [low, high] = [Infinity, -Infinity];
+    for (let b = 0; b < this.blocks; b++) if (!this.bearing[b]) isOf.fill(1, this.first[b], this.first[b + 1]);
+    for (let k = 0; k < values.length; k++) {
+      if (!isOf[k % width]) continue;
+      if (values[k] < low) low = values[k];
+      if (values[k] > high) high = values[k];
+    }
+    return {low: step * low, high: high > low ? step * high : step * low + 1, isTwoSided: false};
   }
 
   // Of each contact the step at which its damage by any mode was first found above a half; -1 where it never was.
@@ -339,10 +357,87 @@ class Body {
     return {block, crack};
   }
 
-  // Lines of equal temperature: pieces [x0, y0, x1, y1] in pixels, by linear triangles about the middle of each block.
-  isotherms(frame, level) {
+  // Corners of the polygon that shows a block: the first and the one behind the last.
+  cornersOf(block) {
+    return [this.first[block], this.first[block + 1]];
+  }
+
+  // Where a corner was made, m in the plane of the picture.
+  madeAt(i) {
+    return [this.arrays.corner.at(i, 0), this.arrays.corner.at(i, 1)];
+  }
+
+  // Of a pixel that shows a block: corners i and j of the triangle about the block's middle in which it lies, their
+  // shares p and q of its values, and `rest`, where the place was made, m in the plane of the picture.
+  within(block, x, y) {
+    const {px, py} = this,
+      [from, to] = this.cornersOf(block);
+    let cx = 0,
+      cy = 0;
+    const middle = [0, 0];
+    for (let i = from; i < to; i++) {
+      cx += px[i] / (to - from);
+      cy += py[i] / (to - from);
+      this.madeAt(i).forEach((v, k) => {
+        middle[k] += v / (to - from);
+      });
+    }
+    let best = {i: from, j: from, p: 0, q: 0, least: -Infinity};
+    for (let i = from; i < to; i++) {
+      const j = i + 1 < to ? i + 1 : from;
+      const [ax, ay, bx, by] = [px[i] - cx, py[i] - cy, px[j] - cx, py[j] - cy],
+        area = ax * by - ay * bx;
+      const p = ((x - cx) * by - (y - cy) * bx) / area,
+        q = (ax * (y - cy) - ay * (x - cx)) / area;
+      const least = Math.min(p, q, 1 - p - q);
+      if (least > best.least) best = {i, j, p, q, least};
+    }
+    const {i, j, p, q} = best,
+      [one, other] = [this.madeAt(i), this.madeAt(j)];
+    return {...best, rest: middle.map((v, k) => (1 - p - q) * v + p * one[k] + q * other[k])};
+  }
+
+  // The side of the specimen that is hottest in a frame, and how deep below it, on average along it, temperatures lie:
+  // [[temperature, m]]. Only those whose isotherm goes along that side from end to end, once.
+  depths(frame, levels) {
+    const {corner, temperature} = this.arrays,
+      box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity},
+      [x, y] = [0, 1].map((k) => Float64Array.from({length: this.corners}, (_, i) => corner.at(i, k))),
+      corners = [];
+    for (let b = 0; b < this.blocks; b++)
+      if (!this.bearing[b]) for (let i = this.first[b]; i < this.first[b + 1]; i++) corners.push(i);
+    for (const i of corners) takeIn(box, x[i], y[i]);
+    const sides = [
+      {side: "left side", from: x, along: y, at: box.x0, sign: 1, length: box.y1 - box.y0},
+      {side: "right side", from: x, along: y, at: box.x1, sign: -1, length: box.y1 - box.y0},
+      {side: "lower side", from: y, along: x, at: box.y0, sign: 1, length: box.x1 - box.x0},
+      {side: "upper side", from: y, along: x, at: box.y1, sign: -1, length: box.x1 - box.x0},
+    ];
+    for (const s of sides) {
+      const on = corners.filter((i) => Math.abs(s.from[i] - s.at) < ON_SIDE * s.length);
+      s.heat = on.reduce((sum, i) => sum + temperature.at(frame, i), 0) / on.length;
+    }
+    const hot = sides.reduce((p, q) => (q.heat > p.heat ? q : p)),
+      isAcross = hot.from === x,
+      found = [];
+    for (const level of levels) {
+      let [run, sum] = [0, 0];
+      for (const [x0, y0, x1, y1] of this.isotherms(frame, level, x, y)) {
+        const along = isAcross ? Math.abs(y1 - y0) : Math.abs(x1 - x0),
+          middle = isAcross ? (x0 + x1) / 2 : (y0 + y1) / 2;
+        run += along;
+        sum += along * hot.sign * (middle - hot.at);
+      }
+      if (Math.abs(run / hot.length - 1) < ONCE_ALONG) found.push([level, sum / run]);
+    }
+    return {side: hot.side, depths: found};
+  }
+
+  // Lines of equal temperature: pieces [x0, y0, x1, y1], by linear triangles about the middle of each block. px, py:
+  // places of the corners, pixels if not given.
+  isotherms(frame, level, px = this.px, py = this.py) {
     const {temperature} = this.arrays,
-      {px, py, first} = this,
+      {first} = this,
       found = [];
     for (let b = 0; b < this.blocks; b++) {
       if (this.bearing[b]) continue;

@@ -19,6 +19,7 @@ const COLOURS = [
   "var(--warn-line)",
   "var(--faint)",
 ];
+const RUN_COLOURS = ["var(--one)", "var(--other)", "var(--warn-line)", "var(--faint)"]; // none is that of a mode
 const DASHES = ["", "7 3", "2 2", "7 3 2 3"];
 
 // The history: columns by name, quantities by id.
@@ -43,14 +44,11 @@ class Course {
     const q = this.quantity(id);
     return this.column(q.column).map((v) => v * q.factor);
   }
-  sum(ending) {
-    const total = new Float64Array(this.rows);
-    for (const mode in this.about.modes)
-      for (const interface_ of this.about.modes[mode]) {
-        const values = this.column(`${mode}_${interface_}${ending}`);
-        for (let i = 0; i < this.rows; i++) total[i] += values[i] || 0;
-      }
-    return total;
+  varies(id) {
+    const values = this.of(id).filter(isFinite);
+    let [low, high] = [Infinity, -Infinity];
+    for (const v of values) [low, high] = [Math.min(low, v), Math.max(high, v)];
+    return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
   }
   // Change of a column over a piece of rows; a cell that is empty counts as the nearest one that is not.
   change(name, [a, b]) {
@@ -63,11 +61,16 @@ class Course {
   }
 }
 
+// A table; a head is a text, or a text and what it means.
 function table(host, head, rows) {
   const scroll = made("div", null, host, "scroll"),
     one = made("table", null, scroll),
     line = made("tr", null, made("thead", null, one));
-  for (const text of head) made("th", text, line);
+  for (const one of head) {
+    const [text, meaning] = [one].flat();
+    if (meaning) made("abbr", text, made("th", null, line)).title = meaning;
+    else made("th", text, line);
+  }
   const below = made("tbody", null, one);
   for (const cells of rows) {
     const row = made("tr", null, below);
@@ -100,4 +103,6 @@ function tellModes(key, body) {
 
 // The unit in the brackets of a label.
 const unitOf = (label) => (label.match(/\[(.*)\]/) || ["", ""])[1];
+// A number with its unit; "10⁻³" is a factor.
+const withUnit = (text, unit) => `${text}${unit.startsWith("10") ? "·" : " "}${unit}`;
 const page = JSON.parse($("data").textContent);

@@ -1,6 +1,7 @@
 // The page of several runs: curves together, specimens where they have the same strain or temperature.
 
 const SHARES = 200; // of the slider
+const SIGNS = {good: "✓", doubt: "!", bad: "✗"};
 
 // The mean of curves over a common x and their least and greatest values, as far as all go that have two points; null
 // where fewer than two have, or have no x in common.
@@ -71,11 +72,11 @@ class ComparePage {
       first = this.runs[0].course;
     const curves = this.runs.map((r) => ({x: r.course.of(over), y: r.course.of(of)}));
     const series = curves.map((c, k) => ({
-      name: page.seeds ? "" : this.runs[k].name,
+      name: page.seeds ? "" : `${SIGNS[this.runs[k].level]} ${this.runs[k].name}`,
       ...(k ? {x: c.x} : {}),
       y: c.y,
-      colour: page.seeds ? "var(--faint)" : COLOURS[k % COLOURS.length],
-      dash: DASHES[Math.floor(k / COLOURS.length) % 4],
+      colour: page.seeds ? "var(--faint)" : RUN_COLOURS[k % RUN_COLOURS.length],
+      dash: DASHES[Math.floor(k / RUN_COLOURS.length) % 4],
       width: page.seeds ? 0.7 : 1.8,
     }));
     const b = page.seeds ? band(curves) : null;
@@ -134,6 +135,7 @@ class ComparePage {
       specimen = new Specimen(canvas, run.body);
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", name);
+    if (isOfBoth) specimen.key = made("div", null, host, "key");
     const told = made("p", "", host, "note");
     if (isOfBoth) return Object.assign(specimen, {told});
     return (run.specimen = Object.assign(specimen, {told}));
@@ -178,7 +180,7 @@ class ComparePage {
       run.specimen.frame = best;
       const cracks = run.body.modes.length ? `, ${run.body.cracks(best).length} cracks` : "";
       run.specimen.told.textContent =
-        `frame ${run.frames[best].number}: ${number(x[run.frames[best].row], 4)} ${unitOf(q.label)}${cracks}`;
+        `frame ${run.frames[best].number}: ${withUnit(number(x[run.frames[best].row], 4), unitOf(q.label))}${cracks}`;
     }
     $("now").textContent = `${q.label}: ${number(place, 4)}`;
     this.redraw();
@@ -218,7 +220,7 @@ class ComparePage {
       ofB = new Set(b.body.cracks(b.frame)),
       theme = specimen.theme();
     const line = (c) => specimen.body.line(c),
-      colours = this.bothColours(theme);
+      colours = this.bothColours.map((name) => theme.value(name.slice(4, -1)));
     const sets = [
       [...ofA].filter((c) => !ofB.has(c)),
       [...ofB].filter((c) => !ofA.has(c)),
@@ -231,8 +233,9 @@ class ComparePage {
     this.counts = sets.map((s) => s.length);
   }
 
-  bothColours(theme) {
-    return ["--curve", "--tension", "--ink"].map((name) => theme.value(name));
+  // As the curves of the two runs.
+  get bothColours() {
+    return [...this.both.pair.map((k) => RUN_COLOURS[k % RUN_COLOURS.length]), "var(--ink)"];
   }
 
   tellKey() {
@@ -243,11 +246,10 @@ class ComparePage {
     if (field !== "material") tellScale(key, body, field);
     tellModes(key, body);
     if (!this.both) return;
-    const [a, b] = this.both.pair.map((k) => this.runs[k].name);
-    key.append(
-      entry({name: `only in ${a}`, colour: "var(--curve)"}),
-      entry({name: `only in ${b}`, colour: "var(--tension)"}),
-      entry({name: "in both", colour: "var(--ink)"}),
+    const [a, b] = this.both.pair.map((k) => this.runs[k].name),
+      names = [`only in ${a}`, `only in ${b}`, "in both"];
+    this.both.specimen.key.replaceChildren(
+      ...names.map((name, k) => entry({name, colour: this.bothColours[k]})),
     );
   }
 

@@ -29,8 +29,10 @@ const shown = (v) =>
       : String(+v.toPrecision(5))
   ).replace("-", "−");
 
+const ONE_WAY = 0.02; // of the way on: so much may a curve go back that is brushed across
+
 // A chart of series over rows. `drawing`: {x, label, yLabel, series: [{name, y, base, colour, width, dash, fill, of}],
-// log, marks: [{id, label, row}], stages: [{first, last, kind}], dots: [row], from0, legend}. `of` has own x values.
+// log, marks: [{id, label, rows}], stages: [{first, last, kind}], dots: [row], from0, legend}. `of` has own x values.
 class Chart {
   constructor(host, {height = 280, name = "", pick, hover, brush} = {}) {
     this.host = host;
@@ -176,15 +178,52 @@ class Chart {
   }
 
   mark(mark, d) {
-    const [x, y] = [d.x[mark.row], d.series[0].y[mark.row]];
+    const row = mark.rows[mark.rows.length - 1],
+      [x, y] = [d.x[row], d.series[0].y[row]];
     if (!isFinite(x) || !isFinite(y)) return;
     const group = svg("g", {class: "mark", "data-mark": mark.id}, this.overlay);
     svg("circle", {cx: this.X(x), cy: this.Y(y), r: 5}, group);
     svg("title", {}, group, mark.label);
   }
 
-  // The row whose point of the first series is nearest to a place on the screen.
-  nearest(px, py) {
+  // Whether rows follow one another along x, but for little steps back.
+  get goesOneWay() {
+    const d = this.drawing;
+    let before = NaN,
+      on = 0,
+      back = 0;
+    for (let i = 0; i < d.x.length; i++) {
+      if (!isFinite(d.x[i]) || (d.within && !d.within(i))) continue;
+      if (d.x[i] > before) on += d.x[i] - before;
+      if (d.x[i] < before) back += before - d.x[i];
+      before = d.x[i];
+    }
+    return Math.min(on, back) <= ONE_WAY * Math.max(on, back);
+  }
+
+  // First and last row from one place on the screen to another: what lies between them across; where a curve goes back
+  // and forth across, between the points nearest to both.
+  rowsBetween(from, to) {
+    const d = this.drawing,
+      ends = (isAcross) => {
+        const rows = [this.nearest(...from, isAcross), this.nearest(...to, isAcross)];
+        return [Math.min(...rows), Math.max(...rows)];
+      };
+    if (!this.goesOneWay) return ends(false);
+    const [low, high] = [from[0], to[0]].sort((p, q) => p - q);
+    let first = -1,
+      last = -1;
+    for (let i = 0; i < d.x.length; i++) {
+      const x = this.X(d.x[i]);
+      if (!(x >= low && x <= high) || (d.within && !d.within(i))) continue;
+      if (first < 0) first = i;
+      last = i;
+    }
+    return first < 0 ? ends(true) : [first, last];
+  }
+
+  // The row whose point of the first series is nearest to a place on the screen, or nearest across alone.
+  nearest(px, py, isAcross = false) {
     const d = this.drawing,
       y = d.series[0].y;
     let best = -1,
@@ -192,7 +231,7 @@ class Chart {
     for (let i = 0; i < d.x.length; i++) {
       if (!isFinite(d.x[i]) || (d.within && !d.within(i))) continue;
       const across = this.X(d.x[i]) - px,
-        up = isFinite(y[i]) ? 0.4 * (this.Y(y[i]) - py) : 0;
+        up = !isAcross && isFinite(y[i]) ? 0.4 * (this.Y(y[i]) - py) : 0;
       const distance = across * across + up * up;
       if (distance < least) [best, least] = [i, distance];
     }
@@ -258,8 +297,7 @@ class Chart {
         row = this.nearest(...here);
       if (row < 0) return;
       if (start && this.on.brush && Math.abs(here[0] - start[0]) > 5) {
-        const other = this.nearest(...start);
-        this.on.brush([Math.min(row, other), Math.max(row, other)], false);
+        this.on.brush(this.rowsBetween(start, here), false);
       } else if (this.on.hover && e.pointerType === "mouse") this.on.hover(row);
     });
     this.svg.addEventListener("pointerup", (e) => {
@@ -270,8 +308,7 @@ class Chart {
       const row = this.nearest(...here);
       if (row < 0) return;
       if (this.on.brush && Math.abs(here[0] - from[0]) > 5) {
-        const other = this.nearest(...from);
-        this.on.brush([Math.min(row, other), Math.max(row, other)], true);
+        this.on.brush(this.rowsBetween(from, here), true);
       } else if (this.on.pick) this.on.pick(row);
     });
     this.svg.addEventListener("pointercancel", () => {

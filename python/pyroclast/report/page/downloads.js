@@ -23,12 +23,14 @@ const cell = (v) =>
 
 const csv = (head, rows) => [head, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
 
-// A frame of a body as SVG: polygons in their colours and cracks as lines.
-function frameAsSvg(body, W, H, colour, strokes, title) {
+const escaped = (text) => text.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"})[c]);
+
+// A frame of a body as SVG: polygons in their colours, cracks as lines, and texts.
+function frameAsSvg(body, W, H, colour, strokes, title, {texts, ink, ground, size}) {
   body.polygons();
   const parts = [
     `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}">`,
-    `<title>${title.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"})[c])}</title>`,
+    `<title>${escaped(title)}</title>`,
   ];
   for (let p = 0; p + 1 < body.first.length; p++) {
     let path = "";
@@ -43,6 +45,12 @@ function frameAsSvg(body, W, H, colour, strokes, title) {
       `<path fill="none" stroke-linecap="round" stroke="${stroke}" stroke-width="${width}" d="${lines
         .map((l) => `M${l[0].toFixed(1)} ${l[1].toFixed(1)}L${l[2].toFixed(1)} ${l[3].toFixed(1)}`)
         .join("")}"/>`,
+    );
+  for (const {text, x, y, align} of texts)
+    parts.push(
+      `<text x="${x}" y="${y}" text-anchor="${align === "right" ? "end" : "start"}" font-family="sans-serif" ` +
+        `font-size="${size}" fill="${ink}" stroke="${ground}" stroke-width="${size / 4}" ` +
+        `paint-order="stroke">${escaped(text)}</text>`,
     );
   return parts.join("\n") + "\n</svg>\n";
 }

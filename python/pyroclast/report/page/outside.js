@@ -257,6 +257,13 @@ class OutsideBody extends SolidBody {
       : hidden;
   }
 
+  within(block, x, y) {
+    const {frame, magnification} = this.placed,
+      u = this.displacement(frame, block),
+      moved = this.axes.slice(0, 2).map((axis) => magnification * axis.reduce((sum, v, k) => sum + v * u[k], 0));
+    return {rest: this.fromPixels(x, y, this.W, this.H).map((v, k) => v - moved[k])};
+  }
+
   at(x, y, W, H, frame, reach) {
     const found = super.at(x, y, W, H, frame, reach);
     return found.block < this.blocks ? found : {block: -1, crack: found.block - this.blocks};

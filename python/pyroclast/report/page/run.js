@@ -8,7 +8,9 @@ class RunPage extends RunTabs {
     this.frames = page.frames;
     this.body = page.body && bodyOf(page.body, arrays, page.frames);
     this.frame = Math.max(0, this.frames.length - 1);
-    this.piece = null;
+    this.piece = null; // first and last row
+    this.begun = null; // row of one end of a piece whose other end is still open
+    this.asked = null; // {row, name} of a place on the curve whose frame is shown
     this.pins = [];
     this.charts = [];
     this.axes = {over: page.course.over, of: page.course.drawn[0] || "", stage: ""};
@@ -16,7 +18,7 @@ class RunPage extends RunTabs {
       height: 320,
       name: "curve",
       pick: (row) => this.showRow(row),
-      brush: (piece, isOver) => this.brush(piece, isOver),
+      brush: (piece, isOver) => this.drag(piece, isOver),
     });
     if (this.body) this.makeSpecimen();
     this.makeAxes();
@@ -82,11 +84,17 @@ class RunPage extends RunTabs {
     this.point(...s.probe);
   }
 
-  // One end of the piece is put where the frame is, the other stays.
+  // One end of a piece is put where the curve is looked at; the other stays, or is still open.
   pieceEnd(which) {
-    const ends = this.piece || [this.row, this.row];
-    ends[which] = this.row;
-    this.brush([Math.min(...ends), Math.max(...ends)], true);
+    if (this.begun && this.begun.which !== which) return this.closePiece(this.begun.row, this.row);
+    if (this.piece) return this.closePiece(this.piece[1 - which], this.row);
+    this.begun = {row: this.row, which};
+    this.tellBegun();
+  }
+
+  closePiece(one, other) {
+    if (one !== other) this.begun = null;
+    this.brush([Math.min(one, other), Math.max(one, other)], true);
   }
 
   downloads() {
@@ -116,7 +124,9 @@ class RunPage extends RunTabs {
       file = (ending) => `${name}_frame_${this.frames[this.frame].number}.${ending}`;
     $("save_png").onclick = () => $("body").toBlob((blob) => save(file("png"), blob));
     $("save_svg").onclick = () => {
-      const theme = s.theme();
+      const theme = s.theme(),
+        {texts, bar} = s.labels(),
+        look = {texts, ink: theme.value("--ink"), ground: theme.value("--ground"), size: 12 * s.ratio};
       saveText(
         file("svg"),
         frameAsSvg(
@@ -124,8 +134,9 @@ class RunPage extends RunTabs {
           s.W,
           s.H,
           s.painter(theme),
-          s.strokes(theme),
+          [...s.strokes(theme), {colour: look.ink, width: 1.6 * s.ratio, lines: bar}],
           `${page.title}, ${this.told(this.frame)}`,
+          look,
         ),
         "image/svg+xml",
       );

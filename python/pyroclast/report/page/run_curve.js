@@ -15,7 +15,10 @@ class RunCurve {
   }
 
   makeAxes() {
-    const there = page.course.quantities.filter((q) => this.course.of(q.id).some(isFinite));
+    // what stays the same all through, such as the temperature of a cold test, makes no curve
+    const there = page.course.quantities.filter(
+      (q) => Object.values(this.axes).includes(q.id) || this.course.varies(q.id),
+    );
     for (const [id, now] of [
       ["over", this.axes.over],
       ["of", this.axes.of],
@@ -83,7 +86,9 @@ class RunCurve {
     this.curve.setPiece(this.piece);
   }
 
+  // Where the curve is looked at: the place that was asked for, else that of the frame.
   get row() {
+    if (this.asked) return this.asked.row;
     return this.frames.length ? this.frames[this.frame].row : null;
   }
 
@@ -110,12 +115,13 @@ class RunCurve {
   makeMarks() {
     for (const mark of page.course.marks) {
       const x = this.course.quantity(page.course.over),
-        value = this.course.of(page.course.over)[mark.row];
+        values = mark.rows.map((row) => this.course.of(page.course.over)[row]);
       const button = made(
         "button",
-        `${mark.label}${isFinite(value) ? ` (${number(value)} ${unitOf(x.label)})` : ""}`,
+        `${mark.label}${values.every(isFinite) ? ` (${withUnit(this.toldSpan(values), unitOf(x.label))})` : ""}`,
         $("marks"),
       );
+      if (mark.rows.length > 1) button.title = "what broke in this piece of the curve";
       button.type = "button";
       button.dataset.mark = mark.id;
     }
@@ -125,13 +131,41 @@ class RunCurve {
     });
   }
 
+  // Shows the frame of a mark; a fall becomes the piece that is looked at, unless another piece has begun.
   showMark(id) {
     const mark = page.course.marks.find((m) => m.id === id);
     if (!mark) return;
-    if (!this.body) return this.hover(mark.row);
-    const frame = this.frameAt(mark.row);
-    this.clearPiece();
-    this.show(frame, this.newIn(frame));
+    const row = mark.rows[mark.rows.length - 1],
+      frame = this.body ? this.frameAt(row) : 0;
+    if (!this.begun) this.clearPiece();
+    if (mark.rows.length > 1 && !this.begun) this.brush(mark.rows, true);
+    else if (!this.body) this.hover(row);
+    else this.show(frame, this.newIn(frame), {row, name: "the mark", ...this.pointedAt(mark.id, row, frame)});
+  }
+
+  // What a mark points at in the specimen: the contact that broke first, or all damaged ones.
+  pointedAt(id, row, frame) {
+    if (id === "extent") return {isOfDamage: true};
+    if (id !== "first") return {};
+    const kinds = [];
+    for (const mode in page.course.modes)
+      for (const name of page.course.modes[mode])
+        if (this.course.column(`${mode}_${name}_broken`)[row] > 0) kinds.push([mode, name.replaceAll("_", "–")]);
+    const {about, arrays} = this.body,
+      broken = (f, c, mode) => arrays[`damage_${mode}`].at(f, c) >= 1;
+    const first = [];
+    for (let c = 0; c < this.body.contacts; c++)
+      for (const [mode, name] of kinds)
+        if (about.interfaces[arrays.interface.values[c]] === name)
+          if (broken(frame, c, mode) && !(frame && broken(frame - 1, c, mode))) first.push({c, mode, name});
+    return {first};
+  }
+
+  // One value or two ends, in three digits, or four where three do not tell the ends apart.
+  toldSpan(values) {
+    const ends = [3, 4, 5].map((digits) => values.map((v) => number(v, digits)));
+    const [from, to] = ends.find(([p, q]) => p !== q) || ends[0];
+    return to === undefined ? from : `${from} to ${to}`;
   }
 
   // Contacts whose damage passed a half since the frame before.

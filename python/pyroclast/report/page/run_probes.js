@@ -174,6 +174,6 @@ class RunProbes extends RunSpecimen {
         colour: css(colourAt(ONE_SIDED, 0.2 + (0.65 * f) / Math.max(1, last))),
       })),
     ];
-    this.along.draw({x, label: "distance from the first block on the line [mm]", yLabel: label, series});
+    this.along.draw({x, label: "distance along the line, as the body was made [mm]", yLabel: label, series});
   }
 }

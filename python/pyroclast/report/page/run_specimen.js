@@ -114,17 +114,63 @@ class RunSpecimen extends RunPiece {
     return choices.filter((m) => m * most < 0.06 * size && m <= 20).pop() || 1;
   }
 
-  show(frame, lit = null) {
+  // Shows a frame. lit: contacts with a halo; asked: {row, name} of the place on the curve that it is shown for, with
+  // what that points at.
+  show(frame, lit = null, asked = null) {
     this.frame = Math.max(0, Math.min(this.frames.length - 1, frame));
-    this.specimen.frame = this.frame;
-    this.specimen.lit = lit || (this.piece ? this.specimen.lit : null);
+    this.asked = asked;
+    const first = (asked && asked.first) || [];
+    Object.assign(this.specimen, {
+      frame: this.frame,
+      lit: lit || (this.piece ? this.specimen.lit : null),
+      ringed: new Set(first.map(({c}) => c)),
+      isOfDamage: Boolean(asked && asked.isOfDamage),
+      caption: asked ? this.toldGap(asked) : "",
+    });
     $("at").value = this.frame;
     const now = this.told(this.frame);
-    $("now").textContent = lit && lit.size ? `${now}; ${lit.size} contacts stand out` : now;
+    $("now").textContent = [
+      now,
+      ...(lit && lit.size ? [`${lit.size} contacts passed a damage of one half (with a halo)`] : []),
+      ...(first.length ? [this.toldFirst(first)] : []),
+      ...(this.specimen.isOfDamage ? [this.toldDamage()] : []),
+    ].join("; ");
     $("body").setAttribute("aria-label", `specimen, ${now}`);
     $("at").setAttribute("aria-valuetext", now);
     this.hover(null);
     this.redraw();
+  }
+
+  // How far the frame that is shown lies from the place that was asked for; "" where it is that place.
+  toldGap({row, name}) {
+    const at = this.frames[this.frame],
+      {label} = this.course.quantity(page.course.over),
+      values = this.course.of(page.course.over),
+      gap = values[at.row] - values[row];
+    if (at.row === row || !isFinite(gap)) return "";
+    const [where, far] = [number(values[at.row]), number(Math.abs(gap), 2)].map((v) => withUnit(v, unitOf(label)));
+    return `frame at ${where}, ${far} ${at.row > row ? "after" : "before"} ${name}`;
+  }
+
+  // Which contacts may have broken first, and where they were made.
+  toldFirst(first) {
+    const most = 3,
+      places = first.slice(0, most).map(({c}) => {
+        const at = this.body.whereContact(c).map((v) => number(1e3 * v));
+        return `(${at.join(", ")}) mm`;
+      }),
+      kinds = [...new Set(first.map(({mode, name}) => `${mode}, ${name}`))].join(" or "),
+      more = first.length > most ? ` and ${first.length - most} more` : "";
+    return first.length === 1
+      ? `first to break: ${kinds}, at ${places[0]} (ring)`
+      : `one of ${first.length} broke first: ${kinds}, at ${places.join(", ")}${more} (rings)`;
+  }
+
+  toldDamage() {
+    let damaged = 0;
+    for (let c = 0; c < this.body.contacts; c++) if (this.body.worst(this.frame, c)[1] > 0) damaged++;
+    const known = this.body.about.solid ? "of the contacts that become cracks " : "";
+    return `${known}${damaged} are damaged (thin), ${this.body.cracks(this.frame).length} by more than one half`;
   }
 
   told(frame) {
@@ -158,6 +204,7 @@ class RunSpecimen extends RunPiece {
         if (shownMaterials.has(k)) key.append(entry({name, colour: css(s.theme().phases[k]), base: true}));
       });
     } else tellScale(key, this.body, s.colour);
+    if (s.colour === "temperature" && this.body.hasIsotherms) this.tellDepths(key);
     if (!this.body.modes.length || s.cracks === "none") return;
     if (s.cracks === "mode") tellModes(key, this.body);
     if (s.cracks === "opening")
@@ -173,13 +220,25 @@ class RunSpecimen extends RunPiece {
         entry({name: `youngest: ${this.toldStep(last)}`, colour: css(colourAt(ONE_SIDED, 0.15))}),
       );
     }
+    if (s.isOfDamage)
+      for (const mode of this.body.modes)
+        key.append(entry({name: `${mode}, damaged by less than half (thin)`, colour: `var(--${mode}-tint)`}));
     if (s.lit && s.lit.size)
       key.append(
         entry({
-          name: this.piece ? "passed a damage of a half in the piece" : "new in this frame",
+          name: `halo: passed a damage of one half in ${this.piece ? "the piece" : "this frame"}`,
           colour: "var(--lit)",
         }),
       );
+  }
+
+  // How deep temperatures lie below the heated side, and which lines the picture has.
+  tellDepths(key) {
+    const {side, depths} = this.body.depths(this.frame, [500, 300, 100]),
+      {levels} = this.specimen;
+    const told = depths.map(([t, d]) => `${t} °C at ${number(1e3 * d, 2)} mm`).join(", ");
+    if (told) made("span", `mean depth from the ${side}: ${told}`, key).id = "depths";
+    if (levels.length) made("span", `lines: ${levels.map(shown).join(", ")} °C`, key);
   }
 
   // A step, and where the curve was at it.
@@ -187,7 +246,7 @@ class RunSpecimen extends RunPiece {
     const row = this.course.column("step").findIndex((s) => s >= step),
       over = this.course.quantity(page.course.over);
     const at = row < 0 || !over ? NaN : this.course.of(over.id)[row];
-    return `step ${step}${isFinite(at) ? ` (${number(at)} ${unitOf(over.label)})` : ""}`;
+    return `step ${step}${isFinite(at) ? ` (${withUnit(number(at), unitOf(over.label))})` : ""}`;
   }
 
   play() {

@@ -64,7 +64,7 @@ class RunTabs extends RunProbes {
       height: 320,
       name: "energies",
       pick: (row) => this.showRow(row),
-      brush: (p, o) => this.brush(p, o),
+      brush: (p, o) => this.drag(p, o),
     });
     let base = new Float64Array(this.course.rows);
     const series = [];
@@ -91,7 +91,7 @@ class RunTabs extends RunProbes {
     const chart = this.chart("crack_lengths", {
       name: label,
       pick: (row) => this.showRow(row),
-      brush: (p, o) => this.brush(p, o),
+      brush: (p, o) => this.drag(p, o),
     });
     const series = [];
     for (const mode in modes)

@@ -126,6 +126,7 @@ class CutBody extends SolidBody {
       corners: count,
       first: new Int32Array(polygons.length + 1),
       owner: new Int32Array(polygons.length),
+      polygonOf: new Int32Array(this.blocks).fill(-1),
       rest: new Float64Array(3 * count),
       x: new Float64Array(count),
       y: new Float64Array(count),
@@ -135,6 +136,7 @@ class CutBody extends SolidBody {
     let i = 0;
     polygons.forEach(([b, corners], p) => {
       this.owner[p] = b;
+      this.polygonOf[b] = p;
       for (const corner of corners) this.rest.set(corner, 3 * i++);
       this.first[p + 1] = i;
     });
@@ -191,6 +193,13 @@ class CutBody extends SolidBody {
     return ends;
   }
 
+  cornersOf(block) {
+    return [this.first[this.polygonOf[block]], this.first[this.polygonOf[block] + 1]];
+  }
+  madeAt(i) {
+    return [this.rest[3 * i + this.right], this.rest[3 * i + this.up]];
+  }
+
   bounds() {
     const box = {
       x0: this.ends[this.right][0],
@@ -200,7 +209,7 @@ class CutBody extends SolidBody {
     };
     for (let i = 0; i < this.corners; i++) takeIn(box, this.rest[3 * i + this.right], this.rest[3 * i + this.up]);
     const air = 0.09 * Math.max(box.x1 - box.x0, 0.6 * (box.y1 - box.y0));
-    return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.5 * air, y1: box.y1 + 0.5 * air};
+    return {x0: box.x0 - air, x1: box.x1 + air, y0: box.y0 - 0.7 * air, y1: box.y1 + 0.7 * air};
   }
 
   place(frame, magnification) {

@@ -1,9 +1,48 @@
 // A canvas with a body: blocks in the colours of a field, cracks, isotherms, a line across, and what is lit.
 
+const BEHIND = 0.75; // share of the ground in faces that have no halo where others do
+const MOST_PLACES = 16; // that are tried for the name of an isotherm
+
+// Sides of a circle, pixels.
+function circle(x, y, r, count = 28) {
+  const at = (k) => [x + r * Math.cos((2 * Math.PI * k) / count), y + r * Math.sin((2 * Math.PI * k) / count)];
+  return Array.from({length: count}, (_, k) => [...at(k), ...at(k + 1)]);
+}
+
+// A round length, and at most so long.
+function barLength(most) {
+  const power = 10 ** Math.floor(Math.log10(most));
+  return [5, 2, 1].map((f) => f * power).find((length) => length <= most * 1.0001);
+}
+
+function distanceTo([x0, y0, x1, y1], x, y) {
+  const along = ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / ((x1 - x0) ** 2 + (y1 - y0) ** 2 || 1),
+    share = Math.max(0, Math.min(1, along));
+  return Math.hypot(x0 + share * (x1 - x0) - x, y0 + share * (y1 - y0) - y);
+}
+
+// Turn of the line through points, radians, so that a text along it stands upright.
+function slope(points) {
+  const count = points.length,
+    [mx, my] = [0, 1].map((k) => points.reduce((sum, p) => sum + p[k], 0) / count);
+  let [xx, xy, yy] = [0, 0, 0];
+  for (const [x, y] of points) {
+    xx += (x - mx) ** 2;
+    xy += (x - mx) * (y - my);
+    yy += (y - my) ** 2;
+  }
+  return 0.5 * Math.atan2(2 * xy, xx - yy);
+}
+
+const mixed = (one, other, share) => one.map((v, k) => Math.round(v + share * (other[k] - v)));
+
 class Specimen {
   constructor(canvas, body) {
     Object.assign(this, {canvas, body, frame: 0, colour: "material", cracks: "mode", magnification: 1});
-    this.lit = null; // contacts that stand out, a Set
+    this.lit = null; // contacts with a halo, a Set
+    this.ringed = new Set(); // contacts
+    this.isOfDamage = false; // whether contacts damaged by less than a half are drawn too
+    this.caption = ""; // over the picture
     this.across = null; // a line [x0, y0, x1, y1], shares of the picture
     this.probe = null; // [x, y] pixels
     this.context = canvas.getContext("2d");
@@ -44,7 +83,9 @@ class Specimen {
   }
 
   faceColour(c, theme) {
-    return this.lit && this.lit.has(c) ? theme.numbers("--lit") : this.strokeOf(c, theme).colour;
+    const {colour} = this.strokeOf(c, theme),
+      isBehind = this.lit && this.lit.size && !this.lit.has(c);
+    return isBehind ? mixed(colour, theme.numbers("--ground"), BEHIND) : colour;
   }
 
   blockPainter(theme) {
@@ -67,21 +108,101 @@ class Specimen {
     const add = (colour, width, lines) => {
       if (lines.length) all.push({colour, width: width * ratio, lines});
     };
-    if (body.modes.length && this.cracks !== "none") {
+    const lit = this.lit || new Set();
+    const addCracks = (contacts, least) => {
       const groups = new Map();
-      for (const c of body.cracks(frame)) {
+      for (const c of contacts) {
+        const line = body.line(c);
+        if (!isFinite(line[0])) continue;
         const key = this.strokeOf(c, theme);
         if (!groups.has(key.name)) groups.set(key.name, {...key, lines: []});
-        groups.get(key.name).lines.push(body.line(c));
+        groups.get(key.name).lines.push(line);
       }
-      for (const g of [...groups.values()].sort((p, q) => p.order - q.order)) add(css(g.colour), g.width, g.lines);
-    }
-    if (this.lit && this.lit.size) {
-      const lines = [...this.lit].map((c) => body.line(c)).filter((l) => isFinite(l[0]));
-      add(theme.value("--ground"), 6, lines);
-      add(theme.value("--lit"), 3.6, lines);
-    }
+      for (const g of [...groups.values()].sort((p, q) => p.order - q.order))
+        add(css(g.colour), Math.max(g.width, least), g.lines);
+    };
+    const hasCracks = body.modes.length && this.cracks !== "none";
+    if (this.isOfDamage && hasCracks) this.addDamaged(add, theme);
+    if (hasCracks) addCracks(body.cracks(frame).filter((c) => !lit.has(c)), 0);
+    const halo = [...lit].map((c) => body.line(c)).filter((l) => isFinite(l[0]));
+    add(theme.value("--lit"), 7, halo);
+    add(theme.value("--ground"), 4.6, halo);
+    if (hasCracks) addCracks(lit, 2.6);
+    const rings = [...this.ringed].map((c) => body.line(c)).filter((l) => isFinite(l[0]));
+    for (const [name, width] of [
+      ["--ground", 5],
+      ["--lit", 2.4],
+    ])
+      add(
+        theme.value(name),
+        width,
+        rings.flatMap(([x0, y0, x1, y1]) => circle((x0 + x1) / 2, (y0 + y1) / 2, 11 * ratio)),
+      );
     return all;
+  }
+
+  // Contacts that are damaged by a half at most, by their mode.
+  addDamaged(add, theme) {
+    const {body, frame} = this,
+      lines = Object.fromEntries(body.modes.map((mode) => [mode, []])),
+      shownAsCracks = new Set(body.cracks(frame));
+    for (let c = 0; c < body.contacts; c++) {
+      const [mode, damage] = body.worst(frame, c),
+        line = damage > 0 && !shownAsCracks.has(c) ? body.line(c) : [NaN];
+      if (isFinite(line[0])) lines[mode].push(line);
+    }
+    for (const mode of body.modes) add(theme.value(`--${mode}-tint`), 1, lines[mode]);
+  }
+
+  // Texts over the picture, [{text, x, y, align}], and the bar that tells its scale.
+  labels() {
+    const {body, W, H, ratio, caption, magnification} = this,
+      length = barLength((0.22 * W) / body.scale),
+      right = W - 8 * ratio,
+      left = right - length * body.scale,
+      low = H - 6 * ratio,
+      texts = [{text: `${shown(1e3 * length)} mm`, x: left - 6 * ratio, y: low + 2 * ratio, align: "right"}];
+    if (body.moves && magnification)
+      texts.push({
+        text: `displacements ×${magnification}`,
+        x: (body.axes ? 64 : 6) * ratio, // beside the axes
+        y: low + 2 * ratio,
+        align: "left",
+      });
+    if (caption) texts.push({text: caption, x: 6 * ratio, y: 13 * ratio, align: "left"});
+    const tick = 3 * ratio;
+    return {
+      texts,
+      bar: [
+        [left, low, right, low],
+        [left, low - tick, left, low + tick],
+        [right, low - tick, right, low + tick],
+      ],
+    };
+  }
+
+  drawLabels(theme) {
+    const {texts, bar} = this.labels(),
+      {context, ratio} = this;
+    this.stroke(theme.value("--ground"), 4 * ratio, bar);
+    this.stroke(theme.value("--ink"), 1.6 * ratio, bar);
+    for (const {text, x, y, align} of texts) this.write(theme, text, x, y, align);
+    context.textAlign = "center";
+  }
+
+  // A text that can be read on anything.
+  write(theme, text, x, y, align = "center") {
+    const {context, ratio} = this;
+    Object.assign(context, {
+      font: `${12 * ratio}px system-ui, sans-serif`,
+      textAlign: align,
+      lineWidth: 4 * ratio,
+      lineJoin: "round",
+      strokeStyle: theme.value("--ground"),
+      fillStyle: theme.value("--ink"),
+    });
+    context.strokeText(text, x, y);
+    context.fillText(text, x, y);
   }
 
   strokeOf(c, theme) {
@@ -126,6 +247,7 @@ class Specimen {
     if (body.hasIsotherms) this.drawIsotherms(theme);
     if (this.across) this.drawAcross(theme);
     if (this.probe) this.drawProbe(theme);
+    this.drawLabels(theme);
   }
 
   stroke(colour, width, lines) {
@@ -151,22 +273,42 @@ class Specimen {
         high = Math.max(high, values[b]);
       }
     this.levels = high - low < 2 ? [] : ticks(low, high, 6).filter((t) => t > low && t < high);
+    const lines = this.levels.map((level) => body.isotherms(frame, level));
+    this.stroke(theme.value("--ground"), 2.6 * ratio, lines.flat());
+    this.stroke(theme.value("--ink"), 1 * ratio, lines.flat());
+    this.named = []; // places of the names of lines: [x, y, turn]
     this.levels.forEach((level, k) => {
-      const lines = body.isotherms(frame, level);
-      this.stroke(theme.value("--ground"), 2.6 * ratio, lines);
-      this.stroke(theme.value("--ink"), 1 * ratio, lines);
-      if (!lines.length) return;
-      const height = H * (0.16 + 0.06 * (k % 8)); // one below the other, as lines may run close together
-      const [x, y] = lines.reduce((p, q) => (Math.abs(q[1] - height) < Math.abs(p[1] - height) ? q : p));
-      context.font = `${11 * ratio}px system-ui, sans-serif`;
-      context.textAlign = "center";
-      context.lineWidth = 3 * ratio;
-      context.strokeStyle = theme.value("--ground");
-      context.fillStyle = theme.value("--ink");
-      const text = `${shown(level)} °C`;
-      context.strokeText(text, x, y);
-      context.fillText(text, x, y);
+      const others = lines.flatMap((l, n) => (n === k ? [] : l)),
+        place = this.placeOfName(lines[k], others);
+      if (!place) return;
+      this.named.push(place);
+      context.save();
+      context.translate(place[0], place[1]);
+      context.rotate(place[2]);
+      this.write(theme, `${shown(level)} °C`, 0, 4 * ratio);
+      context.restore();
     });
+  }
+
+  // Where the name of an isotherm fits along it: far from other lines and from other names; null where nothing fits.
+  placeOfName(lines, others) {
+    const {W, H, ratio} = this,
+      half = 22 * ratio, // of a name's length
+      away = (x, y) => others.reduce((least, line) => Math.min(least, distanceTo(line, x, y)), Infinity);
+    let best = null,
+      most = 8 * ratio;
+    const middles = lines.map(([x0, y0, x1, y1]) => [(x0 + x1) / 2, (y0 + y1) / 2]),
+      each = Math.max(1, Math.floor(middles.length / MOST_PLACES));
+    for (let i = 0; i < middles.length; i += each) {
+      const [x, y] = middles[i];
+      if (x < 1.2 * half || y < 1.5 * half || x > W - 1.2 * half || y > H - 1.5 * half) continue;
+      if (this.named.some((other) => Math.hypot(x - other[0], y - other[1]) < 2.6 * half)) continue;
+      const turn = slope(middles.filter(([p, q]) => Math.hypot(p - x, q - y) < half)),
+        [dx, dy] = [0.8 * half * Math.cos(turn), 0.8 * half * Math.sin(turn)];
+      const room = Math.min(away(x, y), away(x - dx, y - dy), away(x + dx, y + dy), 3 * half);
+      if (room > most) [best, most] = [[x, y, turn], room];
+    }
+    return best;
   }
 
   // What tells how a solid is turned: its axes, and the box around it where its blocks are not shown.
@@ -209,7 +351,8 @@ class Specimen {
     this.stroke(theme.value("--accent"), 1.6 * ratio, cross);
   }
 
-  // Places on the line across, from its start, m, with the block that lies there: [{at, block, corners, shares}].
+  // Places on the line across, with the block that lies there: [{at, block, i, j, p, q}]. `at` is where the body was
+  // made, from the first of these places along the line, m: displacements do not lengthen it.
   samples(count = 160) {
     const {body, W, H} = this,
       [x0, y0, x1, y1] = this.across,
@@ -219,39 +362,15 @@ class Specimen {
         y = (y0 + ((y1 - y0) * k) / count) * H;
       const block = body.at(x, y, W, H, this.frame, 0).block;
       if (block < 0 || body.bearing[block]) continue;
-      found.push({
-        at: (Math.hypot((x1 - x0) * W, (y1 - y0) * H) * k) / count / body.scale,
-        block,
-        ...this.within(block, x, y),
-      });
+      found.push({block, ...body.within(block, x, y)});
     }
+    if (found.length < 2) return found;
+    const [from, to] = [found[0].rest, found[found.length - 1].rest],
+      way = [to[0] - from[0], to[1] - from[1]],
+      length = Math.hypot(...way) || 1;
+    for (const one of found)
+      one.at = ((one.rest[0] - from[0]) * way[0] + (one.rest[1] - from[1]) * way[1]) / length;
     return found;
-  }
-
-  // Corners i and j of the triangle about a block's middle in which a place lies, and their shares of its values.
-  within(block, x, y) {
-    const {body} = this;
-    if (!body.hasIsotherms) return {};
-    const {px, py, first} = body,
-      from = first[block],
-      to = first[block + 1];
-    let cx = 0,
-      cy = 0;
-    for (let i = from; i < to; i++) {
-      cx += px[i] / (to - from);
-      cy += py[i] / (to - from);
-    }
-    let best = {i: from, j: from, p: 0, q: 0, least: -Infinity};
-    for (let i = from; i < to; i++) {
-      const j = i + 1 < to ? i + 1 : from;
-      const [ax, ay, bx, by] = [px[i] - cx, py[i] - cy, px[j] - cx, py[j] - cy],
-        area = ax * by - ay * bx;
-      const p = ((x - cx) * by - (y - cy) * bx) / area,
-        q = (ax * (y - cy) - ay * (x - cx)) / area;
-      const least = Math.min(p, q, 1 - p - q);
-      if (least > best.least) best = {i, j, p, q, least};
-    }
-    return best;
   }
 
   // Values of the coloured field at samples in a frame: of temperature between the corners, else of the block.
