@@ -42,6 +42,11 @@ class Compared(PageTest):
         only_first, only_other, both = browser.run("return pyroclast.counts")
         self.assertEqual((only_first, only_other), (7, 0))
         self.assertGreaterEqual(both, len(broken) - 7)
+        modes, sets = browser.run(
+            "const v = (n) => getComputedStyle(document.documentElement).getPropertyValue(n).trim();"
+            "return [pyroclast.shown[0].body.modes.flatMap((m) => [v(`--${m}`), v(`--${m}-tint`)]), "
+            "pyroclast.bothColours.map((name) => v(name.slice(4, -1)))]")
+        self.assertEqual(len(set(modes + sets)), len(modes) + 3)
         self.assert_silent()
 
     def test_specimens_stand_at_the_same_strain(self):
@@ -61,7 +66,8 @@ class Compared(PageTest):
             manifest = json.loads((run / "manifest.json").read_text())
             (run / "manifest.json").write_text(json.dumps(manifest | {"seed": seed}))
             runs.append(run)
-        self.assertEqual(deck_differences([pyroclast.read(run) for run in runs]), [("seed", ["1", "2", "3"])])
+        found, = deck_differences([pyroclast.read(run) for run in runs])
+        self.assertEqual((found.key, found.values), ("seed", ["1", "2", "3"]))
         browser.open(self.page_of(*runs))
         key = browser.run("return document.querySelector('#curve .key').textContent")
         self.assertIn("3 seeds: least to greatest", key)
@@ -72,7 +78,29 @@ class Compared(PageTest):
         summary = json.loads((run / "summary.json").read_text())
         (run / "summary.json").write_text(json.dumps(summary | {"title": "costs 3 $ & <b>more"}))
         html = compare_page([pyroclast.read(run), pyroclast.read(RUNS / "compression")])
-        self.assertIn("</span> costs 3 $ &amp; &lt;b&gt;more", html)
+        self.assertIn("<td>costs 3 $ &amp; &lt;b&gt;more</td>", html)
+
+    def test_runs_have_the_names_of_their_folders_and_keys_that_differ_together_are_told(self):
+        one, other = (self.copy(RUNS / "starter", "fields", name=name) for name in ("slow", "fast"))
+        for run, strength in ((one, 30.0), (other, 33.0)):
+            known = json.loads((run / "summary.json").read_text())
+            known["stages"][-1]["results"]["f_c_MPa"] = strength
+            (run / "summary.json").write_text(json.dumps(known))
+
+        def differences(**changes):
+            text = (one / "deck.toml").read_text()
+            for key, value in changes.items():
+                text, count = re.subn(rf'(?m)^{key} = "[^"]*"', f'{key} = "{value}"', text)
+                self.assertTrue(count, key)
+            (other / "deck.toml").write_text(text)
+            return compare_page([pyroclast.read(run) for run in (one, other)])
+
+        html = differences(velocity="7 mm/s", c_res="0.01 MPa", title="changes nothing")
+        self.assertRegex(html, r"</span> slow</th><th>.*</span> fast</th>")
+        self.assertIn("+10.0 %", html)
+        self.assertRegex(html, r'stages\[1\]\.velocity <span class="faint">\(stage 2, compress\)')
+        self.assertRegex(html, r"\d keys differ: their effects cannot be told apart")
+        self.assertNotIn("cannot be told apart", differences(velocity="7 mm/s", title="changes nothing"))
 
     def test_runs_alike_are_no_seeds(self):
         runs = [pyroclast.read(self.copy(RUNS / "starter", "fields", name=f"run_{number}")) for number in (1, 2, 3)]

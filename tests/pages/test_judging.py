@@ -16,7 +16,7 @@ import pyroclast
 from pyroclast.report.course import course_of
 from pyroclast.report.judging import BAD, DOUBT, GOOD, cards, verdict, worst
 from pyroclast.report.marks import marks
-from pyroclast.report.run_page import _cards, _stages
+from pyroclast.report.run_page import _cards, _stages, _temperature, _tested, run_page
 
 RUNS = pathlib.Path(os.environ["SMALL_FORMS"])
 
@@ -99,10 +99,43 @@ class Judging(unittest.TestCase):
         place = np.linspace(0.0, 4.0, run.history.rows)
         strain = np.interp(place, [0.0, 1.0, 1.2, 2.0, 4.0], [0.0, 1.0, 0.8, 1.0, 2.0])
         stress = np.interp(place, [0.0, 1.0, 1.2, 2.0, 3.0, 3.2, 4.0], [0.0, 10.0, 1.0, 10.0, 12.0, 10.0, 9.0])
-        row = {way: {mark.id: mark.row for mark in marks(run, stress, way * strain)} for way in (1.0, -1.0)}
-        self.assertTrue(3.0 < place[row[1.0]["drop"]] < 3.3)  # not from 1 to 1.2, where it falls four times as fast
-        self.assertEqual(row[1.0], row[-1.0])
-        self.assertNotIn("drop", {mark.id for mark in marks(run, stress, None)})
+        rows = {way: {mark.id: mark.rows for mark in marks(run, stress, way * strain)} for way in (1.0, -1.0)}
+        start, end = place[rows[1.0]["steepest"]]
+        self.assertTrue(2.99 < start < end < 3.21)  # not from 1 to 1.2, where it falls four times as fast
+        self.assertEqual(rows[1.0], rows[-1.0])
+        self.assertFalse({"steepest", "behind"} & {mark.id for mark in marks(run, stress, None)})
+
+    def test_the_fall_after_the_peak_ends_at_the_least_stress_that_the_test_reached_as_it_went_on(self):
+        run = pyroclast.read(RUNS / "compression")
+        stress, strain = run.history["stress_MPa"].copy(), run.history["strain"].copy()
+        found = {mark.id: mark for mark in marks(run, stress, strain)}
+        peak, fall = found["peak"].row, found["behind"]
+        self.assertEqual(fall.rows, [peak, peak + 1 + int(np.argmin(stress[peak + 1:]))])
+        self.assertGreater(stress[found["steepest"].start], stress[found["steepest"].row])
+        stress[-4:], strain[-4:] = 0.0, strain[-5] - 1e-4  # it unloads
+        again = {mark.id: mark for mark in marks(run, stress, strain)}["behind"]
+        self.assertLess(again.row, len(stress) - 4)
+        self.assertGreater(stress[again.row], 0.0)
+
+    def test_a_test_that_measures_no_strength_says_what_it_bore(self):
+        card = cards(pyroclast.read(RUNS / "fire_one_side"))[0]
+        self.assertEqual((card.label, card.value), ("strength", "not measured"))
+        self.assertRegex(card.reason, r"^held [\d.]+ MPa = 0\.\d\d of f_c [\d.]+ MPa as the deck states it$")
+        self.assertNotIn("strength", {card.label for card in cards(pyroclast.read(RUNS / "compression"))})
+
+    def test_the_first_lines_say_how_much_was_tested_and_how_hot_a_cold_test_was(self):
+        run = pyroclast.read(RUNS / "compression")
+        said = f"one specimen (seed {run.manifest['seed']}), {run.summary['specimen']['blocks']:,} blocks, in the plane"
+        data = {"course": {"marks": []}}
+        self.assertEqual({card.label: card.of for card in _cards(run, data)}["f_c"], said)
+        self.assertEqual((_tested(run), _temperature(run)), (said, ["20 °C throughout"]))
+        self.assertEqual(_temperature(pyroclast.read(RUNS / "fire_one_side")), [])
+        self.assertTrue(_tested(pyroclast.read(RUNS / "starter_3d")).endswith("blocks, in space"))
+
+    def test_a_verdict_against_the_results_stands_by_the_curve_too(self):
+        for is_static in (True, False):
+            html = run_page(self.changed("starter", results={"quasi_static": is_static}))
+            self.assertEqual('id="verdict"' in html, not is_static)
 
     def test_energies_lost_in_ways_of_their_own_are_told(self):
         run = pyroclast.read(RUNS / "anderberg_thelandersson")

@@ -46,6 +46,8 @@ class EveryCase(PageOfRun):
                     self.assertEqual(browser.run("return pyroclast.frames.length"), len(results.frames))
                     self.assertIn(f"frame {len(results.frames) - 1} of",
                                   browser.run("return document.getElementById('now').textContent"))
+                if run.name in ("compression", "cyclic"):  # the first is brushed across, the other goes back
+                    self.assertEqual(browser.run("return pyroclast.curve.goesOneWay"), run.name == "compression")
                 self.assert_silent()
 
 
@@ -141,10 +143,80 @@ class OneRun(PageOfRun):
         frame = browser.run("return pyroclast.frame")
         self.assertGreaterEqual(self.run_.frames[frame].strain, self.run_.peak[0] - 1e-9)
         self.assertLess(self.run_.frames[frame - 1].strain, self.run_.peak[0])
+        gap = 1e3 * (self.run_.frames[frame].strain - self.run_.peak[0])
+        told = browser.run("return pyroclast.specimen.caption")
+        self.assertRegex(told, r"^frame at [\d.]+·10⁻³, [\d.]+·10⁻³ after the mark$")
+        self.assertAlmostEqual(float(told.split(", ")[1].split("·")[0]), gap, delta=0.011)  # rows are 0.01 apart
+        self.assertIn({"text": told, "align": "left"}, browser.run(
+            "return pyroclast.specimen.labels().texts.map(({text, align}) => ({text, align}))"))
+        browser.press("ArrowRight")
+        self.assertEqual(browser.run("return pyroclast.specimen.caption"), "")
         self.assert_silent()
 
+    def test_the_picture_tells_its_scale_and_magnification(self):
+        magnification, texts, pixels, scale = browser.run(
+            "const s = pyroclast.specimen, {texts, bar} = s.labels(); "
+            "return [s.magnification, texts.map((t) => t.text), bar[0][2] - bar[0][0], s.body.scale]")
+        self.assertIn(f"displacements ×{magnification}", texts)
+        millimetres = next(float(text.split()[0]) for text in texts if text.endswith(" mm"))
+        self.assertAlmostEqual(1e3 * pixels / scale, millimetres, delta=1e-6 * millimetres)
+
+    def test_menus_have_no_temperature_of_a_cold_test(self):
+        offered = browser.run("return [...document.getElementById('over').options].map((o) => o.value)")
+        self.assertIn("strain", offered)
+        self.assertFalse({"temperature", "minutes", "temperature_min", "temperature_max"} & set(offered))
+
+    def test_the_first_broken_contact_is_ringed_and_damaged_ones_are_drawn(self):
+        run = self.run_
+        plain = [browser.run("pyroclast.show(arguments[0]); return document.getElementById('body').toDataURL()", k)
+                 for k in browser.run("return ['first', 'extent'].map((id) => pyroclast.frameAt("
+                                      "pyroclast.course.about.marks.find((m) => m.id === id).rows[0]))")]
+        browser.run("document.querySelector('#marks [data-mark=first]').click()")
+        frame, ringed, now = browser.run("return [pyroclast.frame, [...pyroclast.specimen.ringed], "
+                                         "document.getElementById('now').textContent]")
+        row = int((sum(run.history[name] for name in run.history.names if name.endswith("_broken")) > 0).argmax())
+        kinds = {(mode, name) for mode, interfaces in run.crack_modes.items() for name in interfaces
+                 if run.history[f"{mode}_{name}_broken"][row] > 0}
+
+        def broken(k):
+            return {int(c) for mode, name in kinds for c in np.flatnonzero(
+                (run.contact_field(run.frames[k], f"{mode}_damage [1]") >= 1.0)
+                & (run.mesh.contacts.interface == run.mesh.contacts.interfaces.index(name)))}
+
+        self.assertEqual(set(ringed), broken(frame) - broken(frame - 1))
+        self.assertTrue(ringed)
+        x, y = 1e3 * run.mesh.contacts.points[run.mesh.contacts.cells[ringed[0], 0]]
+        self.assertIn(f"({x:.3g}, {y:.3g}) mm", now)
+        self.assertNotEqual(self.picture(), plain[0])
+        browser.run("document.querySelector('#marks [data-mark=extent]').click()")
+        frame, now = browser.run("return [pyroclast.frame, document.getElementById('now').textContent]")
+        most = np.max([run.contact_field(run.frames[frame], f"{mode}_damage [1]") for mode in run.crack_modes], axis=0)
+        told = int(now.split("; ")[-1].split()[0])
+        self.assertTrue((most > 0.0041).sum() <= told <= (most > 0.0038).sum(), told)  # half a step of damage
+        self.assertNotEqual(self.picture(), plain[1])
+        self.assert_silent()
+
+    def test_a_halo_leaves_the_mode_to_be_seen(self):
+        browser.run("document.querySelector('#marks [data-mark=steepest]').click()")
+        colours = browser.run("const s = pyroclast.specimen; return s.strokes(s.theme()).map((g) => g.colour)")
+        lit = colours.index("#d0006f")
+        self.assertGreater(len(colours), lit + 2)
+        self.assertFalse({"#d0006f", "#ffffff"} & set(colours[lit + 2:]))
+
+    def test_displacements_do_not_lengthen_a_line_across(self):
+        width = 1e3 * np.ptp(self.run_.mesh.blocks.points[self.run_.mesh.blocks.zones[
+            ~self.run_.mesh.blocks.of_bearing]][..., 0])
+        browser.run("document.querySelector('#marks [data-mark=peak]').click()")
+        for magnification in (1, 50):
+            browser.run("const m = document.getElementById('magnification'); m.value = arguments[0]; m.onchange()",
+                        magnification)
+            browser.press("l")
+            x = browser.run("return pyroclast.along.drawing.x")
+            browser.press("l")
+            self.assertTrue(0.93 * width < x[-1] <= 1.0001 * width, (magnification, x[-1], width))
+
     def test_a_mark_lights_the_contacts_that_are_new_in_its_frame(self):
-        browser.run("document.querySelector('#marks [data-mark=drop]').click()")
+        browser.run("document.querySelector('#marks [data-mark=peak]').click()")
         frame, lit = browser.run("return [pyroclast.frame, [...pyroclast.specimen.lit]]")
 
         def beyond(k):
@@ -165,6 +237,10 @@ class OneRun(PageOfRun):
         self.assertLess(a, b)
         steps = browser.run("const s = pyroclast.course.column('step'); return Array.from(arguments, (i) => s[i])",
                             a, b)
+        shown = browser.run("const c = pyroclast.curve; return arguments[0].map((i) => c.X(c.drawing.x[i]))",
+                            [a - 1, a, b, b + 1])
+        low, high = 0.5 * box["width"], 0.8 * box["width"]
+        self.assertTrue(shown[0] < low <= shown[1] < shown[2] <= high < shown[3], (shown, low, high))
         rows = np.searchsorted(self.run_.history["step"], steps)
         told = {tuple(row[:2]): row[2:] for row in self.cells("#piece table", 0)}
         for mode, interfaces in self.run_.crack_modes.items():
@@ -180,6 +256,53 @@ class OneRun(PageOfRun):
         self.assertAlmostEqual(float(energies["tension softening"]), lost, delta=0.006 * lost)  # three digits
         browser.press("Escape")
         self.assertTrue(browser.run("return document.getElementById('piece').hidden"))
+        self.assert_silent()
+
+    def said_of_piece(self) -> str:
+        return browser.run("return document.getElementById('piece').innerText")
+
+    def test_a_piece_that_has_begun_keeps_its_start_and_an_empty_one_is_told(self):
+        rows = {mark["id"]: mark["rows"] for mark in browser.run("return pyroclast.course.about.marks")}
+        browser.run("document.querySelector('#marks [data-mark=peak]').click()")
+        browser.press("[")
+        self.assertIn("A piece of the curve begins at axial strain", self.said_of_piece())
+        browser.press("]")
+        self.assertIn("This piece is empty", self.said_of_piece())
+        browser.run("document.querySelector('#marks [data-mark=steepest]').click()")
+        browser.press("]")
+        self.assertEqual(browser.run("return pyroclast.piece"), [rows["peak"][0], rows["steepest"][1]])
+        self.assertIn("broke", self.said_of_piece())
+        browser.run("document.querySelector('#marks [data-mark=extent]').click()")
+        self.assertIsNone(browser.run("return pyroclast.piece"))
+        browser.press("]")
+        browser.press("Home")
+        browser.press("[")
+        self.assertEqual(browser.run("return pyroclast.piece"), [browser.run("return pyroclast.frames[0].row"),
+                                                                 rows["extent"][0]])
+        self.assert_silent()
+
+    def test_the_fall_after_the_peak_says_why(self):
+        browser.run("document.querySelector('#marks [data-mark=behind]').click()")
+        ends = browser.run("const s = pyroclast.course.column('step'); return pyroclast.piece.map((i) => s[i])")
+        history = self.run_.history
+        change = {name: np.diff(history[name][np.searchsorted(history["step"], ends)])[0] for name in history.names
+                  if name.endswith(("_broken", "_J"))}
+        why = browser.run("return document.querySelector('#piece .why').textContent")
+        broken = {name: count for name, count in change.items() if name.endswith("_broken")}
+        first = max(broken, key=broken.get)
+        mode, interface = first.removesuffix("_broken").split("_", 1)
+        self.assertIn(f"in {mode} at {interface.replace('_', '–')} ({broken[first]:.0f} of "
+                      f"{sum(broken.values()):.0f})", why)
+        leading = max(("friction", "compression", "shear", "tension"), key=lambda way: change[f"dissipated_{way}_J"])
+        name = {"compression": "crushing"}.get(leading, leading)
+        self.assertRegex(why, rf"; {name}[\w ]* \(\d")
+        heads = browser.run("return [...document.querySelectorAll('#piece h4')].map((h) => h.textContent)")
+        self.assertTrue(all("axial strain" in head for head in heads))
+        self.assertRegex(heads[-1], r"rounded to frames \d+ to \d+: axial strain")
+        lost = browser.run("return [...document.querySelectorAll('#piece table')[2].tHead.rows[0].cells]"
+                           ".map((c) => c.textContent)")
+        self.assertLessEqual(set(lost[1:]), {row[0] for row in self.cells("#piece table", 1)})
+        self.assertTrue(browser.run("return [...document.querySelectorAll('#piece abbr')].every((a) => a.title)"))
         self.assert_silent()
 
     def test_pointing_tells_a_block_and_a_click_pins_it(self):
@@ -342,6 +465,14 @@ class OtherRuns(PageOfRun):
             self.assertEqual(cut ^ set(number[crossed].tolist()), set())
             pictures.add(self.picture())
         self.assertEqual(len(pictures), 3)
+        size = 1e3 * np.ptp(blocks.points[blocks.zones[~blocks.of_bearing]], axis=(0, 1))
+        browser.run("const m = document.getElementById('magnification'); m.value = 20; m.onchange()")
+        for view, width in (("x 0", size[2]), ("z 1", size[0])):
+            self.look(view)
+            browser.press("l")
+            length = browser.run("return pyroclast.along.drawing.x.at(-1)")
+            browser.press("l")
+            self.assertTrue(0.85 * width < length <= 1.001 * width, (view, length, width))
         moves = run.gridpoint_displacement(run.frames[-1])
         block = int(number[~blocks.of_bearing][0])
         mean = moves[np.unique(blocks.sides[0][number[blocks.sides[1]] == block])].mean(axis=0)
@@ -468,6 +599,22 @@ class OtherRuns(PageOfRun):
         field = run.gridpoint_temperature(run.frames[-1])
         self.assertTrue(levels)
         self.assertTrue(all(field.min() < level < field.max() for level in levels))
+        x = run.mesh.blocks.points[:, 0] - run.mesh.blocks.points[:, 0].min()
+        order = np.argsort(-field)  # the wall is heated on the left, and its temperatures fall to the right
+        side, depths = browser.run("const d = pyroclast.body.depths(pyroclast.frame, arguments[0]); "
+                                   "return [d.side, d.depths]", levels)
+        self.assertEqual((side, [level for level, _ in depths]), ("left side", levels))
+        for level, depth in depths:
+            self.assertAlmostEqual(depth, np.interp(-level, -field[order], x[order]), delta=0.03 * x.max())
+        self.assertIn(" mm", browser.run("return document.getElementById('depths').textContent"))
+        hottest = max(run.gridpoint_temperature(frame).max() for frame in run.frames)
+        self.assertAlmostEqual(browser.run("return pyroclast.body.range('temperature').high"), hottest, delta=0.26)
+        near = browser.run(
+            "const s = pyroclast.specimen, f = pyroclast.frame; return s.named.map(([x, y]) => s.levels.map((level) => "
+            "Math.min(...s.body.isotherms(f, level).map((l) => Math.hypot((l[0] + l[2]) / 2 - x, (l[1] + l[3]) / 2 - y)))))")
+        self.assertTrue(near)
+        for distances in near:  # one line is its own
+            self.assertGreater(sorted(distances)[1], 8.0)
         browser.press("l")
         values = browser.run("const s = pyroclast.specimen; "
                              "return s.valuesAt(s.samples(), 'temperature', pyroclast.frame)")
