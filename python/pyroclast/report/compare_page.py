@@ -40,7 +40,8 @@ def compare_page(runs: Sequence[Results]) -> str:
             "same": [list(pair) for pair in combinations(range(min(len(runs), _MOST_BODIES)), 2)
                      if all(whole[k].data["body"] for k in pair) and _is_same_specimen(*(runs[k] for k in pair))]}
     return page("compare.html", _SCRIPTS, data, title=f"{len(runs)} runs compared", names=names,
-                levels=levels, titles=[run.title for run in runs], warnings=[", ".join(warnings_of(run)) for run in runs],
+                levels=levels, titles=[run.title for run in runs],
+                warnings=[", ".join(warnings_of(run)) for run in runs],
                 results=_results(runs), differences=differences, entangled=_entangled(differences), notes=notes,
                 outcomes=[run.outcome for run in runs], has_body=any(one.data["body"] for one in whole))
 

@@ -128,7 +128,7 @@ def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
 def cards(run: Results) -> list[Card]:
     """The headlines of a run: of each result the last stage that has it."""
     whole = _of_end(run) + _of_ledgers(run)
-    found = {}
+    found: dict[str, Card] = {}
     for stage in run.stages:
         reasons = stage_verdict(stage)
         for card in _of_stage(stage, reasons, whole):

@@ -151,7 +151,8 @@ def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, o
     place = meeting(np.concatenate([middle, cells[:, 1]]), _near(point))
     of_edge, of_cell = place[:len(middle)], place[len(middle):]
     order = np.argsort(of_edge, kind="stable")
-    first, last = (np.searchsorted(of_edge[order], of_cell, side) for side in ("left", "right"))
+    first = np.searchsorted(of_edge[order], of_cell)
+    last = np.searchsorted(of_edge[order], of_cell, "right")
     count = last - first
     cell = np.repeat(np.arange(len(cells)), count)
     edge = order[np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)]

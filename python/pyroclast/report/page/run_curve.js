@@ -153,10 +153,11 @@ class RunCurve {
         if (this.course.column(`${mode}_${name}_broken`)[row] > 0) kinds.push([mode, name.replaceAll("_", "–")]);
     const {about, arrays} = this.body,
       broken = (f, c, mode) => arrays[`damage_${mode}`].at(f, c) >= 1;
-    const first = [];
+    const step = this.course.column("step")[row],
+      first = [];
     for (let c = 0; c < this.body.contacts; c++)
       for (const [mode, name] of kinds)
-        if (about.interfaces[arrays.interface.values[c]] === name)
+        if (this.body.crackStep[c] <= step && about.interfaces[arrays.interface.values[c]] === name)
           if (broken(frame, c, mode) && !(frame && broken(frame - 1, c, mode))) first.push({c, mode, name});
     return {first};
   }

@@ -55,8 +55,8 @@ class RunPiece extends RunCurve {
     const {row, which} = this.begun;
     for (const chart of this.charts) chart.setPiece([row, row]);
     this.sayOfPiece(
-      `A piece of the curve ${which ? "ends" : "begins"} at ${this.placeOf(row)}. Go to its other end, by a mark too, ` +
-        `and press ${which ? "[" : "]"}. Esc drops it.`,
+      `A piece of the curve ${which ? "ends" : "begins"} at ${this.placeOf(row)}. ` +
+        `Go to its other end, by a mark too, and press ${which ? "[" : "]"}. Esc drops it.`,
     );
   }
 
