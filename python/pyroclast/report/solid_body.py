@@ -208,7 +208,8 @@ class _Reader:
         return np.add.reduceat(values, self._first[:-1]) / self._count[:, None]
 
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
-        run, found = self._run, {}
+        run = self._run
+        found: dict[str, np.ndarray] = {}
         blocks = run.mesh.blocks
         if self._heated:
             of_zones = run.gridpoint_temperature(frame)[blocks.zones].mean(axis=1)
