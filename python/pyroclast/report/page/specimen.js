@@ -301,10 +301,13 @@ class Specimen {
       each = Math.max(1, Math.floor(middles.length / MOST_PLACES));
     for (let i = 0; i < middles.length; i += each) {
       const [x, y] = middles[i];
-      if (x < 1.2 * half || y < 1.5 * half || x > W - 1.2 * half || y > H - 1.5 * half) continue;
-      if (this.named.some((other) => Math.hypot(x - other[0], y - other[1]) < 2.6 * half)) continue;
+      const isNear = (other, reach) => Math.hypot(x - other[0], y - other[1]) < reach * half;
+      if (this.named.some((other) => isNear(other, 2.6))) continue;
+      if ([...this.ringed].some((c) => isNear(this.body.line(c), 1.8))) continue;
       const turn = slope(middles.filter(([p, q]) => Math.hypot(p - x, q - y) < half)),
         [dx, dy] = [0.8 * half * Math.cos(turn), 0.8 * half * Math.sin(turn)];
+      const [wide, high] = [dx, dy].map((v) => 1.4 * Math.abs(v) + 8 * ratio);
+      if (x < wide || y < high || x > W - wide || y > H - high) continue;
       const room = Math.min(away(x, y), away(x - dx, y - dy), away(x + dx, y + dy), 3 * half);
       if (room > most) [best, most] = [[x, y, turn], room];
     }
