@@ -2,6 +2,7 @@
 
 const BEHIND = 0.75; // share of the ground in faces that have no halo where others do
 const MOST_PLACES = 16; // that are tried for the name of an isotherm
+const STEEP = 1.2; // radians
 
 // Sides of a circle, pixels.
 function circle(x, y, r, count = 28) {
@@ -31,7 +32,8 @@ function slope(points) {
     xy += (x - mx) * (y - my);
     yy += (y - my) ** 2;
   }
-  return 0.5 * Math.atan2(2 * xy, xx - yy);
+  const turn = 0.5 * Math.atan2(2 * xy, xx - yy);
+  return turn > STEEP ? turn - Math.PI : turn; // upright names all read upwards
 }
 
 const mixed = (one, other, share) => one.map((v, k) => Math.round(v + share * (other[k] - v)));
