@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
@@ -187,13 +188,17 @@ class Deck:
         """
         if path in self._functions:
             return self._functions[path]
+        return self._wrapped(path, self._node(path))
+
+    def _node(self, path: str) -> Any:
+        """The value at a path as TOML has it. Raises KeyError where there is none."""
         node: Any = tomllib.loads(self.text)
         for part in _parts(path):
             try:
                 node = node[part]
             except (KeyError, IndexError, TypeError):
                 raise KeyError(path) from None
-        return self._wrapped(path, node)
+        return node
 
     def _wrapped(self, path: str, node: Any) -> Any:
         """A value so that none of its changes is lost: each reaches the deck, or is refused."""
@@ -236,15 +241,21 @@ class Deck:
             entries: Any = _plain(value)  # views of this deck would change while it is written anew
             self._rebuild(lambda tables: _list_at(tables, path).__setitem__(slice(None), entries), path)
             return
-        before = (self._text, dict(self._functions), list(self._changes))
-        if re.search(rf"^\[{re.escape(path)}\]", self._text, re.MULTILINE):
-            del self[path]  # a value takes the place of a table
-        self._functions.pop(path, None)
-        self._changes.append((path, toml(value)))
-        try:
+        with self._as_it_was_on_error():
+            if re.search(rf"^\[{re.escape(path)}\]", self._text, re.MULTILINE):
+                del self[path]  # a value takes the place of a table
+            self._functions.pop(path, None)
+            self._changes.append((path, toml(value)))
             self._written()
             if isinstance(value, (int, float)) and not isinstance(value, bool) and self._needed_unit(path):
                 raise DeckError([d for d in self._diagnostics() if d.key == path])
+
+    @contextlib.contextmanager
+    def _as_it_was_on_error(self) -> Iterator[None]:
+        """Takes back a change that fails."""
+        before = (self._text, dict(self._functions), list(self._changes))
+        try:
+            yield
         except Exception:
             self._text, self._functions, self._changes = before
             raise
@@ -321,20 +332,16 @@ class Deck:
         `deck.append("stages[1].drives", set="left", hold=["x"])`. Returns the deck.
         """
         keys = _plain(keys)
-        before = (self._text, dict(self._functions))
         number = len(self[table]) if table in self else 0
         if "[" in table:
             self._rebuild(lambda tables: _list_at(tables, table).append(keys), f"{table}[{number}]")
             return self
         found: dict[str, functions.Function] = {}
         plain = without_functions(keys, f"{table}[{number}]", found)
-        self._text += "\n" + table_text(table, plain, True)
-        self._functions |= found
-        try:
+        with self._as_it_was_on_error():
+            self._text += "\n" + table_text(table, plain, True)
+            self._functions |= found
             self._written()
-        except Exception:
-            self._text, self._functions = before
-            raise
         return self
 
     def copy(self) -> Deck:
@@ -437,13 +444,6 @@ class DeckTable(MutableMapping[str, Any]):
     def __init__(self, deck: Deck, path: str):
         self._deck, self._path = deck, path
 
-    def _keys(self) -> dict[str, Any]:
-        node: Any = tomllib.loads(self._deck.text)
-        for part in _parts(self._path):
-            node = node[part]
-        found: dict[str, Any] = node
-        return found
-
     def __getitem__(self, key: str) -> Any:
         return self._deck[f"{self._path}.{key}"]
 
@@ -454,13 +454,13 @@ class DeckTable(MutableMapping[str, Any]):
         del self._deck[f"{self._path}.{key}"]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._keys())
+        return iter(self._deck._node(self._path))
 
     def __len__(self) -> int:
-        return len(self._keys())
+        return len(self._deck._node(self._path))
 
     def __repr__(self) -> str:
-        return f"<DeckTable {self._path}: {self._keys()}>"
+        return f"<DeckTable {self._path}: {self._deck._node(self._path)}>"
 
     def __or__(self, other: Mapping[str, Any]) -> dict[str, Any]:
         """A table of its own, which changes nothing in the deck."""

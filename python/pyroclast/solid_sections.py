@@ -205,8 +205,15 @@ class CrackFaces:
 
     def upright_share(self, within: float = 30.0) -> float:
         """Share of the area whose normals are within an angle of the horizontal, degrees; NaN without cracks."""
+        return self._share(self.inclination <= within)
+
+    def facing_share(self, axis: int, within: float = 30.0) -> float:
+        """Share of the area whose normals are within an angle of an axis, degrees; NaN without cracks."""
+        return self._share(np.degrees(np.arccos(np.clip(np.abs(self.normal[:, axis]), 0.0, 1.0))) <= within)
+
+    def _share(self, which: np.ndarray) -> float:
         whole = self.area.sum()
-        return float(self.area[self.inclination <= within].sum() / whole) if whole > 0.0 else float("nan")
+        return float(self.area[which].sum() / whole) if whole > 0.0 else float("nan")
 
     def damage_by_height(self, low: float, high: float, parts: int = _TENTHS) -> np.ndarray:
         """(parts,): damaged area, each by its damage, over that of all, from the bottom up."""

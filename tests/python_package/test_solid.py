@@ -287,6 +287,30 @@ class Cylinder(unittest.TestCase):
             self.assertAlmostEqual(volume[phase == number].sum() / specimen.volume, share, delta=2e-3)
 
 
+def pressed_quickly(deck: pyroclast.Deck, out: pathlib.Path) -> pyroclast.SolidSpecimen:
+    """Presses a few blocks of a starter past the first cracks. Returns the specimen as it was made."""
+    deck["output"].update(history_strain=2e-5, fields=False)
+    deck["stages[1]"].update(stop_strain=6e-4, ramp_time="2 ms", velocity="4 mm/s")
+    with pyroclast.Run(deck, out=out, threads=1) as run:
+        run.finish()
+        return run.specimen
+
+
+def assert_same_bits(test: unittest.TestCase, place: pathlib.Path, deck: pyroclast.Deck,
+                     specimen: pyroclast.SolidSpecimen) -> None:
+    """The run `out` of a deck goes alike with the specimen given back, on two threads, and as a fork of its settling."""
+    deck["specimen"] = specimen
+    with pyroclast.Run(deck, out=place / "read", threads=2) as run:
+        run.finish()
+    done = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked", "--no-figures"],
+                          cwd=place, capture_output=True, text=True, timeout=300, check=False)
+    test.assertEqual(done.returncode, 0, done.stderr)
+    want = (place / "out/history.csv").read_bytes()
+    test.assertGreater(want.count(b"\n"), 10)
+    for name in ("read", "forked"):
+        test.assertEqual((place / name / "history.csv").read_bytes(), want, name)
+
+
 class WithoutShortEdges(unittest.TestCase):
     def test_faces_that_bend_are_kept_to_the_bit(self):
         """A run begun again at a checkpoint, one of another number of threads, and one of blocks from a file."""
@@ -294,13 +318,8 @@ class WithoutShortEdges(unittest.TestCase):
         self.addCleanup(shutil.rmtree, place)
         deck = pyroclast.Deck(CASES / "starter_3d.toml")
         deck["blocks"] = {"count": 150, "shortest_edge": 0.35, "largest_bend": "20 deg"}
-        deck.update(aggregates={"fraction": 0.2, "d_min": "20 mm", "sieves": []},
-                    output={"history_strain": 2e-5, "fields": False})
-        for key, value in (("stop_strain", 6e-4), ("ramp_time", "2 ms"), ("velocity", "4 mm/s")):
-            deck[f"stages[1].{key}"] = value
-        with pyroclast.Run(deck, out=place / "out", threads=1) as run:
-            run.finish()
-            made = run.specimen
+        deck["aggregates"].update(fraction=0.2, d_min="20 mm", sieves=[])
+        made = pressed_quickly(deck, place / "out")
         facts = json.loads((place / "out/specimen/specimen.json").read_text())
         self.assertGreater(facts["vertices_merged"], 300)
         self.assertTrue(15.0 < facts["largest_bend_deg"] < 20.0 + 1e-9)
@@ -308,18 +327,9 @@ class WithoutShortEdges(unittest.TestCase):
         read = pyroclast.SolidSpecimen.read(place / "cylinder.json")
         for what in ("vertices", "neighbours", "phase"):
             np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
-        deck["specimen"] = read
-        with pyroclast.Run(deck, out=place / "read", threads=2) as run:
-            run.finish()
+        assert_same_bits(self, place, deck, read)
         again = json.loads((place / "read/specimen/specimen.json").read_text())
         self.assertEqual(again["largest_bend_deg"], facts["largest_bend_deg"])
-        done = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked", "--no-figures"],
-                              cwd=place, capture_output=True, text=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        want = (place / "out/history.csv").read_bytes()
-        self.assertGreater(want.count(b"\n"), 10)
-        for name in ("read", "forked"):
-            self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
 
 
 class Finer(unittest.TestCase):
@@ -331,13 +341,8 @@ class Finer(unittest.TestCase):
         del deck["blocks.count"]
         deck["blocks"] = {"size": "20 mm", "shortest_edge": 0.35,
                           "finer": [{"near": "top", "size": "12 mm", "distance": "10 mm"}]}
-        deck.update(aggregates={"fraction": 0.1, "d_min": "20 mm", "sieves": []},
-                    output={"history_strain": 2e-5, "fields": False})
-        for key, value in (("stop_strain", 6e-4), ("ramp_time", "2 ms"), ("velocity", "4 mm/s")):
-            deck[f"stages[1].{key}"] = value
-        with pyroclast.Run(deck, out=place / "out", threads=1) as run:
-            run.finish()
-            made = run.specimen
+        deck["aggregates"].update(fraction=0.1, d_min="20 mm", sieves=[])
+        made = pressed_quickly(deck, place / "out")
         sizes = made.block_size
         self.assertEqual(sizes.shape, made.phase.shape)
         self.assertAlmostEqual(sizes.min(), 12e-3, places=15)
@@ -357,16 +362,7 @@ class Finer(unittest.TestCase):
             (place / "wrong.json").write_text(json.dumps({**good, "block_size_m": wrong}))
             with self.assertRaisesRegex(pyroclast.Error, words):
                 pyroclast.SolidSpecimen.read(place / "wrong.json")
-        deck["specimen"] = read
-        with pyroclast.Run(deck, out=place / "read", threads=2) as run:
-            run.finish()
-        done = subprocess.run([PROGRAM, "resume", "out", "--from-stage", "settle", "--out", "forked", "--no-figures"],
-                              cwd=place, capture_output=True, text=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        want = (place / "out/history.csv").read_bytes()
-        self.assertGreater(want.count(b"\n"), 10)
-        for name in ("read", "forked"):
-            self.assertEqual((place / name / "history.csv").read_bytes(), want, name)
+        assert_same_bits(self, place, deck, read)
 
 
 class Script(unittest.TestCase):
