@@ -1,5 +1,6 @@
 """Runs of the program that a study needs, and its table: what is done is not run again, what was broken off goes on."""
 
+import concurrent.futures
 import csv
 import functools
 import hashlib
@@ -10,6 +11,8 @@ import pathlib
 import re
 import subprocess
 import tomllib
+from collections.abc import Callable, Sequence
+from typing import Any
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
@@ -46,6 +49,33 @@ def write_table(table: pathlib.Path, columns: tuple[str, ...], rows: list[dict])
         writer.writeheader()
         writer.writerows(rows)
     aside.rename(table)
+
+
+def rounded(row: dict[str, Any]) -> dict[str, Any]:
+    """A row whose floats are texts of five digits."""
+    return {key: f"{value:.5g}" if isinstance(value, float) else value for key, value in row.items()}
+
+
+def fill_table(table: pathlib.Path, columns: tuple[str, ...], makers: Sequence[Callable[[], dict]], jobs: int,
+               place: tuple[str, ...], order: Callable[[dict], Any] | None = None) -> None:
+    """Makes rows, some at once. Each is written as it comes, in the place of one that is alike in the columns `place`.
+
+    order: key by which the rows of the table are sorted; without it the latest stands last. SystemExit at the end with
+    what the rows that could not be made said; the others stand in the table.
+    """
+    failed = []
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(make) for make in makers]):
+            if error := done.exception():
+                failed.append(str(error))
+                continue
+            row = done.result()
+            others = [old for old in read_table(table) if any(old[name] != row[name] for name in place)]
+            rows = [*others, row]
+            write_table(table, columns, sorted(rows, key=order) if order else rows)
+            print(row, flush=True)
+    if failed:
+        raise SystemExit("\n".join(failed))
 
 
 @functools.cache
