@@ -29,8 +29,9 @@ class Specimen:
 
     seed: int
     blocks: int
-    changes: tuple[str, ...] = ()  # of both decks
+    changes: tuple[str, ...] = ()  # of both decks, of what only heat brings out
     concrete: str = "as it stands"  # name of the changes
+    body: tuple[str, ...] = ()  # changes that matter at 20 degC too
 
     @property
     def name(self) -> str:
@@ -43,7 +44,7 @@ class Specimen:
         stated = {change.split("=")[0] for change in self.changes}
         own = {"blocks.count": self.blocks, "mechanics.time_step": runs.time_step(self.blocks),
                "coupling.least_cycles": least, "coupling.most_cycles": most}
-        return [f"{key}={value}" for key, value in own.items() if key not in stated] + list(self.changes)
+        return [f"{key}={value}" for key, value in own.items() if key not in stated] + [*self.body, *self.changes]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +101,9 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
 
 
 def cold(specimen: Specimen) -> Crushed:
-    """Crushed at 20 degC. What only heat brings out does not matter, so all concretes share the test."""
+    """Crushed at 20 degC. What only heat brings out does not matter, so all concretes of a body share the test."""
+    if specimen.body:
+        return crushed(specimen, 20.0)
     return crushed(dataclasses.replace(specimen, changes=(), concrete="as it stands"), 20.0)
 
 

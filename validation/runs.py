@@ -70,7 +70,7 @@ def fill_table(table: pathlib.Path, columns: tuple[str, ...], makers: Sequence[C
                 failed.append(str(error))
                 continue
             row = done.result()
-            others = [old for old in read_table(table) if any(old[name] != row[name] for name in place)]
+            others = [old for old in read_table(table) if any(old[name] != str(row[name]) for name in place)]
             rows = [*others, row]
             write_table(table, columns, sorted(rows, key=order) if order else rows)
             print(row, flush=True)
