@@ -457,5 +457,39 @@ TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
   EXPECT_EQ(make_concrete(setup.block_materials, fixed, 0.006).contacts[mortar_mortar]["K_n"](20.0), 18400e9);
 }
 
+// The second slope is beta K_n. It goes with the inverse of the block size, or is the same at any.
+TEST(SecondSlope, IsTheSameAtAnyBlockSizeWhereADeckKeepsIt) {
+  const auto slope = [](const pyroclast::Setup& setup, double size, double between) {
+    const auto concrete = make_concrete(setup.block_materials, setup.moving->contacts, size, size);
+    const ContactMaterial& contact = concrete.contacts[mortar_mortar];
+    std::vector<double> numbers(contact.numbers.size());
+    contact.write_at(20.0, 20.0, numbers);
+    contact.scale_stiffnesses(contact.stiffness_between(between), numbers);
+    const ContactProperties scaled(*contact.law, numbers, contact.choices);
+    return scaled.as<Cohesive>().hardening * scaled.as<Cohesive>().normal_stiffness;
+  };
+  const auto with_stiffness = read(paper_deck());
+  const std::string fixed_slope = "second_slope = \"fixed\"\n";
+  const auto fixed = read(with(paper_deck(), "t_b_block_size", fixed_slope + "t_b_block_size"));
+  const double of_paper = 0.05 * 18400e9;
+  for (const double size : {0.0015, 0.003, 0.012}) {
+    EXPECT_NEAR(slope(with_stiffness, size, size) / of_paper, 0.003 / size, 1e-12);
+    EXPECT_NEAR(slope(fixed, size, size) / of_paper, 1.0, 1e-12);
+    EXPECT_NEAR(slope(fixed, size, 0.5 * size) / of_paper, 1.0, 1e-12);  // between blocks finer than the mean
+  }
+}
+
+TEST(SecondSlope, IsRefusedWhereNothingHasOne) {
+  std::string deck = with(paper_deck(), "t_b_block_size", "second_slope = \"fixed\"\nt_b_block_size");
+  for (const char* line : {"f_t = \"2.5 MPa\"", "G_f1 = \"60 N/m\"", "f_cm = \"31 MPa\"", "beta = 0.05",
+                           "c_o = \"3.8 MPa\"", "c_res = \"0.038 MPa\"", "phi = \"34 deg\"",
+                           "phi_res = \"34 deg\"", "G_f2 = \"240 N/m\""})
+    deck = with(deck, line, "");
+  deck = with(deck, "compression = \"irreversible\"", "");
+  deck = with(deck, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"elastic\"");
+  EXPECT_NE(message(deck).find("second_slope = \"fixed\": has no meaning here"), std::string::npos)
+      << message(deck);
+}
+
 }  // namespace
 }  // namespace pyroclast

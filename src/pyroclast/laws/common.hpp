@@ -21,7 +21,7 @@ inline constexpr PropertyInfo compressive_limit{"f_cm", "compression at which th
                                                 unit::stress, Range::positive().usually(1e5, 1e9),
                                                 Role::strength};
 inline constexpr PropertyInfo hardening{"beta", "second slope in compression over the first",
-                                        unit::dimensionless, Range::inside(0.0, 1.0)};
+                                        unit::dimensionless, Range::inside(0.0, 1.0), Role::second_slope};
 inline constexpr PropertyInfo cohesion{"c_o", "cohesion", unit::stress, Range::positive().usually(1e4, 1e8),
                                        Role::strength};
 inline constexpr PropertyInfo friction_angle{"phi", "friction angle", unit::angle, kAngles};

@@ -245,6 +245,7 @@ class Kit {
           numbers[i] *= alike ? one_for_all : log_uniform(random, 0.1, 1.6);
           break;
         case Role::plain:
+        case Role::second_slope:
           if (random.uniform() < 0.3) numbers[i] = draw(info, random);
       }
       if (!info.range.contains(numbers[i])) numbers[i] = cold[i];

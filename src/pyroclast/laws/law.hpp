@@ -44,8 +44,14 @@ enum class Role : std::uint8_t {
   normal_stiffness,  ///< E / t_b where a deck says nothing, Eq. (17)
   shear_stiffness,   ///< G / t_b where a deck says nothing, Eq. (17)
   strength,
-  energy
+  energy,
+  second_slope  ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
 };
+
+/// Tells whether the property is the same at any temperature but where a deck states a curve for it.
+constexpr bool is_apart_from_temperature(Role role) {
+  return role == Role::plain || role == Role::second_slope;
+}
 
 struct PropertyInfo {
   const char* key;      ///< key in decks

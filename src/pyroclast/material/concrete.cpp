@@ -136,10 +136,11 @@ ContactMaterial ContactMaterial::times(Role role, double factor) const {
 }
 
 void ContactMaterial::scale_stiffnesses(double factor, std::span<double> among) const {
-  for (std::size_t i = 0; i < among.size(); ++i)
-    if (const Role role = law->properties[i].role;
-        role == Role::normal_stiffness || role == Role::shear_stiffness)
-      among[i] *= factor;
+  for (std::size_t i = 0; i < among.size(); ++i) {
+    const Role role = law->properties[i].role;
+    if (role == Role::normal_stiffness || role == Role::shear_stiffness) among[i] *= factor;
+    if (role == Role::second_slope && keeps_second_slope) among[i] /= factor;
+  }
 }
 
 ContactProperties ContactMaterial::at(double temperature, double property_temperature) const {
@@ -150,7 +151,7 @@ ContactProperties ContactMaterial::at(double temperature, double property_temper
 
 void ContactMaterial::write_at(double temperature, double property_temperature, std::span<double> to) const {
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    to[i] = law->properties[i].role == Role::plain
+    to[i] = is_apart_from_temperature(law->properties[i].role)
                 ? numbers[i](temperature)
                 : numbers[i](property_temperature) *
                       share_left(residual_ratios[i], temperature, property_temperature);
@@ -244,7 +245,11 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
     }
   }
   if (p.fracture_zone_size)
-    for (ContactMaterial& contact : concrete.contacts) contact.block_size = block_size;
+    for (ContactMaterial& contact : concrete.contacts) {
+      contact.block_size = block_size;
+      contact.keeps_second_slope = p.keeps_second_slope;
+      if (p.keeps_second_slope) contact = contact.times(Role::second_slope, 1.0 / scale);
+    }
   if (!of_matrix)
     throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));
 

@@ -80,6 +80,8 @@ struct ContactMaterial {
   std::vector<int> choices;  ///< options chosen, in the order of LawTable::choices
   /// Block size at which the stiffnesses hold, m; they go with its inverse. 0: they hold for any.
   double block_size = 0.0;
+  /// True: second slopes are the same at any block size, so that their shares of K_n go with it.
+  bool keeps_second_slope = false;
 
   ContactMaterial() = default;
   /// Makes a contact whose numbers are all zero, with the first option of each choice.
@@ -108,7 +110,8 @@ struct ContactMaterial {
   double stiffness_between(double size) const {
     return block_size > 0.0 && size > 0.0 ? block_size / size : 1.0;
   }
-  /// Multiplies the stiffnesses among numbers of the law by a factor.
+  /// Multiplies the stiffnesses among numbers of the law by a factor; the numbers change to those of blocks of
+  /// another size.
   void scale_stiffnesses(double factor, std::span<double> among) const;
 };
 
@@ -158,6 +161,8 @@ struct ContactParameters {
   /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size. Without it they
   /// are fixed.
   std::optional<double> fracture_zone_size;
+  /// True: slopes beyond the first are those at that block size for any; false: they scale as K_n.
+  bool keeps_second_slope = false;
   std::vector<BearingInterface> bearings;
   std::string matrix;  ///< phase whose own contacts give the bearings' contacts their stiffness
 };

@@ -111,7 +111,7 @@ inline std::uint64_t layout_hash() {
            offsetof(Range, upper_inclusive));
   hash.add(sizeof(PropertyInfo), offsetof(PropertyInfo, key), offsetof(PropertyInfo, meaning),
            offsetof(PropertyInfo, unit), offsetof(PropertyInfo, range), offsetof(PropertyInfo, role),
-           static_cast<int>(Role::energy));
+           static_cast<int>(Role::second_slope));
   hash.add(sizeof(ChoiceInfo), offsetof(ChoiceInfo, key), offsetof(ChoiceInfo, meaning),
            offsetof(ChoiceInfo, options), sizeof(OptionInfo), ChoiceInfo::kMostOptions);
   hash.add(sizeof(InternalInfo), offsetof(InternalInfo, name), offsetof(InternalInfo, meaning),

@@ -632,6 +632,16 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
         s.quantity("t_b_block_size", unit::length, Range::positive(),
                    "block size √(area / count), of a solid ∛(volume / count), at which t_b and "
                    "stated stiffnesses hold");
+  if (scales)
+    c.keeps_second_slope = s.choice<bool>(
+        "second_slope",
+        {{"with K_n", false, "beta is the same at any block size, so that finer blocks yield along a steeper slope"},
+         {"fixed", true,
+          "beta holds at t_b_block_size and goes with the block size, so that beta K_n is the same, see "
+          "[f_c over the number of blocks](../validation/grains.md#f-c-over-the-number-of-blocks)"}},
+        false, "whether the slope of contacts beyond f_cm, beta K_n, depends on the block size");
+  else
+    s.know({"second_slope"});
   if (has_platens)
     c.bearings.push_back({.name = "platen",
                           .friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
@@ -640,6 +650,12 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
     s.know({"platen_friction"});
   InterfaceReader reader(s, phases, on_cooling, find_law, curves);
   c.interfaces = reader.read();
+  const auto has_second_slope = [](const InterfaceParameters& interface) {
+    return std::ranges::any_of(interface.contact.law->properties,
+                               [](const PropertyInfo& info) { return info.role == Role::second_slope; });
+  };
+  if (c.keeps_second_slope && std::ranges::none_of(c.interfaces, has_second_slope))
+    s.error("second_slope", "has no meaning here: no contact law of these interfaces has a second slope");
   check_pairs(reader.sections(), c.interfaces);
   check_complete(s, c.interfaces, phases, matrix);
   return c;
