@@ -481,9 +481,9 @@ TEST(SecondSlope, IsTheSameAtAnyBlockSizeWhereADeckKeepsIt) {
 
 TEST(SecondSlope, IsRefusedWhereNothingHasOne) {
   std::string deck = with(paper_deck(), "t_b_block_size", "second_slope = \"fixed\"\nt_b_block_size");
-  for (const char* line : {"f_t = \"2.5 MPa\"", "G_f1 = \"60 N/m\"", "f_cm = \"31 MPa\"", "beta = 0.05",
-                           "c_o = \"3.8 MPa\"", "c_res = \"0.038 MPa\"", "phi = \"34 deg\"",
-                           "phi_res = \"34 deg\"", "G_f2 = \"240 N/m\""})
+  for (const char* line :
+       {"f_t = \"2.5 MPa\"", "G_f1 = \"60 N/m\"", "f_cm = \"31 MPa\"", "beta = 0.05", "c_o = \"3.8 MPa\"",
+        "c_res = \"0.038 MPa\"", "phi = \"34 deg\"", "phi_res = \"34 deg\"", "G_f2 = \"240 N/m\""})
     deck = with(deck, line, "");
   deck = with(deck, "compression = \"irreversible\"", "");
   deck = with(deck, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"elastic\"");

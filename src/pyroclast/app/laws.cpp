@@ -16,7 +16,7 @@ with `law = "name"` in a table of `[contacts]` ([Phases and interfaces](../under
 The [method](../understand/theory.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
 one, and [What every contact law must hold](../develop/laws-verified.md) what each is tried for.
 
-- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses,
+- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses, and
   `second_slope` of `[contacts]` on second slopes.
 - **Remembered.** What a contact point carries from step to step. A value "in files" is a field of the contacts in
   `fields/`, and a column of `pyroclast law`.

@@ -110,8 +110,8 @@ struct ContactMaterial {
   double stiffness_between(double size) const {
     return block_size > 0.0 && size > 0.0 ? block_size / size : 1.0;
   }
-  /// Multiplies the stiffnesses among numbers of the law by a factor; the numbers change to those of blocks of
-  /// another size.
+  /// Turns numbers of the law into those between blocks of another size, whose stiffnesses differ by a
+  /// factor.
   void scale_stiffnesses(double factor, std::span<double> among) const;
 };
 

@@ -635,10 +635,10 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   if (scales)
     c.keeps_second_slope = s.choice<bool>(
         "second_slope",
-        {{"with K_n", false, "beta is the same at any block size, so that finer blocks yield along a steeper slope"},
+        {{"with K_n", false, "beta is the same at any block size: finer blocks yield along a steeper slope"},
          {"fixed", true,
           "beta holds at t_b_block_size and goes with the block size, so that beta K_n is the same, see "
-          "[f_c over the number of blocks](../validation/grains.md#f-c-over-the-number-of-blocks)"}},
+          "[f_c over the number of blocks](../validation/grains.md#f_c-over-the-number-of-blocks)"}},
         false, "whether the slope of contacts beyond f_cm, beta K_n, depends on the block size");
   else
     s.know({"second_slope"});
