@@ -101,7 +101,8 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
 
 
 def cold(specimen: Specimen) -> Crushed:
-    """Crushed at 20 degC. What only heat brings out does not matter, so all concretes of a body share the test."""
+    """Crushed at 20 degC. What only heat brings out does not matter, so all concretes of the cases' body share the test;
+    those of another body are tested under their own names."""
     if specimen.body:
         return crushed(specimen, 20.0)
     return crushed(dataclasses.replace(specimen, changes=(), concrete="as it stands"), 20.0)
