@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "pyroclast/solid/prism.hpp"
@@ -12,9 +13,10 @@ inline Prism cuboid(double width, double height, double depth) {
 }
 
 /// A cylinder along y: a prism on a polygon of the circle's area.
-inline Prism cylinder(double diameter, double height) {
+inline Prism cylinder(double diameter, double height, int sides = 31) {
   const double radius = 0.5 * diameter;
-  const auto corners = specimen::circle_corners({{radius, radius}}, diameter, diameter / 10.0);
+  const auto corners =
+      specimen::circle_corners({{radius, radius}}, diameter, std::numbers::pi * diameter / sides);
   return {specimen::Region::polygon(corners, {"rim"}, true), Prism::Axis::y, height};
 }
 

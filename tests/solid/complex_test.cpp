@@ -45,6 +45,16 @@ TEST(Complex, CellsFillTheBodyAndAreClosed) {
     }
 }
 
+// Voro++ loses track of cells with more vertices than it holds at first: it crashed on a cylinder of 199,000
+// blocks.
+TEST(Complex, OutlineMayHaveAnyNumberOfSides) {
+  for (const int sides : {78, 79, 200, 400}) {
+    const Prism body = cylinder(0.1, 0.2, sides);
+    ASSERT_EQ(body.planes().size(), static_cast<std::size_t>(sides) + 2);
+    require_valid(cells_of(body, 4000, 0.3, 3), body, "cells");
+  }
+}
+
 // Promise: each face is of one cell on the surface, and else of two that walk it in opposite senses: so each
 // edge of a cell is walked once each way.
 TEST(Complex, FacesWithinTheBodyAreOfTwoCells) {

@@ -28,6 +28,11 @@ constexpr double kMargin = 1.0;
 /// Number that Voro++ gives to a cell beyond the first plane of a body; those of other planes count down.
 constexpr int kFirstPlane = -10;
 
+/// Most planes of a body that cut one cell. Voro++ loses track of cells of more than 256 vertices; a cut
+/// through a prism of this many sides has three vertices a side. Only a few planes reach a cell, so the
+/// nearest ones suffice.
+constexpr std::size_t kMostPlanes = 80;
+
 /// Cell as Voro++ makes it.
 struct RawCell {
   std::vector<Vec<3>> vertices;
@@ -47,6 +52,58 @@ struct Spacings {
   double spacing;  ///< m
 };
 
+/// The planes of a body, as Voro++ asks for them.
+class Outline final : public voro::wall {
+ public:
+  Outline(const Prism& body, const Spacings& spacings) {
+    const auto& planes = body.planes();
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Vec<3>& n = planes[i].normal;
+      planes_.push_back({n, (planes[i].offset - dot(n, spacings.low)) / spacings.spacing});
+      walls_.emplace_back(n[0], n[1], n[2], planes_[i].offset, kFirstPlane - static_cast<int>(i));
+    }
+  }
+
+  bool point_inside(double x, double y, double z) override {
+    return std::ranges::all_of(planes_, [&](const Cut& cut) { return cut.depth({{x, y, z}}) > 0.0; });
+  }
+  bool cut_cell(voro::voronoicell& cell, double x, double y, double z) override {
+    return cut(cell, {{x, y, z}});
+  }
+  bool cut_cell(voro::voronoicell_neighbor& cell, double x, double y, double z) override {
+    return cut(cell, {{x, y, z}});
+  }
+
+ private:
+  /// Plane in mean spacings.
+  struct Cut {
+    double depth(const Vec<3>& point) const { return offset - dot(normal, point); }
+
+    Vec<3> normal;
+    double offset;
+  };
+
+  template <class Cell>
+  bool cut(Cell& cell, const Vec<3>& seed) {
+    double deepest = std::numeric_limits<double>::infinity();
+    if (planes_.size() > kMostPlanes) {
+      depths_.clear();
+      for (const Cut& plane : planes_) depths_.push_back(plane.depth(seed));
+      const auto last = depths_.begin() + kMostPlanes - 1;
+      std::ranges::nth_element(depths_, last);
+      deepest = *last;
+    }
+    for (std::size_t i = 0; i < planes_.size(); ++i)
+      if (planes_[i].depth(seed) <= deepest && !walls_[i].cut_cell(cell, seed[0], seed[1], seed[2]))
+        return false;
+    return true;
+  }
+
+  std::vector<Cut> planes_;
+  std::vector<voro::wall_plane> walls_;
+  std::vector<double> depths_;  ///< scratch: of a seed below each plane
+};
+
 class Container {
  public:
   Container(const SolidSeeds& seeds, const Prism& body) {
@@ -63,13 +120,8 @@ class Container {
       const Vec<3> p = spacings.of(seeds.position[i]);
       container_->put(static_cast<int>(i), p[0], p[1], p[2], seeds.radius[i] / spacings.spacing);
     }
-    walls_.reserve(body.planes().size());
-    for (const Plane& plane : body.planes()) {
-      const Vec<3>& n = plane.normal;
-      walls_.emplace_back(n[0], n[1], n[2], (plane.offset - dot(n, spacings.low)) / spacings.spacing,
-                          kFirstPlane - static_cast<int>(walls_.size()));
-    }
-    for (auto& wall : walls_) container_->add_wall(wall);
+    outline_ = std::make_unique<Outline>(body, spacings);
+    container_->add_wall(outline_.get());
   }
 
   /// Returns the number of computational blocks of Voro++.
@@ -99,7 +151,7 @@ class Container {
   }
 
  private:
-  std::vector<voro::wall_plane> walls_;
+  std::unique_ptr<Outline> outline_;  ///< to which the container points
   std::unique_ptr<voro::container_poly> container_;
 };
 
