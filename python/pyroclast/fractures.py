@@ -103,7 +103,7 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
     strength = run.peak[1]
     panels = []
     for letter, frame in marks.items():
-        is_peak = letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
+        is_peak = run.has_peak and letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
         caption = (f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
                    f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n"
                    f"{100.0 * frame.stress_MPa / strength:.0f} % of {'$f_c$' if run.has_peak else 'the largest'}")

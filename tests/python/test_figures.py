@@ -536,6 +536,18 @@ class FracturePanels(HeatedTest):
             self.assertEqual(panel.caption.count("\n"), 2, panel.caption)
         self.assertIn("% of $f_c$", panels[0].caption)
 
+    def test_no_panel_is_the_peak_of_a_run_whose_stress_never_fell(self):
+        file = self.run_folder / "summary.json"
+        summary = json.loads(file.read_text())
+        for stage in summary["stages"]:
+            if "f_c_MPa" in stage.get("results", {}):
+                stage["results"] |= {"f_c_MPa": None, "strain_at_peak": None}
+        file.write_text(json.dumps(summary))
+        panels = self.rows().panels
+        self.assertIn("B", [panel.title for panel in panels])
+        self.assertFalse([panel.title for panel in panels if "peak" in panel.title])
+        self.assertIn("% of the largest", panels[0].caption)
+
     def test_peak_is_the_frame_before_the_fall_and_not_the_nearest_by_strain(self):
         frames = [Frame(k, 1, 100 * k, 0.0, strain, stress)
                   for k, (strain, stress) in enumerate([(0.0025, 33.0), (0.0027, 33.9), (0.00282, 27.0), (0.003, 25.0)])]
