@@ -1358,6 +1358,13 @@ class DecksGoneWrong(UserTest):
         if "AddressSanitizer" in self.pyroclast("--version", preexec_fn=limit).stderr:
             self.skipTest("the address sanitizer needs more addresses than that to begin with")
         self.refuse(small_deck(count="count = 1000000"), "1000000", "memory", "GB", preexec_fn=limit)
+        merged, solid, wall = ("blocks.shortest_edge=0.35",), "starter_3d", "fire_one_side"
+        for case, blocks, needed, changes in ((solid, 50_000, "2.8", ()), (solid, 50_000, "2.0", merged),
+                                              ("starter", 400_000, "2.4", ()), (wall, 400_000, "3.6", ())):
+            words = [word for change in (f"blocks.count={blocks}", *changes) for word in ("--set", change)]
+            done = self.pyroclast("check", str(CASES / f"{case}.toml"), *words, preexec_fn=limit)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"needs about {needed} GB of memory", done.stderr)
 
     @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
     def test_a_folder_that_may_not_be_written(self):

@@ -430,7 +430,7 @@ DeckSchema deck_schema(const StageRegistry& kinds) {
 
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
-  MadeSpecimen specimen = make_checked_specimen(setup.specimen, team.get());
+  MadeSpecimen specimen = make_checked_specimen(setup.specimen, team.get(), !setup.heat.uniform);
   return make_simulation(setup, std::move(specimen), std::move(team));
 }
 

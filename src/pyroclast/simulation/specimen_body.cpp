@@ -17,10 +17,9 @@ namespace pyroclast {
 
 namespace {
 
-/// Measured peak of the memory over the number of blocks, bytes, from 5,000 to 1,000,000 blocks of the plane
-/// and of 1,000 and 4,000 of space (docs/develop/performance.md), rounded up: heat conduction takes half as
-/// much again.
-constexpr double kBytesPerBlock = 6000.0, kBytesPerSolidBlock = 60000.0;
+/// Measured peak of the memory over the number of blocks, bytes, rounded up (docs/develop/performance.md).
+constexpr double kBytesPerBlock = 6000.0, kBytesPerRawCell = 55000.0, kBytesPerMergedCell = 40000.0;
+constexpr double kOfConduction = 1.5;  ///< memory with heat conduction over that without
 constexpr double kBytesFixed = 40e6;
 
 constexpr const char* kUpperPlaten = "top_platen";
@@ -110,12 +109,14 @@ std::vector<std::string> warnings(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) { return warnings(s); }, specimen);
 }
 
-double estimate_memory(std::int64_t blocks, int dimension) {
-  return kBytesFixed + (dimension == 2 ? kBytesPerBlock : kBytesPerSolidBlock) * static_cast<double>(blocks);
+double estimate_memory(const AskedSpecimen& asked, bool conducts_heat) {
+  const double of_solid = asked.blocks.shortest_edge > 0.0 ? kBytesPerMergedCell : kBytesPerRawCell;
+  return kBytesFixed + (asked.prism ? of_solid : kBytesPerBlock) * (conducts_heat ? kOfConduction : 1.0) *
+                           static_cast<double>(asked.blocks.count);
 }
 
-MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team) {
-  const double needed = estimate_memory(asked.blocks.count, asked.dimension());
+MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team, bool conducts_heat) {
+  const double needed = estimate_memory(asked, conducts_heat);
   const double available = available_memory();
   if (needed > available)
     throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,14 +46,16 @@ const std::vector<std::string>& phases(const MadeSpecimen& specimen);
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const MadeSpecimen& specimen);
 
-/// Returns an upper estimate of the memory that a run with so many blocks needs, bytes.
-/// \param dimension  dimension of the body, 2 or 3
-double estimate_memory(std::int64_t blocks, int dimension);
+/// Returns an upper estimate of the memory that a run of a specimen needs, bytes.
+/// \param conducts_heat  whether the run solves heat conduction
+double estimate_memory(const AskedSpecimen& asked, bool conducts_heat);
 
 /// Makes a specimen. Throws Error when the specimen cannot be made, or a run of it would not fit into the
 /// free memory.
-/// \param team  threads that make it; without a team the calling thread works alone
-MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team = nullptr);
+/// \param team           threads that make it; without a team the calling thread works alone
+/// \param conducts_heat  whether the run solves heat conduction
+MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team = nullptr,
+                                   bool conducts_heat = false);
 
 /// Numbers of a specimen that materials, heat and exchanges ask for.
 struct SpecimenNumbers {
