@@ -28,10 +28,10 @@ constexpr double kMargin = 1.0;
 /// Number that Voro++ gives to a cell beyond the first plane of a body; those of other planes count down.
 constexpr int kFirstPlane = -10;
 
-/// Most planes of a body that cut one cell. Voro++ loses track of cells of more than 256 vertices; a cut
-/// through a prism of this many sides has three vertices a side. Only a few planes reach a cell, so the
-/// nearest ones suffice.
-constexpr std::size_t kMostPlanes = 80;
+/// Most planes of a body that cut one cell, the nearest ones: only a few reach it. Voro++ goes astray where a
+/// cut takes more than 256 vertices away, the room of its stack at first. With the six sides of the container
+/// a cell of so many planes has at most 2 * (124 + 6) - 4 vertices.
+constexpr std::size_t kMostPlanes = 124;
 
 /// Cell as Voro++ makes it.
 struct RawCell {
