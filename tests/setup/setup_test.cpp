@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "decks.hpp"
 #include "messages.hpp"
+#include "own_folder.hpp"
 #include "phases.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/run.hpp"
@@ -301,7 +301,7 @@ std::string squares(int columns, int rows) {
 
 // Promise: a file of blocks is read once, with the deck; the specimen is made of what was read then.
 TEST(Setup, ATessellationIsReadWithTheDeckAndNotAgain) {
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("squares-{}.tess", ::getpid());
+  const auto file = own_folder() / "squares.tess";
   const std::string deck =
       with(with(paper_deck(), "count = 5000", fmt::format("file = \"{}\"", file.filename().string())),
            "relaxation = 0 ", "");

@@ -8,6 +8,7 @@
 
 #include "known.hpp"
 #include "messages.hpp"
+#include "own_folder.hpp"
 #include "stages/small_runs.hpp"
 
 /// Runs of bodies that were put together at another temperature than 20 degC.
@@ -28,7 +29,7 @@ std::filesystem::path bar_file() {
     cells += (i ? ", " : "") + fmt::format("[{}, {}, {}, {}]", 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
     phases += (i ? ", " : "") + std::string(kFirstStone <= i && i < kFirstStone + kStones ? "1" : "0");
   }
-  const auto path = std::filesystem::temp_directory_path() / "pyroclast_stress_free_bar.json";
+  const auto path = own_folder() / "stress_free_bar.json";
   std::ofstream(path) << "{\"phases\": [\"mortar\", \"aggregate\"], \"vertices_m\": [" << vertices
                       << "], \"cells\": [" << cells << "], \"phase\": [" << phases << "]}";
   return path;

@@ -16,6 +16,7 @@
 
 #include "known.hpp"
 #include "messages.hpp"
+#include "own_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "stages/small_runs.hpp"
@@ -137,8 +138,8 @@ frame_strain = 1e-3
 
 /// Blocks as a file, in the deck's own folder, and the table of the specimen made of it.
 std::string specimen(const std::string& blocks, int dimension, const std::string& symmetry) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    fmt::format("symmetry_{}_{}.json", dimension, std::hash<std::string>()(blocks));
+  const auto file =
+      own_folder() / fmt::format("symmetry_{}_{}.json", dimension, std::hash<std::string>()(blocks));
   std::ofstream(file) << blocks;
   return fmt::format("title = \"symmetry\"\n[specimen]\nshape = \"{}\"\nfile = \"{}\"\nsymmetry = [{}]\n",
                      dimension == 2 ? "cells" : "polyhedra", file.string(), symmetry);
