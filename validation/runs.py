@@ -56,6 +56,11 @@ def rounded(row: dict[str, Any]) -> dict[str, Any]:
     return {key: f"{value:.5g}" if isinstance(value, float) else value for key, value in row.items()}
 
 
+def stands(table: list[dict[str, str]], key: dict[str, str]) -> bool:
+    """Whether a table has a row with these values."""
+    return any(key.items() <= row.items() for row in table)
+
+
 def fill_table(table: pathlib.Path, columns: tuple[str, ...], makers: Sequence[Callable[[], dict]], jobs: int,
                place: tuple[str, ...], order: Callable[[dict], Any] | None = None) -> None:
     """Makes rows, some at once. Each is written as it comes, in the place of one that is alike in the columns `place`.
