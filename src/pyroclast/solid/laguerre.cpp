@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <unordered_map>
@@ -56,16 +57,17 @@ struct Spacings {
 class Outline final : public voro::wall {
  public:
   Outline(const Prism& body, const Spacings& spacings) {
-    const auto& planes = body.planes();
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const Vec<3>& n = planes[i].normal;
-      planes_.push_back({n, (planes[i].offset - dot(n, spacings.low)) / spacings.spacing});
-      walls_.emplace_back(n[0], n[1], n[2], planes_[i].offset, kFirstPlane - static_cast<int>(i));
+    for (const auto& [normal, offset, side] : body.planes()) {
+      planes_.push_back({normal, (offset - dot(normal, spacings.low)) / spacings.spacing, side});
+      walls_.emplace_back(normal[0], normal[1], normal[2], planes_.back().offset,
+                          kFirstPlane - static_cast<int>(walls_.size()));
     }
   }
 
   bool point_inside(double x, double y, double z) override {
-    return std::ranges::all_of(planes_, [&](const Cut& cut) { return cut.depth({{x, y, z}}) > 0.0; });
+    return std::ranges::all_of(planes_, [&](const Plane& plane) {
+      return plane.distance({{x, y, z}}) < 0.0;
+    });
   }
   bool cut_cell(voro::voronoicell& cell, double x, double y, double z) override {
     return cut(cell, {{x, y, z}});
@@ -75,33 +77,25 @@ class Outline final : public voro::wall {
   }
 
  private:
-  /// Plane in mean spacings.
-  struct Cut {
-    double depth(const Vec<3>& point) const { return offset - dot(normal, point); }
-
-    Vec<3> normal;
-    double offset;
-  };
-
   template <class Cell>
   bool cut(Cell& cell, const Vec<3>& seed) {
-    double deepest = std::numeric_limits<double>::infinity();
+    double farthest = -std::numeric_limits<double>::infinity();
     if (planes_.size() > kMostPlanes) {
-      depths_.clear();
-      for (const Cut& plane : planes_) depths_.push_back(plane.depth(seed));
-      const auto last = depths_.begin() + kMostPlanes - 1;
-      std::ranges::nth_element(depths_, last);
-      deepest = *last;
+      distances_.clear();
+      for (const Plane& plane : planes_) distances_.push_back(plane.distance(seed));
+      const auto last = distances_.begin() + kMostPlanes - 1;
+      std::ranges::nth_element(distances_, last, std::greater<>());
+      farthest = *last;
     }
     for (std::size_t i = 0; i < planes_.size(); ++i)
-      if (planes_[i].depth(seed) <= deepest && !walls_[i].cut_cell(cell, seed[0], seed[1], seed[2]))
+      if (planes_[i].distance(seed) >= farthest && !walls_[i].cut_cell(cell, seed[0], seed[1], seed[2]))
         return false;
     return true;
   }
 
-  std::vector<Cut> planes_;
+  std::vector<Plane> planes_;  ///< in mean spacings
   std::vector<voro::wall_plane> walls_;
-  std::vector<double> depths_;  ///< scratch: of a seed below each plane
+  std::vector<double> distances_;  ///< scratch: of a seed from each plane, negative
 };
 
 class Container {

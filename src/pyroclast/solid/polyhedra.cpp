@@ -152,7 +152,7 @@ void find_sides(Complex& complex, const Prism& body) {
     for (const Plane& plane : body.planes()) {
       double farthest = 0.0;
       for (const int v : face.corners)
-        farthest = std::max(farthest, std::abs(dot(plane.normal, complex.vertices[v]) - plane.offset));
+        farthest = std::max(farthest, std::abs(plane.distance(complex.vertices[v])));
       if (farthest >= nearest) continue;
       nearest = farthest;
       face.side = plane.side;

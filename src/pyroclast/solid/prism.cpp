@@ -61,7 +61,7 @@ Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along) {
 
 double Prism::distance(const Vec<3>& point) const {
   double farthest = -std::numeric_limits<double>::infinity();
-  for (const Plane& plane : planes_) farthest = std::max(farthest, dot(plane.normal, point) - plane.offset);
+  for (const Plane& plane : planes_) farthest = std::max(farthest, plane.distance(point));
   return farthest;
 }
 

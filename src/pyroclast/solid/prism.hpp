@@ -11,6 +11,9 @@ namespace pyroclast::solid {
 
 /// Plane that bounds a body: the body lies where dot(normal, x) <= offset.
 struct Plane {
+  /// Returns the distance of a point from the plane, m, negative on the side of the body.
+  double distance(const Vec<3>& point) const { return dot(normal, point) - offset; }
+
   Vec<3> normal;  ///< unit vector, out of the body
   double offset;  ///< m
   int side;       ///< index into Prism::sides
