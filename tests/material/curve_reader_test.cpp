@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "deck/diagnostics_of.hpp"
+#include "own_folder.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 
 namespace pyroclast {
@@ -21,9 +22,7 @@ constexpr Interval kFire{20.0, 800.0};
 /// A folder for the files of one test.
 class Folder {
  public:
-  Folder() : path_(fs::temp_directory_path() / ("pyroclast_curve_reader_" + test_name())) {
-    fs::create_directories(path_);
-  }
+  Folder() : path_(own_folder() / test_name()) { fs::create_directories(path_); }
   ~Folder() { fs::remove_all(path_); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;

@@ -14,6 +14,7 @@
 #include "in_plane.hpp"
 #include "mechanics/bodies.hpp"
 #include "messages.hpp"
+#include "own_folder.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/plugin/open.hpp"
@@ -218,8 +219,7 @@ TEST(Plugin, TheEnvironmentNamesFoldersAndForbidsCompiling) {
 class LawInAHeader : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / (std::string("pyroclast_plugin_") +
-                                           testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = own_folder() / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     sources_.compiler.cache = folder_ / "cache";

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "own_folder.hpp"
+
 namespace pyroclast {
 
 namespace fs = std::filesystem;
@@ -15,8 +17,7 @@ namespace fs = std::filesystem;
 class Results : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              (std::string("pyroclast_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = own_folder() / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
