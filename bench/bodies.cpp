@@ -79,7 +79,7 @@ std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
   model.interface_names = interfaces.names();
   const int matrix = pyroclast::place_in(model.material_names, setup.specimen.matrix);
   add_cells(model, result.complex, std::vector<int>(blocks, matrix),
-            [&](int a, int b) { return interfaces.between(a, b); });
+            [of_matrix = interfaces.between(matrix, matrix)](int, int) { return of_matrix; });
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     if (model.position[g][1] == 0.0) sample->held.push_back(g);
     if (model.position[g][1] == kEdgeOfCube) sample->driven.push_back(g);

@@ -204,6 +204,11 @@ class Specimen:
         return self._core.phase
 
     @property
+    def stone(self) -> NDArray[np.int32] | None:
+        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
+        return self._core.stone if len(self._core.stone) else None
+
+    @property
     def block_size(self) -> NDArray[np.float64] | None:
         """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
         return np.array(self._core.block_size) if self._core.block_size else None
@@ -303,6 +308,11 @@ class SolidSpecimen:
     def phase(self) -> NDArray[np.int32]:
         """(blocks,): indices into `phases`."""
         return self._core.phase
+
+    @property
+    def stone(self) -> NDArray[np.int32] | None:
+        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
+        return self._core.stone if len(self._core.stone) else None
 
     @property
     def block_size(self) -> NDArray[np.float64] | None:

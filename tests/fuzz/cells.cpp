@@ -17,7 +17,7 @@ bool cells(std::string_view text) {
     const auto made = specimen::specimen_from(specimen::cells_from(std::string(text), "cells.json").cells);
     require(made.region.area() > 0.0, "a specimen has an area");
     require(
-        specimen::cells_from(specimen::cells_text({made.tessellation, made.phases, made.phase, made.size}), "again.json")
+        specimen::cells_from(specimen::cells_text({made.tessellation, made.phases, made.phase, made.size, made.grain}), "again.json")
                 .cells.tessellation.vertices == made.tessellation.vertices,
         "what is written is read again");
   });

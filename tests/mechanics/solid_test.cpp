@@ -23,7 +23,7 @@ ModelOf<3> of_two_materials(const solid::Complex& complex, const std::vector<int
   ModelOf<3> model;
   model.material_names = {"lower", "upper"};
   model.interface_names = {"within", "between"};
-  add_cells(model, complex, material, [](int a, int b) { return a == b ? 0 : 1; });
+  add_cells(model, complex, material, [&](int a, int b) { return material[a] == material[b] ? 0 : 1; });
   return model;
 }
 

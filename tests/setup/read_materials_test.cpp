@@ -55,7 +55,7 @@ Materials read(const Deck& deck, Interval needed = kFire) {
   const MaterialRules rules = read_material_rules(deck.root());
   m.block_materials = read_block_materials(deck.root(), phases, {"platen"}, rules, {}, curves);
   m.contacts = read_contacts(
-      deck.root(), phases, "mortar", true, rules.on_cooling,
+      deck.root(), phases, {"aggregate"}, "mortar", true, rules.on_cooling,
       [](const auto&, bool) -> const LawTable& { return table_of<Cohesive>(); }, curves);
   m.curves = curves.curves();
   return m;

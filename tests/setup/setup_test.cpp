@@ -424,6 +424,49 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   EXPECT_EQ(of("steel_steel").law, &table_of<Elastic>());
 }
 
+// Blocks of two stones that touch have the interface that the deck gives them, own numbers and stiffness
+// included.
+TEST(Phases, StonesThatTouchMayHaveAnInterface) {
+  const std::string own = "[contacts.seam]\nlike = \"aggregate_mortar\"\nstrength_factor = 0.5\n";
+  std::string deck =
+      with(shipped_case("starter"), "[mechanics]", own + "between_stones = [\"aggregate\"]\n[mechanics]");
+  deck = with(deck, "fraction = 0.34", "fraction = 0.45");
+  const auto setup = read(deck);
+  const auto simulation = make_simulation(setup);
+  const auto& specimen = std::get<specimen::Specimen>(simulation->specimen());
+  const auto& model = simulation->model();
+  const auto place = [&](const char* name) {
+    return std::ranges::find(model.interface_names, name) - model.interface_names.begin();
+  };
+  // the lower platen is the first block
+  const auto stone = [&](int gridpoint) { return specimen.grain.at(model.block_of(gridpoint) - 1); };
+  int within = 0, between = 0;
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const Joint& c = model.joint(i);
+    if (model.is_of_bearing(c) || stone(c.a) < 0 || stone(c.b) < 0) continue;
+    const bool is_within = stone(c.a) == stone(c.b);
+    EXPECT_EQ(c.interface, place(is_within ? "aggregate_aggregate" : "seam"));
+    ++(is_within ? within : between);
+  }
+  EXPECT_GT(within, 100);
+  EXPECT_GT(between, 10);
+  const auto& contacts = simulation->materials().contacts;
+  const auto at = [&](const char* name, const char* key) { return contacts.at(place(name))[key](20.0); };
+  EXPECT_DOUBLE_EQ(at("seam", "f_t"), 0.5 * at("aggregate_mortar", "f_t"));
+  EXPECT_DOUBLE_EQ(at("seam", "K_n"), at("aggregate_mortar", "K_n"));
+}
+
+TEST(Phases, WhatCannotJoinTwoStonesIsSaid) {
+  const auto says = [&](const std::string& keys, const char* what) {
+    expect_in(what, message(with(deck_of_many_phases(), "[contacts.light_light]",
+                                 keys + "\n[contacts.light_light]")));
+  };
+  says("between_stones = [\"mortar\"]", "\"mortar\" is no phase of stones; such phases are");
+  says("between_stones = [\"steel\"]", "\"steel\" is no phase of stones");
+  says("between_stones = [\"light\"]\n[contacts.other]\nbetween_stones = [\"light\"]\nlike = \"void\"",
+       "stones of light are joined by aggregate_mortar already");
+}
+
 TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
   const std::string deck = deck_of_many_phases();
   const auto says = [&](const std::string& from, const std::string& to, const char* what) {

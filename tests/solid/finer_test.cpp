@@ -165,6 +165,7 @@ TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
   }
   Polyhedra read = polyhedra_from(polyhedra_text(s), "blocks.json");
   EXPECT_EQ(read.size, s.size);
+  EXPECT_EQ(read.grain, s.grain);
   EXPECT_EQ(specimen_from(std::move(read), body).size, s.size);
 }
 

@@ -118,7 +118,7 @@ TEST(SpecimenFromCells, AFileKeepsTheSizesOfBlocks) {
   };
   const Specimen made = specimen_from(cells_from(of_list(R"(, "block_size_m": [0.25])"), "mine.json").cells);
   EXPECT_EQ(made.size, std::vector<double>{0.25});
-  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size});
+  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size, made.grain});
   EXPECT_EQ(cells_from(text, "again.json").cells.size, made.size);
   EXPECT_TRUE(cells_from(of_list(""), "mine.json").cells.size.empty());
   EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_mm": [1])"), "mine.json"); }),
@@ -127,6 +127,23 @@ TEST(SpecimenFromCells, AFileKeepsTheSizesOfBlocks) {
                    "there are 1 cells, but the sizes of 2"));
   EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_m": [-1])"), "mine.json"); }),
                    "it must be greater than 0"));
+}
+
+TEST(SpecimenFromCells, AFileKeepsTheStonesOfBlocks) {
+  const auto file = [](const std::string& stones) {
+    return R"({"phases": ["a", "b"], "cells": [[0, 1, 2], [1, 3, 2]], "phase": [1, 0], "stone": )" + stones +
+           R"(, "vertices_m": [[0, 0], [1, 0], [0, 1], [1, 1]]})";
+  };
+  const Cells read = cells_from(file("[7, -1]"), "mine.json").cells;
+  EXPECT_EQ(phases_of_stones(read.phases, read.phase, read.grain), std::vector<std::string>{"b"});
+  const Specimen made = specimen_from(read);
+  EXPECT_EQ(made.grain, (std::vector<int>{7, -1}));
+  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size, made.grain});
+  EXPECT_EQ(cells_from(text, "again.json").cells.grain, made.grain);
+  EXPECT_TRUE(says(message([&] { cells_from(file("[7]"), "mine.json"); }),
+                   "there are 2 cells, but the stones of 1"));
+  EXPECT_TRUE(says(message([&] { cells_from(file("[7, -2]"), "mine.json"); }),
+                   "must be the number of a stone, from 0, or -1 for none"));
 }
 
 TEST(SpecimenFromCells, ANumberTooLargeIsToldWithItsFile) {

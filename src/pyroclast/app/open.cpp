@@ -9,7 +9,6 @@
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/plugin/open.hpp"
-#include "pyroclast/specimen/clusters.hpp"
 #include "pyroclast/units/units.hpp"
 
 namespace pyroclast::app {
@@ -48,8 +47,6 @@ std::string describe_sizes(const std::vector<double>& sizes) {
 std::string describe_specimen(const specimen::Specimen& s) {
   const auto& m = s.metrics;
   std::string text = describe_phases(s, "blocks", s.tessellation.cells.size(), s.aggregates.size(), "area");
-  if (const std::string skeleton = specimen::skeleton(s); !skeleton.empty())
-    text += fmt::format("                {}\n", skeleton);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
   text += describe_sizes(s.size);
@@ -151,8 +148,7 @@ void print_kept(const std::filesystem::path& folder, const std::vector<std::file
 }
 
 std::string describe(const MadeSpecimen& specimen) {
-  return std::visit([](const auto& s) { return describe_specimen(s); }, specimen) +
-         describe_warnings(warnings(specimen));
+  return std::visit([](const auto& s) { return describe_specimen(s); }, specimen);
 }
 
 std::string describe(const Team& team) {

@@ -129,7 +129,8 @@ std::string describe_start(Session& session) {
   const Simulation& simulation = session.simulation();
   const Opened& opened = session.opened();
   std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
-                     describe_own_laws() + describe(simulation.specimen());
+                     describe_own_laws() + describe(simulation.specimen()) +
+                     describe_warnings(simulation.warnings_of_specimen());
   const Model& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())

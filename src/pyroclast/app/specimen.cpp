@@ -29,8 +29,8 @@ int make_specimen(const RunOptions& asked) {
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  fmt::print("{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
-             folder.path().string());
+  fmt::print("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
+             describe_warnings(warnings(specimen)), folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
 }

@@ -76,12 +76,15 @@ class StiffnessOfInterfaces {
   /// Returns the phase with the least E at the reference temperature of those that an interface joins.
   const BlockMaterial& softest(const InterfaceParameters& interface) const {
     const BlockMaterial* softest = nullptr;
-    for (const auto& pair : interface.between)
-      for (const auto& name : pair)
-        for (const BlockMaterial& material : materials_)
-          if (material.name == name &&
-              (!softest || material.young(kReferenceTemperature) < softest->young(kReferenceTemperature)))
-            softest = &material;
+    const auto joins = [&](const std::string& phase) {
+      return std::ranges::find(interface.between_stones, phase) != interface.between_stones.end() ||
+             std::ranges::any_of(interface.between,
+                                 [&](const auto& pair) { return pair[0] == phase || pair[1] == phase; });
+    };
+    for (const BlockMaterial& material : materials_)
+      if (joins(material.name) &&
+          (!softest || material.young(kReferenceTemperature) < softest->young(kReferenceTemperature)))
+        softest = &material;
     if (!softest)
       throw Error(fmt::format("contacts.{}: none of its phases is in the specimen", interface.name));
     return *softest;
@@ -193,21 +196,31 @@ InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,
         if ((first == a && second == b) || (first == b && second == a)) return &interface;
     return nullptr;
   };
+  const auto number_of = [&](const std::string& name) {
+    auto known = std::ranges::find(names_, name);
+    if (known == names_.end()) known = names_.insert(names_.end(), name);
+    return static_cast<int>(known - names_.begin());
+  };
   for (int a = 0; a < phases_; ++a)
     for (int b = a; b < phases_; ++b) {
       const InterfaceParameters* own = stated(phases[a], phases[b]);
-      const std::string name = own ? own->name : phases[a] + "_" + phases[b];
-      auto known = std::ranges::find(names_, name);
-      if (known == names_.end()) known = names_.insert(names_.end(), name);
-      const int index = static_cast<int>(known - names_.begin());
-      of_pair_[a * phases_ + b] = of_pair_[b * phases_ + a] = index;
+      of_pair_[a * phases_ + b] = of_pair_[b * phases_ + a] =
+          number_of(own ? own->name : phases[a] + "_" + phases[b]);
     }
+  for (int phase = 0; phase < phases_; ++phase) {
+    of_stones_.push_back(between(phase, phase));
+    for (const InterfaceParameters& interface : interfaces)
+      if (std::ranges::find(interface.between_stones, phases[phase]) != interface.between_stones.end())
+        of_stones_.back() = number_of(interface.name);
+  }
 }
 
 std::array<int, 2> InterfaceTable::pair_of(int interface) const {
   for (int a = 0; a < phases_; ++a)
     for (int b = a; b < phases_; ++b)
       if (between(a, b) == interface) return {a, b};
+  for (int phase = 0; phase < phases_; ++phase)
+    if (between_stones(phase) == interface) return {phase, phase};
   throw Error(fmt::format("no pair of phases has interface {}; there are {}", interface, count()));
 }
 

@@ -119,6 +119,7 @@ struct ContactMaterial {
 struct InterfaceParameters {
   std::string name;
   std::vector<std::array<std::string, 2>> between;  ///< pairs of phases, in any order
+  std::vector<std::string> between_stones;          ///< phases of which two stones that touch have it
   ContactMaterial contact;                          ///< contact law; make_concrete fills in its stiffnesses
   /// K_n at the reference temperature, Pa/m; else from `like` or E / t_b.
   std::optional<double> normal_stiffness;
@@ -181,7 +182,8 @@ class InterfaceTable {
  public:
   InterfaceTable() = default;
   /// Gives each pair of phases an interface: the one that the deck states for the pair, else an interface of
-  /// the pair's own, named `a_b`. The same holds for two blocks of one phase.
+  /// the pair's own, named `a_b`. The same holds for two blocks of one phase, but two stones of a phase may
+  /// have another one.
   /// \param phases      phases of the specimen
   /// \param interfaces  interfaces of the deck; none where nothing moves
   explicit InterfaceTable(const std::vector<std::string>& phases,
@@ -189,14 +191,16 @@ class InterfaceTable {
 
   const std::vector<std::string>& names() const { return names_; }
   int between(int phase, int other) const { return of_pair_.at(phase * phases_ + other); }
+  /// Returns the interface of blocks of two stones that are of one phase.
+  int between_stones(int phase) const { return of_stones_.at(phase); }
   int count() const { return static_cast<int>(names_.size()); }
-  /// Returns the first pair of phases that has the interface.
+  /// Returns the first pair of phases that has the interface, or the phase, twice, whose stones have it.
   std::array<int, 2> pair_of(int interface) const;
 
  private:
   int phases_ = 0;
   std::vector<std::string> names_;
-  std::vector<int> of_pair_;
+  std::vector<int> of_pair_, of_stones_;
 };
 
 /// Behaviour, when a body cools, of E of its phases and of strengths, fracture energies and stiffnesses of

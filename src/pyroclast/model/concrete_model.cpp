@@ -245,7 +245,7 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
     const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
       const int first_contact = model.contact_count();
-      const int interface = table.between(specimen.phase[e.left], specimen.phase[e.right]);
+      const int interface = interface_of(table, specimen, e.left, e.right);
       model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, interface,
                        0.5 * (size_of(e.left) + size_of(e.right)));
       if (const auto slit = region.slit_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1])) {

@@ -26,6 +26,15 @@ void name_blocks(Model& model, int first_block);
 /// interfaces.
 void name_contacts(Model& model, const std::string& body, int first_contact);
 
+/// Returns the interface that joins two cells of a specimen, in the plane or in space.
+template <class Specimen>
+int interface_of(const InterfaceTable& table, const Specimen& specimen, int cell, int other) {
+  const int phase = specimen.phase[cell];
+  const bool of_two_stones = phase == specimen.phase[other] && !specimen.grain.empty() &&
+                             specimen.grain[cell] != specimen.grain[other];
+  return of_two_stones ? table.between_stones(phase) : table.between(phase, specimen.phase[other]);
+}
+
 /// Adds the materials and interfaces of bearings, each once, behind those of the specimen.
 void add_bearing_names(Model& model, const std::vector<Bearing>& bearings);
 

@@ -146,7 +146,7 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
   for (const auto& [corners, inner, outer, side] : complex.faces)
     if (outer >= 0)
       model.join_faces(gridpoints(inner, corners), gridpoints(outer, corners),
-                       interface_between(material[inner], material[outer]),
+                       interface_between(inner, outer),
                        size.empty() ? 0.0 : 0.5 * (size[inner] + size[outer]));
   return vertices;
 }
@@ -179,7 +179,8 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
   add_bearings(true);
   const int first_block = model.block_count();
   const auto vertices = add_cells(
-      model, complex, specimen.phase, [&](int a, int b) { return table.between(a, b); }, specimen.size);
+      model, complex, specimen.phase,
+      [&](int cell, int other) { return interface_of(table, specimen, cell, other); }, specimen.size);
   name_blocks(model, first_block);
   name_contacts(model, "specimen", 0);
   add_bearings(false);

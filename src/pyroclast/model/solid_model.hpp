@@ -14,7 +14,7 @@ inline constexpr std::array<const char*, 4> kQuartersOfRim{"rim_left", "rim_righ
 
 /// Adds the cells of a complex to a model as blocks, cell by cell, and joins the faces of neighbours.
 /// \param material           material of each cell, index into Model::material_names
-/// \param interface_between  function from two materials to an index into Model::interface_names
+/// \param interface_between  function from two cells to an index into Model::interface_names
 /// \param size               size that each cell was to have, m, which contacts follow; empty: all alike
 /// \return for each cell, the vertices of the complex at which its gridpoints stand, in their order
 std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex& complex,

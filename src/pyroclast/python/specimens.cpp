@@ -132,6 +132,7 @@ void bind_solid_specimens(py::module_& m) {
       .def_property_readonly("cells", [](const SolidSpecimen& s) { return arrays_of(s.complex.cells); })
       .def_property_readonly("phase", [](const SolidSpecimen& s) { return array_of(s.phase); })
       .def_readonly("block_size", &SolidSpecimen::size)
+      .def_property_readonly("stone", [](const SolidSpecimen& s) { return array_of(s.grain); })
       .def_property_readonly("phases", [](const SolidSpecimen& s) { return s.phases; })
       .def_property_readonly("shares", [](const SolidSpecimen& s) { return s.fraction; })
       .def_property_readonly("volume", [](const SolidSpecimen& s) { return s.body.volume(); })
@@ -165,10 +166,11 @@ void bind_specimens(py::module_& m) {
       .def(
           "text",
           [](const Specimen& s) {
-            return specimen::cells_text({s.tessellation, s.phases, s.phase, s.size});
+            return specimen::cells_text({s.tessellation, s.phases, s.phase, s.size, s.grain});
           },
           "As a file holds it.")
       .def_readonly("block_size", &Specimen::size)
+      .def_property_readonly("stone", [](const Specimen& s) { return array_of(s.grain); })
       .def_property_readonly("vertices",
                              [](const Specimen& s) {
                                std::vector<Vec<3>> places;

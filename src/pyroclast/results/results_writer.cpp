@@ -55,8 +55,7 @@ Summary ResultsWriter::summary(const Run& run) const {
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
   const Simulation& simulation = run.simulation();
-  const auto of_specimen =
-      simulation.has_specimen() ? pyroclast::warnings(simulation.specimen()) : std::vector<std::string>();
+  const auto of_specimen = simulation.warnings_of_specimen();
   for (const auto& list : {lost_frames_, of_specimen, std::exchange(summary.warnings, {})})
     warnings.insert(warnings.end(), list.begin(), list.end());
   summary.warnings = std::move(warnings);

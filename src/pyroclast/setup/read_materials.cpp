@@ -325,6 +325,8 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("\"{}\"", fmt::join(names, "\", \""));
 }
 
+constexpr const char* kBetweenStones = "between_stones";
+
 /// Returns the two phases that the name of an interface, `a_b`, joins; empty where it names no two phases.
 std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
                                                      const std::vector<std::string>& phases) {
@@ -334,16 +336,35 @@ std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
   return {};
 }
 
-/// Reads the pairs of phases that an interface joins: names that follow one another two and two.
+/// Reads the phases of which an interface joins two stones.
+std::vector<std::string> read_between_stones(const Section& s, const std::vector<std::string>& of_stones) {
+  auto list =
+      s.optional_texts(kBetweenStones,
+                       "phases such as aggregate: these contacts also join two stones of a phase where "
+                       "their blocks touch, else such stones hold together as one; see [Stones that "
+                       "touch](../do/grading.md#stones-that-touch)");
+  if (!s.ok() || !s.has(kBetweenStones)) return {};
+  for (const auto& phase : list)
+    if (std::ranges::find(of_stones, phase) == of_stones.end())
+      s.error(kBetweenStones, of_stones.empty()
+                                  ? "has no meaning here: which block belongs to which stone is not known"
+                                  : fmt::format("\"{}\" is no phase of stones; such phases are {}", phase,
+                                                list_of(of_stones)));
+  return list;
+}
+
+/// Reads the pairs of phases that an interface joins: names that follow one another two and two. There may be
+/// none where the interface joins stones.
 std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
-                                                     const std::vector<std::string>& phases) {
+                                                     const std::vector<std::string>& phases,
+                                                     bool joins_stones) {
   const auto list = s.optional_texts("between",
                                      "the two phases whose blocks these contacts join, or several pairs in a "
                                      "row: a, b, c, d; without this key the two in the table's name, a_b");
   if (!s.ok()) return {};
   if (!s.has("between")) {
     auto pair = pair_in_name(name, phases);
-    if (pair.empty())
+    if (pair.empty() && !joins_stones)
       s.error(
           fmt::format("names no two phases of the specimen, as a_b, and has no \"between\"; phases are {}",
                       list_of(phases)));
@@ -362,11 +383,13 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
 /// Reader of the interfaces, which are tables of [contacts].
 class InterfaceReader {
  public:
-  InterfaceReader(const Section& shared, const std::vector<std::string>& phases, OnCooling on_cooling,
-                  const LawFinder& find_law, CurveReader& curves)
+  InterfaceReader(const Section& shared, const std::vector<std::string>& phases,
+                  const std::vector<std::string>& of_stones, OnCooling on_cooling, const LawFinder& find_law,
+                  CurveReader& curves)
       : shared_(shared),
         sections_(shared.named_sections("NAME", "contacts between the blocks of two phases (Table 2)")),
         phases_(phases),
+        of_stones_(of_stones),
         on_cooling_(on_cooling),
         find_law_(find_law),
         curves_(curves) {}
@@ -396,7 +419,8 @@ class InterfaceReader {
   InterfaceParameters read_interface(const Section& s, const std::string& name) {
     InterfaceParameters p;
     p.name = name;
-    p.between = read_between(s, name, phases_);
+    p.between_stones = read_between_stones(s, of_stones_);
+    p.between = read_between(s, name, phases_, !p.between_stones.empty());
     std::optional<ContactMaterial> base;
     if (s.has("like")) base = read_like(s, p);
     const LawTable& law = base ? *base->law : read_law(s);
@@ -488,6 +512,7 @@ class InterfaceReader {
   const Section& shared_;
   std::vector<std::pair<std::string, Section>> sections_;
   const std::vector<std::string>& phases_;
+  const std::vector<std::string>& of_stones_;
   OnCooling on_cooling_;
   const LawFinder& find_law_;
   CurveReader& curves_;
@@ -495,20 +520,25 @@ class InterfaceReader {
   std::vector<InterfaceParameters> read_;
 };
 
-/// Records an error where two interfaces join one pair of phases.
+/// Records an error where two interfaces join one pair of phases, or two stones of one phase.
 void check_pairs(const std::vector<std::pair<std::string, Section>>& sections,
                  const std::vector<InterfaceParameters>& interfaces) {
   std::map<std::array<std::string, 2>, std::string> taken;
-  for (const InterfaceParameters& interface : interfaces)
+  std::map<std::string, std::string> taken_of_stones;
+  for (const InterfaceParameters& interface : interfaces) {
+    const auto& section =
+        std::ranges::find(sections, interface.name, &std::pair<std::string, Section>::first)->second;
     for (std::array<std::string, 2> pair : interface.between) {
       std::ranges::sort(pair);
-      const auto [known, is_new] = taken.emplace(pair, interface.name);
-      if (is_new) continue;
-      const auto stated =
-          std::ranges::find(sections, interface.name, &std::pair<std::string, Section>::first);
-      stated->second.error(
-          "between", fmt::format("{} and {} are joined by {} already", pair[0], pair[1], known->second));
+      if (const auto [known, is_new] = taken.emplace(pair, interface.name); !is_new)
+        section.error("between",
+                      fmt::format("{} and {} are joined by {} already", pair[0], pair[1], known->second));
     }
+    for (const std::string& phase : interface.between_stones)
+      if (const auto [known, is_new] = taken_of_stones.emplace(phase, interface.name); !is_new)
+        section.error(kBetweenStones,
+                      fmt::format("stones of {} are joined by {} already", phase, known->second));
+  }
 }
 
 /// Records an error for every two phases that may meet and have no interface, and for a matrix that has none
@@ -613,8 +643,9 @@ std::vector<BlockMaterial> read_conducting_materials(const Section& root,
 }
 
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
-                                const std::string& matrix, bool has_platens, OnCooling on_cooling,
-                                const LawFinder& find_law, CurveReader& curves) {
+                                const std::vector<std::string>& of_stones, const std::string& matrix,
+                                bool has_platens, OnCooling on_cooling, const LawFinder& find_law,
+                                CurveReader& curves) {
   const Section s = root.section("contacts", "all contacts: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
   c.matrix = matrix;
@@ -648,7 +679,7 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
                                                "coefficient of friction between platen and specimen")});
   else
     s.know({"platen_friction"});
-  InterfaceReader reader(s, phases, on_cooling, find_law, curves);
+  InterfaceReader reader(s, phases, of_stones, on_cooling, find_law, curves);
   c.interfaces = reader.read();
   const auto has_second_slope = [](const InterfaceParameters& interface) {
     return std::ranges::any_of(interface.contact.law->properties,

@@ -49,11 +49,13 @@ std::vector<BlockMaterial> read_conducting_materials(const Section& root,
 using LawFinder = std::function<const LawTable&(const std::string& name, bool named)>;
 
 /// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
+/// \param of_stones    phases whose blocks belong to stones that are known
 /// \param matrix       phase that must have an interface with itself
 /// \param has_platens  true where there is a contact with platens, which then comes first of those of
 ///                     bearings
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
-                                const std::string& matrix, bool has_platens, OnCooling on_cooling,
-                                const LawFinder& find_law, CurveReader& curves);
+                                const std::vector<std::string>& of_stones, const std::string& matrix,
+                                bool has_platens, OnCooling on_cooling, const LawFinder& find_law,
+                                CurveReader& curves);
 
 }  // namespace pyroclast

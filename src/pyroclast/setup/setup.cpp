@@ -331,8 +331,8 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   moving.strain_of_concrete = concrete.of_phases;
   setup.block_materials =
       read_block_materials(root, phases, materials_of(moving.bearings), rules, concrete, curves);
-  moving.contacts =
-      read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
+  moving.contacts = read_contacts(root, phases, setup.specimen.phases_of_stones(), setup.specimen.matrix,
+                                  has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
   setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);

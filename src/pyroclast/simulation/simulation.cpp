@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/simulation/skeleton.hpp"
 
 namespace pyroclast {
 
@@ -117,6 +118,17 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
   loads_ = std::make_unique<Loads>(*motion_, body_size());
   for (const RecordParameters& record : records) records_.emplace_back(*model_, true, record);
   if (body.between_platens) press_ = std::make_unique<Press>(*motion_, *body.between_platens);
+}
+
+std::vector<std::string> Simulation::warnings_of_specimen() const {
+  if (!has_specimen()) return {};
+  auto lines = warnings(*specimen_);
+  if (!moves()) return lines;
+  const auto& grain =
+      std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, *specimen_);
+  if (auto line = skeleton(*model_, grain, materials_.contacts); !line.empty())
+    lines.push_back(std::move(line));
+  return lines;
 }
 
 const Record& Simulation::record(std::string_view name) const {

@@ -63,6 +63,8 @@ class Simulation {
   /// Tells whether the body was made of a specimen here, not elsewhere.
   bool has_specimen() const { return specimen_.has_value(); }
   const MadeSpecimen& specimen() const { return *specimen_; }
+  /// Returns what a user should know of the specimen and of stones that hold together, one line each.
+  std::vector<std::string> warnings_of_specimen() const;
   const SpecimenNumbers& numbers() const { return numbers_; }
   double body_size() const { return numbers_.size; }
   /// Returns the area across a square or a cube of this side, m².

@@ -76,6 +76,11 @@ std::vector<std::string> AskedSpecimen::sides() const {
   return names;
 }
 
+std::vector<std::string> AskedSpecimen::phases_of_stones() const {
+  return polyhedra ? specimen::phases_of_stones(polyhedra->phases, polyhedra->phase, polyhedra->grain)
+                   : specimen::phases_of_stones(*this);
+}
+
 Vec<3> AskedSpecimen::low() const {
   return prism ? prism->low() : resized<3>(region.box().low);
 }

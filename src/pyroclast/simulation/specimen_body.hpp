@@ -24,8 +24,10 @@ struct AskedSpecimen : specimen::SpecimenParameters {
 
   int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
   std::vector<std::string> sides() const;          ///< Returns the names of its sides.
-  Vec<3> low() const;                              ///< Returns the lower corner of the box around it, m.
-  Vec<3> high() const;                             ///< Returns the upper corner, m.
+  /// Returns the phases whose blocks belong to stones that are known.
+  std::vector<std::string> phases_of_stones() const;
+  Vec<3> low() const;   ///< Returns the lower corner of the box around it, m.
+  Vec<3> high() const;  ///< Returns the upper corner, m.
   /// Returns the distance of a point from the outline, m, negative or 0 within the specimen.
   double distance(const Vec<3>& point) const;
   /// Tells whether all blocks come from a file; then no seed counts.

@@ -191,6 +191,7 @@ std::string polyhedra_text(const SolidSpecimen& specimen) {
   json["cells"] = specimen.complex.cells;
   json["phase"] = specimen.phase;
   if (!specimen.size.empty()) json[kBlockSize] = specimen.size;
+  if (!specimen.grain.empty()) json[specimen::kStone] = specimen.grain;
   return json.dump() + "\n";
 }
 
@@ -231,6 +232,12 @@ Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
           throw Error(
               fmt::format("cell {} (from 0) has the size {}; it must be greater than 0", c, read.size[c]));
     }
+    if (json.contains(specimen::kStone)) {
+      read.grain = list_in(json, specimen::kStone, specimen::kStoneItem, specimen::number_or_none_in);
+      if (read.grain.size() != complex.cells.size())
+        throw Error(
+            fmt::format("there are {} cells, but the stones of {}", complex.cells.size(), read.grain.size()));
+    }
     for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
     find_neighbours(complex);
   });
@@ -251,6 +258,7 @@ SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body) {
   specimen.phases = std::move(polyhedra.phases);
   specimen.phase = std::move(polyhedra.phase);
   specimen.size = std::move(polyhedra.size);
+  specimen.grain = std::move(polyhedra.grain);
   specimen.fraction.assign(specimen.phases.size(), 0.0);
   for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell)
     specimen.fraction[specimen.phase[cell]] += volume(specimen.complex, cell) / body.volume();

@@ -17,7 +17,8 @@ struct Polyhedra {
   std::vector<int> phase;  ///< phase of each cell, index into `phases`
   /// Size that each cell was to have, m, as SolidSpecimen has it; empty where blocks are alike.
   std::vector<double> size = {};
-  std::string origin = {};  ///< text that begins messages, such as the name of a file; may be empty
+  std::vector<int> grain = {};  ///< number of the stone of each cell; -1: none. Empty where none are known
+  std::string origin = {};      ///< text that begins messages, such as the name of a file; may be empty
 };
 
 /// Writes a specimen as a file holds it: JSON with the lists `phases` (names), `vertices_m` ([x, y, z]
@@ -25,7 +26,8 @@ struct Polyhedra {
 /// each cell, from 0), and the table `body`: `axis` ("y" or "z"), `length_m` along it, `section_m` (the
 /// corners of its section, counter-clockwise) and `sides` (their names from each corner on, or one name of a
 /// round section). The list `block_size_m` has the size that each block was to have, where they are not
-/// alike. Stretches of sides are no part of it.
+/// alike. The list `stone` has the number of the stone of each block, from 0, and -1 where it is of none.
+/// Stretches of sides are no part of it.
 std::string polyhedra_text(const SolidSpecimen& specimen);
 
 /// Reads a file of blocks in space, and turns each face counter-clockwise seen from outside of the first of

@@ -104,11 +104,11 @@ double least_height(const std::array<Vec<3>, 4>& x) {
 
 /// Returns the size classes of all kinds: the intervals between their sieves.
 std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregateParameters*>& kinds,
-                                  const SolidSpecimen& specimen, const std::vector<int>& stone,
-                                  const std::vector<double>& volumes) {
+                                  const SolidSpecimen& specimen, const std::vector<double>& volumes) {
   std::vector<double> superposed(specimen.balls.size());
-  for (std::size_t cell = 0; cell < stone.size(); ++cell)
-    if (stone[cell] >= 0) superposed[stone[cell]] += volumes[cell] / specimen.body.volume();
+  for (std::size_t cell = 0; cell < volumes.size(); ++cell)
+    if (const int grain = specimen.grain[cell]; grain >= 0)
+      superposed[grain] += volumes[cell] / specimen.body.volume();
   std::vector<SizeClass> classes;
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     const auto& asked = *kinds[kind];
@@ -202,20 +202,21 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   specimen.small_stones = static_cast<int>(std::ranges::count_if(specimen.balls, [&](const Ball& ball) {
     return ball.diameter < kSmallestStone * sizes.at(ball.centre);
   }));
-  const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
+  SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
   specimen.covered_fraction = superposed.covered_fraction;
+  specimen.grain = std::move(superposed.grain);
   std::vector<double> volumes;
   specimen.fraction.assign(specimen.phases.size(), 0.0);
   for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell) {
-    const int stone = superposed.stone[cell];
-    specimen.phase.push_back(stone < 0 ? matrix : specimen.balls[stone].phase);
+    const int grain = specimen.grain[cell];
+    specimen.phase.push_back(grain < 0 ? matrix : specimen.balls[grain].phase);
     volumes.push_back(volume(specimen.complex, cell));
     if (!sizes.is_even())
       specimen.size.push_back(sizes.at(zone_cell(specimen.complex, cell).gridpoints.back()));
     specimen.fraction[specimen.phase.back()] += volumes.back() / body.volume();
     if (specimen.phase.back() != matrix) specimen.fraction_superposed += volumes.back() / body.volume();
   }
-  specimen.classes = classes_of(kinds, specimen, superposed.stone, volumes);
+  specimen.classes = classes_of(kinds, specimen, volumes);
   specimen.metrics = measure(specimen.complex, body, specimen.metrics);
   return specimen;
 }

@@ -40,6 +40,9 @@ struct SolidSpecimen {
   Complex complex;
   std::vector<std::string> phases;  ///< phases that blocks can have
   std::vector<int> phase;           ///< phase of each cell, index into `phases`
+  /// Ball of which each cell is, index into `balls` where these are known; -1: of none. May be empty where
+  /// cells are made elsewhere.
+  std::vector<int> grain;
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
   std::vector<double> size;
   std::vector<Ball> balls;  ///< balls as placed, those of each kind largest first

@@ -101,21 +101,21 @@ std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const st
 std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
                                     const std::vector<Ball>& balls) {
   const specimen::GrainGrid<3> grid(body.low(), body.high(), balls);
-  std::vector<int> stone, nearby;
+  std::vector<int> grain, nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     const Vec<3> centre = zone_cell(complex, cell).gridpoints.back();
     grid.collect(centre, centre, nearby);
     const auto around = std::ranges::find_if(
         nearby, [&](int ball) { return norm(centre - balls[ball].centre) <= 0.5 * balls[ball].diameter; });
-    stone.push_back(around == nearby.end() ? -1 : *around);
+    grain.push_back(around == nearby.end() ? -1 : *around);
   }
-  return stone;
+  return grain;
 }
 
 /// Gives each ball, the largest first, the cell of which it covers most and that none took before, while that
 /// brings the volume of the cells nearer to that of the balls. Returns the volume that is missing then, m³.
 double give_each_its_cell(const Complex& complex, const std::vector<Ball>& balls,
-                          const std::vector<Cover>& covers, std::vector<int>& stone) {
+                          const std::vector<Cover>& covers, std::vector<int>& grain) {
   std::vector<std::vector<Cover>> of_ball(balls.size());
   for (const Cover& cover : covers) of_ball[cover.ball].push_back(cover);
   std::vector<int> order(balls.size());
@@ -125,12 +125,12 @@ double give_each_its_cell(const Complex& complex, const std::vector<Ball>& balls
   for (const Ball& ball : balls) missing += specimen::extent_of_round<3>(ball.diameter);
   for (const int ball : order) {
     std::ranges::stable_sort(of_ball[ball], std::greater<>(), &Cover::volume);
-    const auto free = std::ranges::find_if(of_ball[ball], [&](const Cover& c) { return stone[c.cell] < 0; });
+    const auto free = std::ranges::find_if(of_ball[ball], [&](const Cover& c) { return grain[c.cell] < 0; });
     if (free == of_ball[ball].end()) continue;
     const double taken = volume(complex, free->cell);
     if (0.5 * taken >= missing) break;
     missing -= taken;
-    stone[free->cell] = ball;
+    grain[free->cell] = ball;
   }
   return missing;
 }
@@ -155,7 +155,7 @@ SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::
   SuperposedBalls result{std::vector<int>(complex.cells.size(), -1), parameters.covered_fraction};
   if (balls.empty()) return result;
   if (parameters.superposition == specimen::Superposition::centroid) {
-    result.stone = balls_at_centroids(complex, body, balls);
+    result.grain = balls_at_centroids(complex, body, balls);
     return result;
   }
   const std::vector<Cover> covers = covers_of(complex, body, balls);
@@ -178,21 +178,21 @@ SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::
     cells.push_back(of);
   }
   if (parameters.superposition == specimen::Superposition::fit) {
-    double missing = give_each_its_cell(complex, balls, covers, result.stone);
+    double missing = give_each_its_cell(complex, balls, covers, result.grain);
     std::ranges::stable_sort(cells, std::greater<>(), &Covered::share);
     // cells become aggregate, the most covered first, while that brings their volume nearer to the balls'
     result.covered_fraction = std::nextafter(1.0, 0.0);
     for (const Covered& cell : cells) {
-      if (result.stone[cell.cell] >= 0) continue;
+      if (result.grain[cell.cell] >= 0) continue;
       if (0.5 * cell.volume >= missing) break;
       missing -= cell.volume;
-      result.stone[cell.cell] = cell.most;
+      result.grain[cell.cell] = cell.most;
       result.covered_fraction = cell.share;
     }
     return result;
   }
   for (const Covered& cell : cells)
-    if (cell.share > parameters.covered_fraction) result.stone[cell.cell] = cell.most;
+    if (cell.share > parameters.covered_fraction) result.grain[cell.cell] = cell.most;
   return result;
 }
 

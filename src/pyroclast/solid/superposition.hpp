@@ -14,7 +14,7 @@ double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& cen
 
 /// Result of superposing balls on cells.
 struct SuperposedBalls {
-  std::vector<int> stone;  ///< ball to which each cell belongs, index into the balls; -1: to the matrix
+  std::vector<int> grain;  ///< ball to which each cell belongs, index into the balls; -1: to the matrix
   /// Covered fraction above which a cell is of its balls, as stated; by `fit` the least one of a cell that
   /// became aggregate because it is covered.
   double covered_fraction = 0.0;

@@ -52,6 +52,7 @@ std::string cells_text(const Cells& cells) {
   json["cells"] = cells.tessellation.cells;
   json["phase"] = cells.phase;
   if (!cells.size.empty()) json["block_size_m"] = cells.size;
+  if (!cells.grain.empty()) json[kStone] = cells.grain;
   return json.dump() + "\n";
 }
 
@@ -77,6 +78,7 @@ CellsFile cells_from(const std::string& text, const std::string& name) {
             fmt::format("there is the list \"{}\"; beside \"{}\" it must be \"{}\"", list, key, size));
     if (json.contains(size))
       cells.size = list_in(json, size, fmt::format("a size in {}", file.unit), real_in);
+    if (json.contains(kStone)) cells.grain = list_in(json, kStone, kStoneItem, number_or_none_in);
     file.cells = checked(std::move(cells));
   });
   return file;

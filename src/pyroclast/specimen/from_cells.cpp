@@ -75,12 +75,14 @@ std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tol
 
 void require_cells(const Cells& cells) {
   const Tessellation& t = cells.tessellation;
-  const auto& [tessellation, phases, phase, size, origin] = cells;
+  const auto& [tessellation, phases, phase, size, grain, origin] = cells;
   if (t.cells.empty()) throw Error("there are no cells");
   if (phase.size() != t.cells.size())
     throw Error(fmt::format("there are {} cells, but the phases of {}", t.cells.size(), phase.size()));
   if (!size.empty() && size.size() != t.cells.size())
     throw Error(fmt::format("there are {} cells, but the sizes of {}", t.cells.size(), size.size()));
+  if (!grain.empty() && grain.size() != t.cells.size())
+    throw Error(fmt::format("there are {} cells, but the stones of {}", t.cells.size(), grain.size()));
   for (std::size_t c = 0; c < size.size(); ++c)
     if (!(size[c] > 0.0) || !std::isfinite(size[c]))
       throw Error(fmt::format("{} has the size {}; it must be greater than 0", Numbering{}.cell(c), size[c]));
@@ -158,7 +160,7 @@ Specimen specimen_from(Cells cells) {
 }
 
 Specimen specimen_from(Cells cells, Region region) {
-  auto [tessellation, phases, phase, size, origin] = checked(std::move(cells));
+  auto [tessellation, phases, phase, size, grain, origin] = checked(std::move(cells));
   require_valid(tessellation, region, origin.empty() ? "The cells" : origin);
   Specimen specimen{};
   specimen.region = std::move(region);
@@ -173,6 +175,7 @@ Specimen specimen_from(Cells cells, Region region) {
   specimen.phases = std::move(phases);
   specimen.phase = std::move(phase);
   specimen.size = std::move(size);
+  specimen.grain = std::move(grain);
   return specimen;
 }
 

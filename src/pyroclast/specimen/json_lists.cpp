@@ -12,6 +12,10 @@ int number_in(const Json& item) {
   return item.get<int>();
 }
 
+int number_or_none_in(const Json& item) {
+  return item.is_number_integer() && item == -1 ? -1 : number_in(item);
+}
+
 double real_in(const Json& item) {
   return item.get<double>();
 }

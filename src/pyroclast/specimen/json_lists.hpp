@@ -30,8 +30,15 @@ auto list_in(const Json& table, const std::string& key, const std::string& neede
   return items;
 }
 
+/// List of the stones of blocks, and words for an item.
+inline constexpr const char* kStone = "stone";
+inline constexpr const char* kStoneItem = "the number of a stone, from 0, or -1 for none";
+
 /// Reads a number from 0; throws Json::exception for anything else.
 int number_in(const Json& item);
+
+/// Reads a number from 0, or -1; throws Json::exception for anything else.
+int number_or_none_in(const Json& item);
 
 /// Reads a number; throws Json::exception for anything else.
 double real_in(const Json& item);

@@ -160,6 +160,16 @@ double fraction_of(const Specimen& specimen, Counts counts) {
   return sum / specimen.region.area();
 }
 
+void add_once(const std::string& name, std::vector<std::string>& names) {
+  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
+/// Adds the phases of stones.
+void add_phases_of(const AggregateParameters& kind, std::vector<std::string>& names) {
+  if (kind.stones.empty()) add_once(kind.phase, names);
+  for (const Stone& stone : kind.stones) add_once(stone.phase, names);
+}
+
 }  // namespace
 
 double block_size(const Specimen& specimen) {
@@ -170,20 +180,33 @@ std::vector<std::string> phases(const SpecimenParameters& parameters) {
   if (parameters.cells) return parameters.cells->phases;
   if (!parameters.blocks.phases.empty()) return parameters.blocks.phases;
   std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  const auto add_of = [&](const AggregateParameters& kind) {
-    if (kind.stones.empty()) add(kind.phase);
-    for (const Stone& stone : kind.stones) add(stone.phase);
-  };
-  add_of(parameters.aggregates);
+  add_phases_of(parameters.aggregates, names);
   for (const Inclusions& kind : parameters.inclusions)
     if (const auto* circles = std::get_if<AggregateParameters>(&kind))
-      add_of(*circles);
+      add_phases_of(*circles, names);
     else
-      add(std::get<FibreParameters>(kind).phase);
-  add(parameters.matrix);
+      add_once(std::get<FibreParameters>(kind).phase, names);
+  add_once(parameters.matrix, names);
+  return names;
+}
+
+std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) {
+  if (const auto& cells = parameters.cells)
+    return phases_of_stones(cells->phases, cells->phase, cells->grain);
+  if (!parameters.blocks.phases.empty()) return {};
+  std::vector<std::string> names;
+  add_phases_of(parameters.aggregates, names);
+  for (const Inclusions& kind : parameters.inclusions)
+    if (const auto* circles = std::get_if<AggregateParameters>(&kind)) add_phases_of(*circles, names);
+  std::erase(names, parameters.matrix);
+  return names;
+}
+
+std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
+                                          const std::vector<int>& phase, const std::vector<int>& grain) {
+  std::vector<std::string> names;
+  for (std::size_t cell = 0; cell < grain.size(); ++cell)
+    if (grain[cell] >= 0) add_once(phases[phase[cell]], names);
   return names;
 }
 

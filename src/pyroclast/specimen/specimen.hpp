@@ -160,7 +160,8 @@ struct Cells {
   /// Size that each block was to have, in the unit of the vertices, as Specimen has it; empty where blocks
   /// are alike.
   std::vector<double> size = {};
-  std::string origin = {};  ///< text that begins messages, such as the name of a file; may be empty
+  std::vector<int> grain = {};  ///< number of the stone of each block; -1: none. Empty where none are known
+  std::string origin = {};      ///< text that begins messages, such as the name of a file; may be empty
 };
 
 struct SpecimenParameters {
@@ -184,6 +185,12 @@ void require_valid(const SpecimenParameters& parameters);
 /// Returns the names of the phases that the blocks can have: those of cells, of the blocks' own phases, or
 /// aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
+
+/// Returns those of these phases whose blocks belong to stones that are known.
+std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters);
+/// Returns the same of cells that are made elsewhere, from the stone of each.
+std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
+                                          const std::vector<int>& phase, const std::vector<int>& grain);
 
 /// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
 struct Edge {
@@ -217,7 +224,8 @@ struct Specimen {
   std::vector<std::string> phases;  ///< phases that blocks can have
   int matrix = -1;                  ///< index into `phases`; -1: not known
   std::vector<int> phase;           ///< phase of each cell, index into `phases`
-  /// Grain of which each cell is, index into `aggregates`; -1: of none. Empty where cells are made elsewhere.
+  /// Grain of which each cell is, index into `aggregates` where these are known; -1: of none. May be empty
+  /// where cells are made elsewhere.
   std::vector<int> grain;
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
   std::vector<double> size;

@@ -1,0 +1,86 @@
+#include "pyroclast/simulation/skeleton.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pyroclast/laws/elastic.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Least share of the stones at which a skeleton is told of. In eight specimens of 150 mm x 300 mm with the
+/// paper's grading, the largest has a share of 0.06 to 0.15 at a fraction of 0.34 in 5,000 blocks, and of
+/// 0.19 to 0.49 at a fraction of 0.45 in 1,000 blocks.
+constexpr double kClearlyLarge = 0.25;
+/// Least volume of a skeleton, in volumes of the largest stone.
+constexpr double kFewStones = 2.0;
+
+/// Returns the stone of each block of a model, -1: of none.
+std::vector<int> stones_of_blocks(const Model& model, std::span<const int> grain) {
+  std::vector<int> of_block(model.block_count(), -1);
+  std::size_t cell = 0;
+  for (int block = 0; block < model.block_count(); ++block)
+    if (!model.is_of_bearing(block)) of_block[block] = grain[cell++];
+  return of_block;
+}
+
+}  // namespace
+
+Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
+                          const std::vector<ContactMaterial>& contacts) {
+  const std::vector<int> stone = stones_of_blocks(model, grain);
+  std::vector<int> root(stone.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int block) {
+    while (root[block] != block) block = root[block] = root[root[block]];
+    return block;
+  };
+  for (int face = 0; face < model.face_count(); ++face) {
+    const Joint& joint = model.joint(model.face_contacts[face]);
+    const int a = model.block_of(joint.a), b = model.block_of(joint.b);
+    if (stone[a] < 0 || stone[b] < 0 || contacts[joint.interface].law != &table_of<Elastic>()) continue;
+    root[find(a)] = find(b);
+  }
+  const std::vector<double> volumes = model.zone_volumes();
+  std::vector<double> volume(stone.size());
+  std::vector<std::set<int>> stones(stone.size());
+  std::map<int, double> of_stone;
+  double whole = 0.0;
+  for (int block = 0; block < model.block_count(); ++block) {
+    if (stone[block] < 0) continue;
+    const double its = std::accumulate(volumes.begin() + model.block_zones[block],
+                                       volumes.begin() + model.block_zones[block + 1], 0.0);
+    whole += its;
+    of_stone[stone[block]] += its;
+    volume[find(block)] += its;
+    stones[find(block)].insert(stone[block]);
+  }
+  if (whole == 0.0) return {};
+  const auto largest = std::ranges::max_element(volume);
+  const double largest_stone =
+      std::ranges::max_element(of_stone, {}, [](const auto& entry) { return entry.second; })->second;
+  return {static_cast<int>(stones[largest - volume.begin()].size()), *largest, *largest / whole,
+          *largest / largest_stone};
+}
+
+std::string skeleton(const Model& model, std::span<const int> grain,
+                     const std::vector<ContactMaterial>& contacts) {
+  if (grain.empty()) return {};
+  const Skeleton found = largest_skeleton(model, grain, contacts);
+  if (found.share < kClearlyLarge || found.of_largest < kFewStones) return {};
+  return fmt::format(
+      "stones form a skeleton that never cracks: {:.0f} % of their {} is one cluster of {} stones whose "
+      "blocks "
+      "touch; state [contacts.NAME] between_stones, so that cracks run between stones, or take more blocks "
+      "or "
+      "a larger minimum_gap",
+      100.0 * found.share, model.dimension() == 2 ? "area" : "volume", found.stones);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,126 @@
+// Promise: stones that no crack can part are told of, in the plane and in space, by the contacts that they
+// have.
+#include "pyroclast/simulation/skeleton.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/laws/elastic.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
+#include "solid/bodies.hpp"
+
+namespace pyroclast {
+namespace {
+
+/// Interfaces of which that between aggregate and mortar also joins two stones.
+std::vector<InterfaceParameters> apart() {
+  std::vector<InterfaceParameters> interfaces(2);
+  interfaces[0].name = "mortar_mortar";
+  interfaces[0].between = {{"mortar", "mortar"}};
+  interfaces[1].name = "transition";
+  interfaces[1].between = {{"aggregate", "mortar"}};
+  interfaces[1].between_stones = {"aggregate"};
+  return interfaces;
+}
+
+/// Squares of 1 m in rows: digits are stones, '.' is mortar.
+specimen::Specimen squares(const std::vector<std::string>& rows) {
+  specimen::Cells cells;
+  cells.phases = {"aggregate", "mortar"};
+  const int columns = static_cast<int>(rows[0].size()), count = static_cast<int>(rows.size());
+  std::vector<int> grain;
+  for (int y = 0; y <= count; ++y)
+    for (int x = 0; x <= columns; ++x)
+      cells.tessellation.vertices.push_back({{static_cast<double>(x), static_cast<double>(y)}});
+  for (int y = 0; y < count; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const int low = y * (columns + 1) + x, high = low + columns + 1;
+      cells.tessellation.cells.push_back({low, low + 1, high + 1, high});
+      cells.phase.push_back(rows[y][x] == '.' ? 1 : 0);
+      grain.push_back(rows[y][x] == '.' ? -1 : rows[y][x] - '0');
+    }
+  specimen::Specimen made = specimen::specimen_from(std::move(cells));
+  made.grain = std::move(grain);
+  return made;
+}
+
+/// Materials of the contacts of a model: elastic between blocks of aggregate, and cohesive elsewhere.
+std::vector<ContactMaterial> contacts_of(const Model& model) {
+  std::vector<ContactMaterial> contacts;
+  for (const std::string& name : model.interface_names)
+    contacts.emplace_back(name == "aggregate_aggregate" ? table_of<Elastic>() : table_of<Cohesive>());
+  return contacts;
+}
+
+Skeleton of_squares(const specimen::Specimen& specimen, const std::vector<InterfaceParameters>& interfaces) {
+  const auto model = make_concrete_model(specimen, 0.5, interfaces);
+  return largest_skeleton(model, specimen.grain, contacts_of(model));
+}
+
+TEST(Skeleton, HangsTogetherByEdgesAndNotByCorners) {
+  const Skeleton found = of_squares(squares({"01..",  //
+                                             "..2.",  //
+                                             "3334"}),
+                                    {});
+  EXPECT_EQ(found.stones, 3);
+  EXPECT_DOUBLE_EQ(found.volume, 0.5 * 5.0);
+  EXPECT_DOUBLE_EQ(found.share, 5.0 / 7.0);
+}
+
+TEST(Skeleton, EndsWhereStonesHaveContactsThatPart) {
+  const Skeleton found = of_squares(squares({"01..",  //
+                                             "..2.",  //
+                                             "3334"}),
+                                    apart());
+  EXPECT_EQ(found.stones, 1);
+  EXPECT_DOUBLE_EQ(found.share, 3.0 / 7.0);
+}
+
+TEST(Skeleton, IsLargerThanAFewStones) {
+  const auto line = [](const std::vector<std::string>& rows,
+                       const std::vector<InterfaceParameters>& interfaces) {
+    const auto made = squares(rows);
+    const auto model = make_concrete_model(made, 1.0, interfaces);
+    return skeleton(model, made.grain, contacts_of(model));
+  };
+  const std::vector<std::string> small{"0..1", "2345", "...."}, large{"0..0", "0000", "1..."};
+  EXPECT_NE(line(small, {}).find("100 % of their area is one cluster of 6 stones whose blocks touch"),
+            std::string::npos);
+  EXPECT_EQ(line(small, apart()), "");
+  EXPECT_EQ(line(large, {}), "") << "one stone and a small one";
+}
+
+TEST(Skeleton, IsNotKnownWithoutStones) {
+  const auto model = make_concrete_model(squares({"0123"}), 1.0);
+  EXPECT_EQ(skeleton(model, {}, contacts_of(model)), "");
+}
+
+// In space a fifth of blocks hangs together, where in the plane half would not.
+TEST(Skeleton, OfBallsRunsThroughASolid) {
+  specimen::SpecimenParameters p;
+  p.seed = 1;
+  p.aggregates = {.fraction = 0.28,
+                  .d_min = 0.016,
+                  .d_max = 0.025,
+                  .fuller_exponent = 0.45,
+                  .sieves = {0.016, 0.025},
+                  .minimum_gap = 5e-4,
+                  .attempts = 10000};
+  p.blocks.count = 1000;
+  p.blocks.radius_spread = 0.3;
+  p.superposition = specimen::Superposition::fit;
+  const solid::SolidSpecimen solid = solid::make_specimen(p, solid::cuboid(0.08, 0.08, 0.08));
+  const auto joined = make_solid_model(solid);
+  const Skeleton found = largest_skeleton(joined, solid.grain, contacts_of(joined));
+  EXPECT_GT(found.share, 0.8);
+  EXPECT_GT(found.stones, std::ssize(solid.balls) / 2);
+  EXPECT_NE(skeleton(joined, solid.grain, contacts_of(joined)).find("of their volume is one cluster of"),
+            std::string::npos);
+  const auto parted = make_solid_model(solid, apart());
+  EXPECT_EQ(largest_skeleton(parted, solid.grain, contacts_of(parted)).stones, 1);
+  EXPECT_EQ(skeleton(parted, solid.grain, contacts_of(parted)), "");
+}
+
+}  // namespace
+}  // namespace pyroclast
