@@ -205,8 +205,9 @@ class Cylinder(unittest.TestCase):
         made = deck.make_specimen()
         made.save(self.place / "cylinder.json")
         read = pyroclast.SolidSpecimen.read(self.place / "cylinder.json")
-        for what in ("vertices", "neighbours", "phase"):
+        for what in ("vertices", "neighbours", "phase", "stone"):
             np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
+        self.assertEqual({read.phases[p] for p in read.phase[read.stone >= 0]}, {"aggregate"})
         self.assertEqual((read.sides, read.phases, read.shares, read.size), (made.sides, made.phases, made.shares, made.size))
         self.assertEqual(len(read.balls), 0)
         deck["specimen"] = read
@@ -248,7 +249,10 @@ class Cylinder(unittest.TestCase):
                 ({"faces": [[0, 1, 10**6], *good["faces"][1:]]}, "names vertex 1000000"),
                 ({"cells": [[0, 1, 2]] + good["cells"][1:]}, "cell 0 .from 0. has 3 faces, but needs 4"),
                 ({"cells": good["cells"][:-1]}, "39 cells, but the phases of 40"),
-                ({"cells": good["cells"][:-1], "phase": good["phase"][:-1]}, "is of 0 cells|lies on no side"),
+                ({"cells": good["cells"][:-1], "phase": good["phase"][:-1]}, "39 cells, but the stones of 40"),
+                ({"cells": good["cells"][:-1], "phase": good["phase"][:-1], "stone": good["stone"][:-1]},
+                 "is of 0 cells|lies on no side"),
+                ({"stone": [-2] * 40}, r"stone\[0\]: must be the number of a stone, from 0, or -1 for none"),
                 ({"phase": [9] * 40}, "cell 0 .from 0. is of phase 9"), ({"body": None}, 'no table "body"'),
                 ({"body": {**good["body"], "axis": "x"}}, '"y" or "z"'),
                 ({"body": {**good["body"], "length_m": -1.0}}, "above 0"),

@@ -260,7 +260,8 @@ TEST(SolidDeck, WithoutShortEdgesLessMassIsAddedAndStepsOfHeatAreLonger) {
   const auto edges = [](const std::string& deck, double shortest) {
     return with(deck, "[blocks]", fmt::format("[blocks]\nshortest_edge = {}", shortest));
   };
-  const std::string pressed = with(shipped_case("starter_3d"), "count = 3000", "count = 300");
+  const std::string pressed =
+      with(with(shipped_case("starter_3d"), "count = 3000", "count = 300"), "shortest_edge = 0.35", "");
   std::string heated = with(shipped_case("thermal_wall"), "thickness = \"1 m\"", "depth = \"150 mm\"");
   heated.erase(heated.find("[[probes]]"), heated.find("[output]") - heated.find("[[probes]]"));
   heated = with(with(with(heated, "shortest_edge = 0.2", ""), "count = 2000", "count = 300"),

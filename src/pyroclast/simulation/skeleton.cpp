@@ -54,8 +54,9 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
   double whole = 0.0;
   for (int block = 0; block < model.block_count(); ++block) {
     if (stone[block] < 0) continue;
-    const double its = std::accumulate(volumes.begin() + model.block_zones[block],
-                                       volumes.begin() + model.block_zones[block + 1], 0.0);
+    double its = 0.0;
+    for (int zone = model.block_zones[block]; zone < model.block_zones[block + 1]; ++zone)
+      its += volumes[zone];
     whole += its;
     of_stone[stone[block]] += its;
     volume[find(block)] += its;
