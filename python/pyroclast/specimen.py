@@ -42,8 +42,8 @@ class Specimen:
     @classmethod
     def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                     labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
-                    block_size: ArrayLike | None = None, unit: str | Quantity | None = None,
-                    join: str | Quantity | None = None) -> Specimen:
+                    block_size: ArrayLike | None = None, stone: ArrayLike | None = None,
+                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
         """A specimen of cells that are made elsewhere.
 
         vertices: (n, 2), in `unit`.
@@ -52,6 +52,7 @@ class Specimen:
             that has one label for each cell, such as (cells, 1).
         phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
         block_size: (cells,), in `unit`: size that each was to have, which its contact stiffness follows; None: alike.
+        stone: (cells,): number of the stone of each, from 0, -1: none; a deck's `between_stones` needs it.
         unit: of the vertices: "m", "mm", ...; None: they are taken in m, with a warning.
         join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
             does not have them become corners of it ("1 um"); None: cells share the vertices that they name.
@@ -64,7 +65,8 @@ class Specimen:
         name or does not fit together with its neighbours; and where the cells are not one piece.
         """
         unit = _stated(unit, "the vertices")
-        made = _from_cells(vertices, cells, labels, phases, unit, join, () if block_size is None else block_size)
+        made = _from_cells(vertices, cells, labels, phases, unit, join, () if block_size is None else block_size,
+                           () if stone is None else stone)
         _warn_of_size(made, f"the vertices are in {_unit_name(unit)}")
         return cls(made)
 
@@ -377,7 +379,7 @@ def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpeci
 
 def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                 labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None, unit: str | Quantity,
-                join: str | Quantity | None, block_size: ArrayLike = ()) -> _core.Specimen:
+                join: str | Quantity | None, block_size: ArrayLike = (), stone: ArrayLike = ()) -> _core.Specimen:
     metres = _length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
     at = np.asarray(vertices, float)
     if at.ndim != 2 or at.shape[1] != 2:
@@ -385,12 +387,16 @@ def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
     sizes = np.asarray(block_size, float).ravel()
     if metres != 1.0:
         at, sizes = (x * metres if metres > 1.0 else x / (1.0 / metres) for x in (at, sizes))  # nearest double of mm
+    stones = np.asarray(stone).ravel()
+    if len(stones) and (stones.dtype.kind not in "iu" or stones.min() < -1):
+        raise Error("stone must be the number of a stone of each cell, from 0, or -1 for none")
     rows = [_corners(cell, number) for number, cell in enumerate(cells)]
     if not rows:
         raise Error("there are no cells")
     names, phase = _named(labels, phases, len(rows))
     first = np.cumsum([0, *map(len, rows)]).astype(np.int32)
-    return _core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase, sizes.tolist(), _join(join))
+    return _core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase, sizes.tolist(),
+                                     stones.astype(np.int32), _join(join))
 
 
 def _corners(cell: ArrayLike, number: int) -> NDArray[np.int32]:

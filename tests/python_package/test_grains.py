@@ -123,9 +123,10 @@ class ByDeck(unittest.TestCase):
         self.assertEqual(first["aggregates"], again["aggregates"])
         self.assertAlmostEqual(first["fraction_placed"], again["fraction_placed"], delta=1e-6)
 
-    def test_a_specimen_of_finer_blocks_keeps_their_sizes(self):
+    def test_a_specimen_of_finer_blocks_keeps_their_sizes_and_stones(self):
         deck = pyroclast.Deck(CASES / "starter.toml")
         deck.update(blocks={"count": 250, "finer": [{"near": "left", "size": "8 mm", "distance": "8 mm"}]})
+        deck["contacts.aggregate_mortar.between_stones"] = ["aggregate"]
         deck["stages[0].most_steps"] = 60
         del deck["stages[1]"]
         graded = pyroclast.Run(deck, threads=1).finish()
@@ -133,11 +134,17 @@ class ByDeck(unittest.TestCase):
         self.assertGreater(made.block_size.max() / made.block_size.min(), 2.0)
         given = deck.copy()
         arrays = pyroclast.Specimen.from_arrays(made.vertices, made.cells, [made.phases[i] for i in made.phase],
-                                                block_size=made.block_size, unit="m")
+                                                block_size=made.block_size, stone=made.stone, unit="m")
         for specimen in (made, arrays):
             given["specimen"] = specimen
             again = pyroclast.Run(given, threads=1).finish()
             np.testing.assert_array_equal(again.history.to_pandas(), graded.history.to_pandas())
+        with self.assertRaisesRegex(pyroclast.Error, "from 0, or -1 for none"):
+            pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * len(made.cells), stone=[-2], unit="m")
+        given["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells,
+                                                           [made.phases[i] for i in made.phase], unit="m")
+        with self.assertRaisesRegex(pyroclast.DeckError, "which block belongs to which stone is not known"):
+            pyroclast.Run(given, threads=1)
 
     def test_outlines_of_a_run_have_its_circles_too(self):
         kind = 'fraction = {}\nd_min = "6 mm"\nd_max = "12 mm"\nfuller_exponent = 0.5\nminimum_gap = "0.5 mm"\n'

@@ -28,10 +28,11 @@ using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
 /// \param corners  corners of all cells in turn
 /// \param first    first corner of each cell, and the end behind the last
 /// \param size     size that each cell was to have, m; empty where cells are alike
+/// \param stone    number of the stone of each cell, -1: none; empty where none are known
 /// \param join     distance within which vertices are joined, m; 0: none
 Specimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
                     std::vector<std::string> phases, const Integers& phase, std::vector<double> size,
-                    double join) {
+                    const Integers& stone, double join) {
   specimen::Cells cells;
   const auto at = vertices.unchecked<2>();
   for (py::ssize_t v = 0; v < at.shape(0); ++v) cells.tessellation.vertices.push_back({{at(v, 0), at(v, 1)}});
@@ -41,6 +42,7 @@ Specimen from_cells(const Reals& vertices, const Integers& corners, const Intege
   cells.phases = std::move(phases);
   cells.phase.assign(phase.data(), phase.data() + phase.size());
   cells.size = std::move(size);
+  cells.grain.assign(stone.data(), stone.data() + stone.size());
   const py::gil_scoped_release no_gil;
   return specimen::specimen_from(specimen::joined(specimen::checked(std::move(cells)), join));
 }
@@ -158,7 +160,7 @@ void bind_specimens(py::module_& m) {
   bind_solid_specimens(m);
   py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, each with its material.")
       .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
-                  arg("phase"), arg("block_size"), arg("join"))
+                  arg("phase"), arg("block_size"), arg("stone"), arg("join"))
       .def_static("rectangle", &rectangle, arg("width"), arg("height"), arg("count"), arg("shortest_edge"),
                   arg("relaxation"), arg("radius_spread"), arg("seed"))
       .def_static("of_deck", &of_deck, arg("deck"), arg("seed"))
