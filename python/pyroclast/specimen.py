@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,12 +19,48 @@ if TYPE_CHECKING:
     import meshio
 
 Label = Union[int, str]
+_Core = TypeVar("_Core", _core.Specimen, _core.SolidSpecimen)
 
 _FLAT = 1e-9  # of the size of a mesh
 _USUAL = (0.01, 10.0)  # width and height of a body, m, as for a deck
 
 
-class Specimen:
+class _Blocks(Generic[_Core]):
+    """Blocks in the plane or in space: what the core knows of them alike."""
+
+    _core: _Core
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of what blocks can be made of."""
+        return self._core.phases
+
+    @property
+    def phase(self) -> NDArray[np.int32]:
+        """(blocks,): indices into `phases`."""
+        return self._core.phase
+
+    @property
+    def stone(self) -> NDArray[np.int32] | None:
+        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
+        return self._core.stone if len(self._core.stone) else None
+
+    @property
+    def block_size(self) -> NDArray[np.float64] | None:
+        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
+        return np.array(self._core.block_size) if self._core.block_size else None
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of the area that each phase takes [1]; in space of the volume."""
+        return dict(zip(self._core.phases, self._core.shares))
+
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
+        return f"<{type(self).__name__} of {len(self._core.phase)} blocks: {shares}>"
+
+
+class Specimen(_Blocks[_core.Specimen]):
     """Blocks, and what each is made of. A deck takes one in the place of what it says of the specimen itself:
 
         deck["specimen"] = pyroclast.Specimen.from_arrays(vertices, cells, labels)
@@ -196,31 +232,6 @@ class Specimen:
         return self._core.cells
 
     @property
-    def phases(self) -> list[str]:
-        """Names of what blocks can be made of."""
-        return self._core.phases
-
-    @property
-    def phase(self) -> NDArray[np.int32]:
-        """(blocks,): indices into `phases`."""
-        return self._core.phase
-
-    @property
-    def stone(self) -> NDArray[np.int32] | None:
-        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
-        return self._core.stone if len(self._core.stone) else None
-
-    @property
-    def block_size(self) -> NDArray[np.float64] | None:
-        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
-        return np.array(self._core.block_size) if self._core.block_size else None
-
-    @property
-    def shares(self) -> dict[str, float]:
-        """Share of the area that each phase takes [1]."""
-        return dict(zip(self._core.phases, self._core.shares))
-
-    @property
     def area(self) -> float:
         """m²."""
         return self._core.area
@@ -253,12 +264,8 @@ class Specimen:
             points, polygons, cell_data={"phase": [phase[some] for some in of_size]})
         return mesh
 
-    def __repr__(self) -> str:
-        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
-        return f"<Specimen of {len(self._core.phase)} blocks: {shares}>"
 
-
-class SolidSpecimen:
+class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
     """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them. A
     deck takes one in the place of what it says of the specimen itself:
 
@@ -302,31 +309,6 @@ class SolidSpecimen:
         return self._core.cells
 
     @property
-    def phases(self) -> list[str]:
-        """Names of what blocks can be made of."""
-        return self._core.phases
-
-    @property
-    def phase(self) -> NDArray[np.int32]:
-        """(blocks,): indices into `phases`."""
-        return self._core.phase
-
-    @property
-    def stone(self) -> NDArray[np.int32] | None:
-        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
-        return self._core.stone if len(self._core.stone) else None
-
-    @property
-    def block_size(self) -> NDArray[np.float64] | None:
-        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
-        return np.array(self._core.block_size) if self._core.block_size else None
-
-    @property
-    def shares(self) -> dict[str, float]:
-        """Share of the volume that each phase takes [1]."""
-        return dict(zip(self._core.phases, self._core.shares))
-
-    @property
     def volume(self) -> float:
         """m³."""
         return self._core.volume
@@ -367,10 +349,6 @@ class SolidSpecimen:
             self.vertices, cells, cell_data={"phase": [phase[some] for _, some in sorted(by_size.items())]})
         return mesh
 
-    def __repr__(self) -> str:
-        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
-        return f"<SolidSpecimen of {len(self._core.phase)} blocks: {shares}>"
-
 
 def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpecimen:
     """A specimen that was made, in the plane or in space."""
@@ -388,7 +366,7 @@ def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
     if metres != 1.0:
         at, sizes = (x * metres if metres > 1.0 else x / (1.0 / metres) for x in (at, sizes))  # nearest double of mm
     stones = np.asarray(stone).ravel()
-    if len(stones) and (stones.dtype.kind not in "iu" or stones.min() < -1):
+    if len(stones) and (stones.dtype.kind not in "iu" or stones.min() < -1 or stones.max() >= 2**31):
         raise Error("stone must be the number of a stone of each cell, from 0, or -1 for none")
     rows = [_corners(cell, number) for number, cell in enumerate(cells)]
     if not rows:

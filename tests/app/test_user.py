@@ -681,6 +681,10 @@ class GradingsAndStones(UserTest):
         parted = self.pyroclast("check", "deck.toml", "--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4",
                                 "--set", 'contacts.aggregate_mortar.between_stones=["aggregate"]')
         self.assertNotIn("skeleton", parted.stdout)
+        made = self.pyroclast("specimen", "deck.toml", "--no-figures", "--set", "aggregates.fraction=0.45",
+                              "--set", "specimen.seed=4")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("stones form a skeleton", made.stdout)
 
 
 class Properties(UserTest):

@@ -139,11 +139,18 @@ class ByDeck(unittest.TestCase):
             given["specimen"] = specimen
             again = pyroclast.Run(given, threads=1).finish()
             np.testing.assert_array_equal(again.history.to_pandas(), graded.history.to_pandas())
-        with self.assertRaisesRegex(pyroclast.Error, "from 0, or -1 for none"):
-            pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * len(made.cells), stone=[-2], unit="m")
+        count = len(made.cells)
+        for stone in (-2, 2**31):
+            with self.assertRaisesRegex(pyroclast.Error, "from 0, or -1 for none"):
+                pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * count, stone=[stone] * count, unit="m")
         given["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells,
                                                            [made.phases[i] for i in made.phase], unit="m")
         with self.assertRaisesRegex(pyroclast.DeckError, "which block belongs to which stone is not known"):
+            pyroclast.Run(given, threads=1)
+        arrays = pyroclast.Specimen.from_arrays(made.vertices, made.cells, [made.phases[i] for i in made.phase],
+                                                stone=np.arange(count), unit="m")
+        given["specimen"], given["contacts.aggregate_mortar.between_stones"] = arrays, ["mortar"]
+        with self.assertRaisesRegex(pyroclast.DeckError, "between_stones"):
             pyroclast.Run(given, threads=1)
 
     def test_outlines_of_a_run_have_its_circles_too(self):

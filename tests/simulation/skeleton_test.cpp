@@ -2,6 +2,10 @@
 // have.
 #include "pyroclast/simulation/skeleton.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "pyroclast/laws/elastic.hpp"
@@ -91,12 +95,28 @@ TEST(Skeleton, IsLargerThanAFewStones) {
   EXPECT_EQ(line(large, {}), "") << "one stone and a small one";
 }
 
+// A specimen can have blocks of aggregate that are of no stone; they part from none.
+TEST(Skeleton, BlocksOfNoStoneHoldTogether) {
+  const auto interfaces_of = [](std::vector<int> grain) {
+    auto row = squares({"0123"});
+    row.grain = std::move(grain);
+    const auto model = make_concrete_model(row, 1.0, apart());
+    std::vector<std::string> names;
+    for (int face = 0; face < model.face_count(); ++face)
+      names.push_back(model.interface_names[model.joint(model.face_contacts[face]).interface]);
+    return std::pair(std::ranges::count(names, "transition"),
+                     std::ranges::count(names, "aggregate_aggregate"));
+  };
+  EXPECT_EQ(interfaces_of({0, 1, 2, 3}), std::pair(std::ptrdiff_t{3}, std::ptrdiff_t{0}));
+  EXPECT_EQ(interfaces_of({0, 1, -1, -1}), std::pair(std::ptrdiff_t{1}, std::ptrdiff_t{2}));
+}
+
 TEST(Skeleton, IsNotKnownWithoutStones) {
   const auto model = make_concrete_model(squares({"0123"}), 1.0);
   EXPECT_EQ(skeleton(model, {}, contacts_of(model)), "");
 }
 
-// In space a fifth of blocks hangs together, where in the plane half would not.
+// In space a quarter of stones hangs together, where in the plane half would not.
 TEST(Skeleton, OfBallsRunsThroughASolid) {
   specimen::SpecimenParameters p;
   p.seed = 1;

@@ -4,8 +4,21 @@
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/skeleton.hpp"
 
 namespace pyroclast::app {
+
+namespace {
+
+/// Returns what a user should know of a specimen, and of its contacts where they are known.
+std::vector<std::string> warnings_of(const Setup& setup, const MadeSpecimen& specimen, const Model& model) {
+  if (!setup.moving || !setup.code_not_allowed.empty()) return warnings(specimen);
+  const auto materials = make_materials(setup.block_materials, *setup.moving, numbers_of(specimen));
+  return warnings(specimen, model, materials.contacts);
+}
+
+}  // namespace
 
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
@@ -30,7 +43,7 @@ int make_specimen(const RunOptions& asked) {
   write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
   fmt::print("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
-             describe_warnings(warnings(specimen)), folder.path().string());
+             describe_warnings(warnings_of(setup, specimen, *model)), folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
 }

@@ -30,8 +30,9 @@ void name_contacts(Model& model, const std::string& body, int first_contact);
 template <class Specimen>
 int interface_of(const InterfaceTable& table, const Specimen& specimen, int cell, int other) {
   const int phase = specimen.phase[cell];
-  const bool of_two_stones = phase == specimen.phase[other] && !specimen.grain.empty() &&
-                             specimen.grain[cell] != specimen.grain[other];
+  const auto stone = [&](int c) { return specimen.grain.empty() ? -1 : specimen.grain[c]; };
+  const bool are_stones = stone(cell) >= 0 && stone(other) >= 0;
+  const bool of_two_stones = phase == specimen.phase[other] && are_stones && stone(cell) != stone(other);
   return of_two_stones ? table.between_stones(phase) : table.between(phase, specimen.phase[other]);
 }
 

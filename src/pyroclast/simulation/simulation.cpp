@@ -122,13 +122,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {
   if (!has_specimen()) return {};
-  auto lines = warnings(*specimen_);
-  if (!moves()) return lines;
-  const auto& grain =
-      std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, *specimen_);
-  if (auto line = skeleton(*model_, grain, materials_.contacts); !line.empty())
-    lines.push_back(std::move(line));
-  return lines;
+  return moves() ? warnings(*specimen_, *model_, materials_.contacts) : warnings(*specimen_);
 }
 
 const Record& Simulation::record(std::string_view name) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -48,26 +49,26 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
     root[find(a)] = find(b);
   }
   const std::vector<double> volumes = model.zone_volumes();
-  std::vector<double> volume(stone.size());
-  std::vector<std::set<int>> stones(stone.size());
-  std::map<int, double> of_stone;
+  std::map<int, double> of_stone, of_cluster;  // by stone, and by the root of the cluster
   double whole = 0.0;
   for (int block = 0; block < model.block_count(); ++block) {
     if (stone[block] < 0) continue;
-    double its = 0.0;
+    double volume = 0.0;
     for (int zone = model.block_zones[block]; zone < model.block_zones[block + 1]; ++zone)
-      its += volumes[zone];
-    whole += its;
-    of_stone[stone[block]] += its;
-    volume[find(block)] += its;
-    stones[find(block)].insert(stone[block]);
+      volume += volumes[zone];
+    whole += volume;
+    of_stone[stone[block]] += volume;
+    of_cluster[find(block)] += volume;
   }
   if (whole == 0.0) return {};
-  const auto largest = std::ranges::max_element(volume);
-  const double largest_stone =
-      std::ranges::max_element(of_stone, {}, [](const auto& entry) { return entry.second; })->second;
-  return {static_cast<int>(stones[largest - volume.begin()].size()), *largest, *largest / whole,
-          *largest / largest_stone};
+  const auto largest_of = [](const std::map<int, double>& volumes_of) {
+    return *std::ranges::max_element(volumes_of, {}, [](const auto& entry) { return entry.second; });
+  };
+  const auto [largest, volume] = largest_of(of_cluster);
+  std::set<int> stones;
+  for (int block = 0; block < model.block_count(); ++block)
+    if (stone[block] >= 0 && find(block) == largest) stones.insert(stone[block]);
+  return {static_cast<int>(stones.size()), volume, volume / whole, volume / largest_of(of_stone).second};
 }
 
 std::string skeleton(const Model& model, std::span<const int> grain,
@@ -75,13 +76,20 @@ std::string skeleton(const Model& model, std::span<const int> grain,
   if (grain.empty()) return {};
   const Skeleton found = largest_skeleton(model, grain, contacts);
   if (found.share < kClearlyLarge || found.of_largest < kFewStones) return {};
+  const bool is_plane = model.dimension() == 2;
   return fmt::format(
       "stones form a skeleton that never cracks: {:.0f} % of their {} is one cluster of {} stones whose "
-      "blocks "
-      "touch; state [contacts.NAME] between_stones, so that cracks run between stones, or take more blocks "
-      "or "
-      "a larger minimum_gap",
-      100.0 * found.share, model.dimension() == 2 ? "area" : "volume", found.stones);
+      "blocks touch; state [contacts.NAME] between_stones, so that cracks run between them{}",
+      100.0 * found.share, is_plane ? "area" : "volume", found.stones,
+      is_plane ? ", or take more blocks" : "");
+}
+
+std::vector<std::string> warnings(const MadeSpecimen& specimen, const Model& model,
+                                  const std::vector<ContactMaterial>& contacts) {
+  auto lines = warnings(specimen);
+  const auto& grain = std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, specimen);
+  if (auto line = skeleton(model, grain, contacts); !line.empty()) lines.push_back(std::move(line));
+  return lines;
 }
 
 }  // namespace pyroclast

@@ -2,9 +2,11 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/model/model.hpp"
+#include "pyroclast/simulation/specimen_body.hpp"
 
 namespace pyroclast {
 
@@ -27,5 +29,9 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
 /// \param grain  as above, or empty
 std::string skeleton(const Model& model, std::span<const int> grain,
                      const std::vector<ContactMaterial>& contacts);
+
+/// Returns what a user should know of a specimen and of the contacts between its blocks, one line each.
+std::vector<std::string> warnings(const MadeSpecimen& specimen, const Model& model,
+                                  const std::vector<ContactMaterial>& contacts);
 
 }  // namespace pyroclast

@@ -77,8 +77,10 @@ std::vector<std::string> AskedSpecimen::sides() const {
 }
 
 std::vector<std::string> AskedSpecimen::phases_of_stones() const {
-  return polyhedra ? specimen::phases_of_stones(polyhedra->phases, polyhedra->phase, polyhedra->grain)
-                   : specimen::phases_of_stones(*this);
+  auto names = polyhedra ? specimen::phases_of_stones(polyhedra->phases, polyhedra->phase, polyhedra->grain)
+                         : specimen::phases_of_stones(*this);
+  std::erase(names, matrix);
+  return names;
 }
 
 Vec<3> AskedSpecimen::low() const {

@@ -24,7 +24,7 @@ struct AskedSpecimen : specimen::SpecimenParameters {
 
   int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
   std::vector<std::string> sides() const;          ///< Returns the names of its sides.
-  /// Returns the phases whose blocks belong to stones that are known.
+  /// Returns the phases other than the matrix whose blocks belong to stones that are known.
   std::vector<std::string> phases_of_stones() const;
   Vec<3> low() const;   ///< Returns the lower corner of the box around it, m.
   Vec<3> high() const;  ///< Returns the upper corner, m.

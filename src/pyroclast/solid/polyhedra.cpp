@@ -11,6 +11,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/json_lists.hpp"
 
 namespace pyroclast::solid {
@@ -212,32 +213,12 @@ Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
     complex.cells =
         list_in(json, "cells", "a list of faces, each by its number from 0", specimen::numbers_in);
     read.phase = list_in(json, "phase", "the number of a phase, from 0", specimen::number_in);
-    if (complex.cells.empty()) throw Error("there are no cells");
+    if (json.contains(kBlockSize)) read.size = list_in(json, kBlockSize, "a size in m", specimen::real_in);
+    if (json.contains(specimen::kStone))
+      read.grain = list_in(json, specimen::kStone, specimen::kStoneItem, specimen::number_or_none_in);
+    specimen::require_lists(complex.cells.size(), read.phases, read.phase, read.size, read.grain);
     require_numbers(corners, "face", 3, {"vertex", "vertices"}, complex.vertices.size());
     require_numbers(complex.cells, "cell", 4, {"face", "faces"}, corners.size());
-    if (read.phase.size() != complex.cells.size())
-      throw Error(
-          fmt::format("there are {} cells, but the phases of {}", complex.cells.size(), read.phase.size()));
-    for (std::size_t c = 0; c < read.phase.size(); ++c)
-      if (std::cmp_greater_equal(read.phase[c], read.phases.size()))
-        throw Error(fmt::format("cell {} (from 0) is of phase {} (from 0), but there are {}", c,
-                                read.phase[c], read.phases.size()));
-    if (json.contains(kBlockSize)) {
-      read.size = list_in(json, kBlockSize, "a size in m", specimen::real_in);
-      if (read.size.size() != complex.cells.size())
-        throw Error(
-            fmt::format("there are {} cells, but the sizes of {}", complex.cells.size(), read.size.size()));
-      for (std::size_t c = 0; c < read.size.size(); ++c)
-        if (!(read.size[c] > 0.0) || !std::isfinite(read.size[c]))
-          throw Error(
-              fmt::format("cell {} (from 0) has the size {}; it must be greater than 0", c, read.size[c]));
-    }
-    if (json.contains(specimen::kStone)) {
-      read.grain = list_in(json, specimen::kStone, specimen::kStoneItem, specimen::number_or_none_in);
-      if (read.grain.size() != complex.cells.size())
-        throw Error(
-            fmt::format("there are {} cells, but the stones of {}", complex.cells.size(), read.grain.size()));
-    }
     for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
     find_neighbours(complex);
   });

@@ -75,21 +75,8 @@ std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tol
 
 void require_cells(const Cells& cells) {
   const Tessellation& t = cells.tessellation;
-  const auto& [tessellation, phases, phase, size, grain, origin] = cells;
-  if (t.cells.empty()) throw Error("there are no cells");
-  if (phase.size() != t.cells.size())
-    throw Error(fmt::format("there are {} cells, but the phases of {}", t.cells.size(), phase.size()));
-  if (!size.empty() && size.size() != t.cells.size())
-    throw Error(fmt::format("there are {} cells, but the sizes of {}", t.cells.size(), size.size()));
-  if (!grain.empty() && grain.size() != t.cells.size())
-    throw Error(fmt::format("there are {} cells, but the stones of {}", t.cells.size(), grain.size()));
-  for (std::size_t c = 0; c < size.size(); ++c)
-    if (!(size[c] > 0.0) || !std::isfinite(size[c]))
-      throw Error(fmt::format("{} has the size {}; it must be greater than 0", Numbering{}.cell(c), size[c]));
+  require_lists(t.cells.size(), cells.phases, cells.phase, cells.size, cells.grain);
   for (std::size_t c = 0; c < t.cells.size(); ++c) {
-    if (phase[c] < 0 || phase[c] >= std::ssize(phases))
-      throw Error(fmt::format("{} is of phase {} (from 0), but there are {}", Numbering{}.cell(c), phase[c],
-                              phases.size()));
     if (t.cells[c].size() < 3)
       throw Error(fmt::format("{} has {} corners, but needs 3", Numbering{}.cell(c), t.cells[c].size()));
     for (int v : t.cells[c])
@@ -140,6 +127,28 @@ Region outline_of(const Tessellation& tessellation, const Numbering& numbering) 
     return outline_of_loops(tessellation, all, numbering);
   } catch (const Error& error) {
     throw Error(error.what() + describe_joinable(tessellation));
+  }
+}
+
+void require_lists(std::size_t cells, const std::vector<std::string>& phases, const std::vector<int>& phase,
+                   const std::vector<double>& size, const std::vector<int>& grain) {
+  if (cells == 0) throw Error("there are no cells");
+  const auto require_one_each = [&](std::size_t count, const char* what) {
+    if (count != cells) throw Error(fmt::format("there are {} cells, but the {} of {}", cells, what, count));
+  };
+  require_one_each(phase.size(), "phases");
+  if (!size.empty()) require_one_each(size.size(), "sizes");
+  if (!grain.empty()) require_one_each(grain.size(), "stones");
+  const Numbering number;
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (phase[c] < 0 || phase[c] >= std::ssize(phases))
+      throw Error(fmt::format("{} is of phase {} (from 0), but there are {}", number.cell(c), phase[c],
+                              phases.size()));
+    if (!size.empty() && (!(size[c] > 0.0) || !std::isfinite(size[c])))
+      throw Error(fmt::format("{} has the size {}; it must be greater than 0", number.cell(c), size[c]));
+    if (!grain.empty() && grain[c] < -1)
+      throw Error(
+          fmt::format("{} is of stone {}; the least number is 0, or -1 for none", number.cell(c), grain[c]));
   }
 }
 

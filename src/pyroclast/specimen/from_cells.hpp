@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,17 @@ namespace pyroclast::specimen {
 /// alone; the message says whether vertices could be joined (`describe_joinable`).
 Region outline_of(const Tessellation& tessellation, const Numbering& numbering = {});
 
+/// Tests the lists that cells bring along, in the plane or in space. Throws Error, naming the cell, counted
+/// from 0, when there are no cells, when a list has another length, and when a cell is of a phase that does
+/// not exist, has a size that is not above 0, or a stone below -1.
+/// \param cells  number of cells
+/// \param size   size that each was to have, or empty
+/// \param grain  stone of each, or empty
+void require_lists(std::size_t cells, const std::vector<std::string>& phases, const std::vector<int>& phase,
+                   const std::vector<double>& size, const std::vector<int>& grain);
+
 /// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when a cell names a vertex
-/// or a phase that does not exist.
+/// that does not exist, and as `require_lists`.
 Cells checked(Cells cells);
 
 /// Makes a specimen of cells that come from elsewhere, in either sense. Throws Error as `checked`, and when a

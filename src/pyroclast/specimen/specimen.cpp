@@ -198,7 +198,6 @@ std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) 
   add_phases_of(parameters.aggregates, names);
   for (const Inclusions& kind : parameters.inclusions)
     if (const auto* circles = std::get_if<AggregateParameters>(&kind)) add_phases_of(*circles, names);
-  std::erase(names, parameters.matrix);
   return names;
 }
 
@@ -272,7 +271,7 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
       specimen.grain = std::move(superposed.grain);
     }
     specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
-    superpose(specimen.tessellation, specimen.fibres, specimen.phase);
+    superpose(specimen.tessellation, specimen.fibres, specimen.phase, specimen.grain);
     specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
   } else {
     specimen.phase = std::move(blocks.phase);

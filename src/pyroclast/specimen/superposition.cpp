@@ -135,12 +135,16 @@ Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate
   return result;
 }
 
-void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase) {
+void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase,
+               std::vector<int>& grain) {
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
     for (const Fibre& fibre : fibres)
-      if (crosses(polygon, fibre)) phase[c] = fibre.phase;
+      if (crosses(polygon, fibre)) {
+        phase[c] = fibre.phase;
+        grain[c] = -1;
+      }
   }
 }
 

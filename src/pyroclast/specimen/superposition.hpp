@@ -37,7 +37,8 @@ struct Superposed {
 Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
                      const SpecimenParameters& parameters, int matrix);
 
-/// Gives the cells that a fibre crosses its phase.
-void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase);
+/// Gives the cells that a fibre crosses its phase; they are of no grain then.
+void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase,
+               std::vector<int>& grain);
 
 }  // namespace pyroclast::specimen
