@@ -110,9 +110,9 @@ def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
     return _same_run(folder, command) and not _has_ended(folder) and any(folder.glob("checkpoints/*.state"))
 
 
-def deck_hash(deck: pathlib.Path) -> str:
-    """Of the keys and values of a deck: comments and blanks do not count."""
-    meaning = json.dumps(tomllib.loads(deck.read_text()), sort_keys=True)
+def deck_hash(deck: pathlib.Path, changes: Sequence[str] = ()) -> str:
+    """Of the keys and values of a deck, and of changes to it: comments and blanks do not count."""
+    meaning = "\n".join([json.dumps(tomllib.loads(deck.read_text()), sort_keys=True), *changes])
     return hashlib.sha256(meaning.encode()).hexdigest()[:8]
 
 
