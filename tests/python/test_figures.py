@@ -330,7 +330,9 @@ class PicturesOfTheDocs(unittest.TestCase):
         self.assertGreater(len(cracked_ones), 14)
         for name in sorted(cracked_ones | {"hot_concrete_levels", "levels"}):
             with self.subTest(name), Image.open(IMAGES / f"{name}.png") as picture:
-                colours = np.array([colour for _, colour in picture.convert("RGB").getcolors(256**3)])
+                red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB"), int), 2, 0)
+                packed = np.unique(red << 16 | green << 8 | blue)  # much faster than rows of three
+                colours = np.column_stack([packed >> 16, packed >> 8 & 255, packed & 255])
                 wanted = np.round(255 * np.array(to_rgba(style.TENSION_COLOUR)[:3]))
                 self.assertLess(np.abs(colours - wanted).sum(axis=1).min(), self.NEAR)
 
