@@ -29,6 +29,7 @@ int make_specimen(const RunOptions& asked) {
   RunFolder::check(output_folder(options), options.overwrite);
   const MadeSpecimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
   const auto model = make_model(specimen, setup.thickness, setup.moving);
+  const auto warned = warnings_of(setup, specimen, *model);  // may refuse the deck: before a folder is made
   const RunFolder folder(output_folder(options), options.overwrite,
                          {opened.deck.name(),
                           inputs_of(opened.deck, setup),
@@ -43,7 +44,7 @@ int make_specimen(const RunOptions& asked) {
   write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
   fmt::print("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
-             describe_warnings(warnings_of(setup, specimen, *model)), folder.path().string());
+             describe_warnings(warned), folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
 }
