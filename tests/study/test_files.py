@@ -71,6 +71,36 @@ class WrongFiles(StudyTest):
         text = of_deck('kind = "calibrate"', F_T) + "[targets.E]\nvalue = 20\nsd = 1\n"
         self.refused(text, "[targets.E]", "f_c")
 
+    def test_a_target_takes_any_unit_of_its_output_and_a_bare_number_counts_in_that_unit(self) -> None:
+        outputs = 'E = "E_GPa"\nT = "critical_temperature_degC"\nc = "history: energy_error_J last"\ns = "strain_at_peak"'
+        for output, value, sd, wanted in (
+                ("E", '"25 GPa"', '"500 MPa"', (25.0, 0.5)), ("E", "25", "0.5", (25.0, 0.5)),
+                ("E", '"25e9 Pa"', '"0.5"', (25.0, 0.5)),
+                ("T", '"873.15 K"', '"5 K"', (600.0, 5.0)), ("T", '"600 degC"', "5", (600.0, 5.0)),
+                ("c", '"2 kJ"', '"1 N m"', (2000.0, 1.0)), ("s", '"0.3 %"', "1e-4", (0.003, 1e-4))):
+            text = of_deck('kind = "calibrate"', F_T, outputs=outputs) + f"[targets.{output}]\nvalue = {value}\nsd = {sd}\n"
+            (target,) = read_setup(self.file(text)).targets
+            self.assertAlmostEqual(target.value, wanted[0], places=9)
+            self.assertAlmostEqual(target.sd, wanted[1], places=9)
+
+    def test_a_target_of_another_kind_is_refused_with_the_unit_of_its_output(self) -> None:
+        outputs = 'E = "E_GPa"\nT = "critical_temperature_degC"\ns = "strain_at_peak"'
+        for output, value, sd, place, unit in (
+                ("E", '"25 mm"', "1", "value =", "GPa"), ("E", '"31 %"', "1", "value =", "GPa"),
+                ("E", '"stiff"', "1", "value =", "GPa"),
+                ("E", "true", "1", "value =", "GPa"), ("E", "25", '"5 K"', "sd =", "GPa"), ("T", "600", '"5 degC"', "sd =", "K"),
+                ("s", '"25 GPa"', "1", "value =", "no unit")):
+            text = of_deck('kind = "calibrate"', F_T, outputs=outputs) + f"[targets.{output}]\nvalue = {value}\nsd = {sd}\n"
+            self.refused(text, place, f"counts in {unit}")
+
+    def test_the_place_of_a_row_of_the_history_takes_a_unit(self) -> None:
+        for what, wanted in (("stress_MPa at strain = 0.1 %", "stress_MPa at strain = 0.001"),
+                             ("strain at stress_MPa = 2e4 kPa", "strain at stress_MPa = 20.0"),
+                             ("strain at heating_time_s = 10 min", "strain at heating_time_s = 600.0")):
+            setup = read_setup(self.file(of_deck(LHS, F_T, outputs=f'a = "history: {what}"')))
+            self.assertEqual(setup.outputs[0].what, f"history: {wanted}")
+        self.refused(of_deck(LHS, F_T, outputs='a = "history: strain at stress_MPa = 20 mm"'), "20 mm", "counts in MPa")
+
     def test_secant_without_a_target_for_each_parameter(self) -> None:
         of_f_c = 'kind = "secant"', F_T
         target = "[targets.f_c]\nvalue = 30\nsd = 1\n"

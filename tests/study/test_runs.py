@@ -670,17 +670,17 @@ strength = "strength"
 class Secant(StudyTest):
     """By its command, on a deck: E by the stiffness of the mortar."""
 
-    def run_for(self, modulus: float) -> subprocess.CompletedProcess:
+    def run_for(self, modulus: float | str) -> subprocess.CompletedProcess:
         self.text = self.file(of_deck(
             'kind = "secant"', '[parameters.stiffness]\nkey = "materials.mortar.E"\nvary = "scale"\n'
             'log_uniform = [0.7, 1.43]\n', outputs='E = "E_GPa"')
-            + f'[targets.E]\nvalue = {modulus}\nsd = 0.1\nby = "stiffness"\n')
+            + f'[targets.E]\nvalue = {json.dumps(modulus)}\nsd = 0.1\nby = "stiffness"\n')
         return subprocess.run([PROGRAM, "study", "run", str(self.text)], capture_output=True, text=True, check=False)
 
     def test_its_best_deck_gives_what_it_says(self) -> None:
-        done = self.run_for(19.0)
+        done = self.run_for("19000 MPa")
         self.assertEqual(done.returncode, 0, done.stderr)
-        said = re.search(r"E (\S+), wanted 19: ([+-]\d\.\d) %", done.stdout)
+        said = re.search(r"E (\S+) GPa, wanted 19 GPa: ([+-]\d\.\d) %", done.stdout)
         self.assertLess(abs(float(said[1]) - 19.0), 0.1)
         best = Study(self.text, program=PROGRAM).setup.folder / "best.toml"
         self.assertIn(str(best), done.stdout)
@@ -694,6 +694,13 @@ class Secant(StudyTest):
         self.assertIn("the targets are not met", done.stderr)
         self.assertIn("stiffness = 1.43: at the end of the range", done.stderr)
         self.assertIn("best.toml", done.stdout)
+        self.assertNotIn("another unit", done.stderr)
+
+    def test_a_target_in_another_unit_than_its_output_is_told_with_that_unit(self) -> None:
+        done = self.run_for(19e9)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("targets.E counts in GPa", done.stderr)
+        self.assertIn("wanted 1.9e+10 GPa", done.stdout)
 
 
 class KeptApart(StudyTest):

@@ -27,6 +27,7 @@ Every table and key that a study file may hold, printed by the code that reads s
 means: the key may be left out, and nothing takes its place.
 
 """
+_FAR = 30.0  # distance of an output from its target, over the smaller of both, that tells of another unit
 _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
 
 
@@ -96,15 +97,24 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         return False
     values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
     say("best point      " + ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
+    units = {output.name: "" if output.unit == "1" else f" {output.unit}" for output in setup.outputs}
+    far = []
     for target, y in zip(setup.targets, found["best"]["y"]):
-        say(f"                {target.output} {y:.4g}, wanted {target.value:g}: {100.0 * (y / target.value - 1.0):+.1f} %")
+        value, unit = target.value, units[target.output]
+        off = f": {100.0 * (y / value - 1.0):+.1f} %" if value else ""
+        say(f"                {target.output} {y:.4g}{unit}, wanted {value:g}{unit}{off}")
+        if unit and abs(y - value) > _FAR * min(abs(y), abs(value)) > 0.0:
+            far.append(f"targets.{target.output} counts in{unit} and is far from all that the runs gave: is another unit meant, "
+                       f"write it, as in \"{y:.3g}{unit}\"")
     if deck := study.write_best():
         say(f"its deck        {deck}")
     if found.get("is_met", True):
+        for line in far:
+            say(f"warning         {line}")
         return True
     at_end = [f"{p.name} = {v:g}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
-    print(f"error: the targets are not met: {found['finished']}" +
-          (f"; {' and '.join(at_end)}: at the end of the range" if at_end else ""), file=sys.stderr)
+    end = [f"{' and '.join(at_end)}: at the end of the range"] if at_end else []
+    print(f"error: the targets are not met: {'; '.join([found['finished'], *end, *far])}", file=sys.stderr)
     return False
 
 

@@ -12,12 +12,11 @@ from typing import Any
 
 from .. import _core
 from ..errors import Error
-from .outputs import Output
+from .outputs import QUANTITY, Output, number_in, with_plain_numbers
 from .parameters import Distribution, Parameter, Value
 
 FIRST_SEED = 1
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s+(\S.*?))?\s*")
 _UNTIL = re.compile(r"\s*widest interval\s*<\s*([0-9.eE+-]+)\s*(%?)\s*")
 _DISTRIBUTIONS = ("uniform", "log_uniform", "normal", "integer", "choice")
 
@@ -268,7 +267,7 @@ def _outputs(root: _core.Table, is_needed: bool, meaning: str) -> list[Output]:
             table.error(name, 'must be a text that says where the number stands, such as "f_c_MPa"')
         else:
             try:
-                outputs.append(Output(name, what))
+                outputs.append(Output(name, with_plain_numbers(what)))
             except Error as error:
                 table.error(name, str(error))
     if is_needed and table.ok() and not outputs:
@@ -345,7 +344,7 @@ def _quantities(values: list[Any]) -> tuple[list[float], str]:
     numbers: list[float] = []
     unit = ""
     for i, value in enumerate(values):
-        found = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+        found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
         if found is None and not _is_number(value):
             raise Error(f"{value!r} is no number with or without a unit")
         own = (found[2] or "") if found else ""
@@ -407,9 +406,13 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
         return []
     targets = []
     tables = root.table("targets", "Values that outputs should reach.")
-    for name, table in tables.named_tables("OUTPUT", "Of the output of that name, in its unit."):
-        value = table.number("value", "Value that the output should reach.")
-        sd = table.number("sd", "Standard deviation by which the experiment is uncertain.", 0.0)
+    units = {output.name: output.unit for output in outputs}
+    for name, table in tables.named_tables("OUTPUT", "Of the output of that name. A bare number counts in the output's "
+                                           "unit, as the name of the result or column ends on it."):
+        unit = units.get(name, "1")
+        value = _number_of_output(table, "value", unit, "Value that the output should reach: `25`, or `\"25 GPa\"`.")
+        spread = "K" if unit == "degC" else unit  # a standard deviation is a difference
+        sd = _number_of_output(table, "sd", spread, "Standard deviation by which the experiment is uncertain.")
         if name not in [o.name for o in outputs] and name != "OUTPUT":
             tables.error(name, f"no output is called so; there are {', '.join(o.name for o in outputs)}")
         by = ""
@@ -424,6 +427,18 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
             table.error("sd", "must be greater than 0")
         targets.append(Target(name, value, sd, by))
     return targets
+
+
+def _number_of_output(table: _core.Table, key: str, unit: str, meaning: str) -> float:
+    """A number in an output's unit, written without a unit or with another one of its kind."""
+    value = json.loads(table.json(key, "number or quantity", meaning))
+    if value is None:
+        return 0.0
+    try:
+        return number_in(value, unit)
+    except Error as error:
+        table.error(key, str(error))
+    return 0.0
 
 
 def _correlations(root: _core.Table, names: list[str], method: str) -> list[tuple[str, str, float]]:

@@ -22,6 +22,10 @@ _HISTORY = re.compile(r"(?P<column>\S+)"
                       r"| where (?P<of>\S+) is (?P<extreme>largest|least))?")
 
 _FUNCTION = "python: "
+QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s+(\S.*?))?\s*")  #: a number, and its unit
+_UNIT_IN_NAME = re.compile(r"_([kMG]?Pa(?:_[sm])?|[munkMG]?N(?:_(?:s|m?m2?))?|[munkM]?J(?:_(?:m2|kg|kg_K))?|"
+                           r"[mkM]?W(?:_(?:m2|m2_K|m_K))?|K(?:_(?:s|min|h))?|[munck]?m(?:_(?:s2?|min|h))?|"
+                           r"[munck]?m[23](?:_s)?|k?g(?:_m3)?|1_[sK]|[mun]?s|min|h|Hz|deg|rad|degC|percent)$")
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,14 @@ class Output:
     @property
     def of_history(self) -> bool:
         return self.what.startswith("history:")
+
+    @property
+    def unit(self) -> str:
+        """Unit that the number counts in, as the name of a result or column ends on it; "1" where none is told."""
+        if self.of_history:
+            return unit_of_name(self.columns[0])
+        units = (unit_of_name(part) for part in reversed(self.summary_name.split(".")))
+        return next((unit for unit in units if unit != "1"), "1")
 
     @property
     def _place(self) -> str:
@@ -130,6 +142,49 @@ def _unknown(what: str, name: str, known: Sequence[str]) -> str:
     short = [n for n in known if "." not in n]
     more = ", and others by their path, such as energy_J.kinetic" if len(short) < len(known) else ""
     return f"{what}; there are {', '.join(short)}{more}"
+
+
+def unit_of_name(name: str) -> str:
+    """Unit that the name of a result or of a column ends on: of "rate_K_s" "K/s"; "1" where it ends on none."""
+    found = _UNIT_IN_NAME.search(name)
+    return found[1].replace("_", "/") if found else "1"
+
+
+def number_in(value: Any, unit: str) -> float:
+    """The number of a value in a unit: a bare number counts in it, a quantity with a unit is converted. "1" is no unit.
+
+    Raises Error, which names the unit, where the value is no number, is not finite, or is a quantity of another kind.
+    """
+    from .. import _core  # which a task does without
+
+    number = math.nan
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        number = float(value)
+    elif isinstance(value, str) and (plain := QUANTITY.fullmatch(value)) and not plain[2]:
+        number = float(plain[1])
+    elif isinstance(value, str):
+        for spelt in dict.fromkeys((unit, unit.replace("/", " "))):  # a name ends on "N_m" for N/m and for N m
+            try:
+                number = _core.convert(value, spelt)
+                break
+            except Error:
+                pass
+    if math.isfinite(number):
+        return number
+    if unit == "1":
+        raise Error("counts in no unit, as the name of the output tells none: a plain number is needed, or e.g. \"31 %\"")
+    raise Error(f"counts in {unit}: a number is needed, or a quantity of that kind, such as \"1 {unit}\"")
+
+
+def with_plain_numbers(what: str) -> str:
+    """An output whose "at COLUMN = QUANTITY" is a number in the unit of that column. Raises Error as number_in does."""
+    found = re.fullmatch(r"(history:.* at (\S+) = )(\S.*)", " ".join(what.split()))
+    if not found:
+        return what
+    try:
+        return f"{found[1]}{number_in(found[3], unit_of_name(found[2]))!r}"
+    except Error as error:
+        raise Error(f"{found[3]} does not belong to {found[2]}, which {error}") from None
 
 
 def _because(name: str) -> str:

@@ -447,13 +447,13 @@ E = "E_GPa"
 f_c = "f_c_MPa"
 
 [targets.E]
-value = {2:g}
-sd = {5:.3g}                    # 0.5 %
+value = "{2:g} GPa"
+sd = "{5:.3g} GPa"               # 0.5 %
 by = "stiffness"
 
 [targets.f_c]
-value = {3:g}
-sd = {6:.3g}                    # 1 %
+value = "{3:g} MPa"
+sd = "{6:.3g} MPa"               # 1 %
 by = "strength"
 )",
       o.out.stem().string(), a.rock->name, a.modulus * 1e-9, a.strength * 1e-6, o.out.filename().string(),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,22 +26,16 @@ SEED_HATCH = "////"
 BAR = 0.26  # inches, of a figure's height
 _LEGEND = 0.16  # the same
 _WIDTHS = {1: 3.6, 2: 5.6}  # of a figure with so many panels in a row, inches
-_SUFFIX = re.compile(r"_(MPa|GPa|Pa|kN|N|J|K|degC|percent|mm|um|m|s|min|h)$")
 _SHOWN_UNITS = {"degC": "°C", "percent": "%", "um": "µm"}
 _LONGEST_CHOICE = 12
 
 
 def output_label(output: Output) -> str:
     """Name and unit, where what it is taken from tells one."""
-    found = _unit(output)
-    name = output.name.removesuffix(f"_{found}") if found else output.name
-    return f"{name} [{_SHOWN_UNITS.get(found, found)}]" if found else name
-
-
-def _unit(output: Output) -> str:
-    place = output.columns[0] if output.of_history else output.what
-    found = (_SUFFIX.search(part) for part in reversed(place.split(".")))
-    return next((f[1] for f in found if f), "")
+    if output.unit == "1":
+        return output.name
+    name = output.name.removesuffix(f"_{output.unit.replace('/', '_')}")
+    return f"{name} [{_SHOWN_UNITS.get(output.unit, output.unit)}]"
 
 
 def parameter_label(parameter: Parameter) -> str:
