@@ -9,6 +9,7 @@ import math
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import tomllib
 from collections.abc import Callable, Sequence
@@ -96,7 +97,7 @@ def _same_run(folder: pathlib.Path, command: list[str]) -> bool:
     if not manifest.exists():
         return False
     begun = json.loads(manifest.read_text())["command"]
-    return begun.split(" ", 1)[1] == " ".join(command).split(" ", 1)[1]
+    return shlex.split(begun)[1:] == command[1:]
 
 
 def _has_ended(folder: pathlib.Path) -> bool:

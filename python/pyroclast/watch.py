@@ -56,6 +56,7 @@ from .records import leading, record_course, records_of
 from .results import Frame, GrowingResults
 from .style import save
 from .textplot import curve, plain_label
+from .writing import shell_path
 
 PICTURE = Path("figures") / "watch.png"
 """Within the run's folder."""
@@ -178,7 +179,7 @@ class Watch:
         if writer is Writer.THERE:
             return stage or "begins"
         how = "run was killed" if writer is Writer.DIED else "run broke off"
-        return f"{how}{f' in {stage}' if stage else ''}; to go on: pyroclast resume {self.folder}"
+        return f"{how}{f' in {stage}' if stage else ''}; to go on: pyroclast resume {shell_path(self.folder)}"
 
     def _stage(self) -> str:
         """Number and kind of the stage, and what the log says of how far it is."""

@@ -1,10 +1,13 @@
-"""Files and folders of fixed names that others may have laid links in: nothing is written through a link."""
+"""Files and folders of fixed names that others may have laid links in: nothing is written through a link. Paths in
+commands.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
 import secrets
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,3 +45,11 @@ def refuse_link(path: Path) -> None:
     """Raises OSError where `path` is a link."""
     if path.is_symlink():
         raise OSError(errno.ELOOP, "is a link, and nothing is written through it; remove it", str(path))
+
+
+def shell_path(path: str | Path) -> str:
+    """Returns a path as a shell takes it for a command that is to be given next: quoted, and no option where it begins
+    with a dash.
+    """
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)

@@ -38,6 +38,8 @@ class Concrete(unittest.TestCase):
         estimate = float(seen.split("E about ")[1].split()[0])
         self.assertAlmostEqual(1.06 * estimate, 32.0, delta=0.1)
         self.assertNotIn("warning", seen)
+        targets = tomllib.loads((self.folder / "mine-calibrate.toml").read_text())["targets"]
+        self.assertEqual([targets[name]["value"] for name in ("E", "f_c")], ["32 GPa", "45 MPa"])
         deck = self.deck()
         contacts = deck["contacts"]["mortar_mortar"]
         self.assertNotIn("K_n", contacts)

@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import shlex
 import sys
 import tempfile
 import unittest
@@ -10,7 +11,7 @@ from unittest import mock
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "validation"))
 import runs  # noqa: E402
 
-COMMAND = ["/here/pyroclast", "run", "deck.toml", "--seed", "1", "--set", "blocks.count=300"]
+COMMAND = ["/here/pyroclast", "run", "deck.toml", "--seed", "1", "--set", 'blocks.size="5 mm"', "--set", "blocks.count=300"]
 
 
 class Runs(unittest.TestCase):
@@ -23,7 +24,7 @@ class Runs(unittest.TestCase):
         (self.folder / "checkpoints").mkdir(parents=True)
         (self.folder / "checkpoints" / "1.state").touch()
         (self.folder / "manifest.json").write_text(json.dumps(
-            {"command": " ".join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
+            {"command": shlex.join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
         self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
         version = mock.patch.object(runs, "physics_version", lambda program: "7")
         version.start()

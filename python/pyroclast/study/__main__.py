@@ -14,6 +14,7 @@ from dataclasses import replace
 from .. import _core
 from ..errors import CodeNotAllowed, Error
 from ..interrupts import hear_ctrl_c
+from ..writing import shell_path
 from .command_line import parser
 from .driver import NOT_RUN, WITH_A_BEST, duration
 from .executors.commands import Commands
@@ -73,7 +74,7 @@ def _run(options: argparse.Namespace) -> int:
         say(f"{executor.written} commands are in {executor.file}; when they are done, the same command takes them in")
         return 0
     if not is_complete:
-        say(f"stopped; to go on: pyroclast study run {options.study}")
+        say(f"stopped; to go on: pyroclast study run {shell_path(options.study)}")
         return 130
     say(f"table           {table}")
     if not study.count_values():
@@ -83,7 +84,7 @@ def _run(options: argparse.Namespace) -> int:
     for line in study.warnings():
         say(f"warning         {line}")
     is_met = _say_best(study, say) if study.setup.method.kind in WITH_A_BEST else True
-    say(f"to draw it      pyroclast study report {options.study}")
+    say(f"to draw it      pyroclast study report {shell_path(options.study)}")
     return 0 if is_met else 1
 
 
@@ -181,7 +182,7 @@ def _table(options: argparse.Namespace) -> int:
     study = _study(options)
     if all(row["state"] == NOT_RUN for row in study.rows()):
         print(f"{study.setup.folder}: there is no table yet, for no run is done; to make them: pyroclast study run "
-              f"{options.study}", file=sys.stderr)
+              f"{shell_path(options.study)}", file=sys.stderr)
         return 2
     if options.out is None:
         print(study.write_table())

@@ -11,10 +11,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/concrete_template.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/results/text_file.hpp"
@@ -290,7 +292,7 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
            ? fmt::format(
                  "# Calibrate it before you use it: `pyroclast study run {}` finds the two first guesses, "
                  "E of the\n# mortar and one factor on all strengths, and writes the deck with them.\n",
-                 calibrate)
+                 shell_path(calibrate))
            : fmt::format("# E of the mortar and the numbers of the contacts come from {}.\n",
                          o.from.string())},
       {"COMMAND", o.command},
@@ -417,17 +419,27 @@ bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o
   return are_alike(found.mortar_modulus, first.mortar_modulus) && are_alike(found.f_t, first.f_t);
 }
 
+/// Returns the folder of the calibration, taken from the place of its file.
+std::string folder_of_calibration(const ConcreteOptions& o) {
+  return fmt::format("runs/{}-calibrate", o.out.stem().string());
+}
+
+/// Returns a text as a value of TOML. Its basic strings escape as JSON's do.
+std::string in_toml(const std::string& text) {
+  return nlohmann::json(text).dump();
+}
+
 std::string study_text(const Asked& a, const ConcreteOptions& o) {
   return fmt::format(
       R"(# Finds E of the mortar and one factor on all strengths and fracture energies, so that E and f_c of the concrete are
-# met: pyroclast study run {0}-calibrate.toml
+# met: pyroclast study run {0}
 # One compression test fixes no more than these two: f_cm, beta, c_o and G_f2 stay in the paper's ratio.
 title = "Calibration of {1} concrete: {2:g} GPa, {3:g} MPa"
 
 [study]
-deck = "{4}"
+deck = {4}
 seeds = 3                    # means over three specimens are met
-folder = "runs/{0}-calibrate"
+folder = {7}
 
 [method]
 kind = "secant"
@@ -456,8 +468,9 @@ value = "{3:g} MPa"
 sd = "{6:.3g} MPa"               # 1 %
 by = "strength"
 )",
-      o.out.stem().string(), a.rock->name, a.modulus * 1e-9, a.strength * 1e-6, o.out.filename().string(),
-      0.005 * a.modulus * 1e-9, 0.01 * a.strength * 1e-6);
+      shell_path(fmt::format("{}-calibrate.toml", o.out.stem().string())), a.rock->name, a.modulus * 1e-9,
+      a.strength * 1e-6, in_toml(o.out.filename().string()), 0.005 * a.modulus * 1e-9,
+      0.01 * a.strength * 1e-6, in_toml(folder_of_calibration(o)));
 }
 
 }  // namespace
@@ -498,17 +511,16 @@ int write_concrete(const ConcreteOptions& options) {
           "warning         {} has the first guesses: run its calibration, and take the deck of its best "
           "point\n",
           o.from.string());
-    fmt::print("Next:\n  pyroclast run {} --seeds 3\n", o.out.string());
+    fmt::print("Next:\n  pyroclast run {} --seeds 3\n", shell_path(o.out));
     return 0;
   }
   fmt::print(
       "first guesses   E of the mortar {:g} GPa, strengths {:g} times the paper's; {} blocks\nNext:\n"
       "  pyroclast study run {}\n",
-      1e-9 * found.mortar_modulus, found.factor, found.blocks, beside("calibrate").string());
+      1e-9 * found.mortar_modulus, found.factor, found.blocks, shell_path(beside("calibrate")));
   if (asked.hot)
-    fmt::print(
-        "and then {} again, by this command with `--from runs/{}-calibrate/best.toml` and another -o\n",
-        beside("hot").string(), o.out.stem().string());
+    fmt::print("and then {} again, by this command with `--from {}` and another -o\n", beside("hot").string(),
+               shell_path(o.out.parent_path() / folder_of_calibration(o) / "best.toml"));
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "pyroclast/app/python_package.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 
 namespace pyroclast::app {
@@ -51,7 +52,7 @@ void draw_figures(const std::string& what, const std::filesystem::path& folder, 
   say_aside(
       fmt::format("warning: no figures were drawn{}; the results are complete without them.\n"
                   "To draw them later: pyroclast figures {} {}\n",
-                  code ? "" : ": " + no_python(), what, folder.string()));
+                  code ? "" : ": " + no_python(), what, shell_path(folder)));
 }
 
 void report(const std::vector<std::string>& words) {
@@ -64,7 +65,7 @@ void make_page(const std::filesystem::path& folder, Speech speech, const std::fu
   say_aside(
       fmt::format("warning: no page was made{}; the results are complete without it.\n"
                   "To make it later: pyroclast report {}\n",
-                  code ? "" : ": " + no_python(), folder.string()));
+                  code ? "" : ": " + no_python(), shell_path(folder)));
 }
 
 }  // namespace pyroclast::app

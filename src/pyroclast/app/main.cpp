@@ -14,6 +14,7 @@
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/plugin/code_permission.hpp"
 #include "pyroclast/specimen/specimen.hpp"
@@ -129,7 +130,7 @@ int command_line(int argc, char** argv) {
   cli.require_subcommand(1);
 
   app::RunOptions options;
-  for (int i = 0; i < argc; ++i) options.command += fmt::format("{}{}", i == 0 ? "" : " ", argv[i]);
+  options.command = shell_command({argv, argv + argc});
   auto* run = cli.add_subcommand("run", "Run a deck");
   auto* check = cli.add_subcommand("check", "Check a deck and forecast its run, without running it");
   auto* specimen = cli.add_subcommand("specimen", "Make only the specimen of a deck, with its pictures");
@@ -260,12 +261,9 @@ int command_line(int argc, char** argv) {
   starter->add_option("--from", from, "Case to copy, see `pyroclast list cases`")->capture_default_str();
 
   app::ConcreteOptions concrete_options;
-  for (int i = 0; i < argc; ++i) {
-    const std::string word = i == 0 ? "pyroclast" : argv[i];
-    const bool is_plain = word.find_first_of(" '\"%$\\\n") == std::string::npos;
-    concrete_options.command +=
-        fmt::format("{}{}", i == 0 ? "" : " ", is_plain ? word : fmt::format("'{}'", word));
-  }
+  std::vector<std::string> typed{argv, argv + argc};
+  typed[0] = "pyroclast";
+  concrete_options.command = shell_command(typed);
   auto* concrete = cli.add_subcommand(
       "concrete",
       "Write a deck for your concrete from its strength and stiffness, and a study that calibrates the deck");

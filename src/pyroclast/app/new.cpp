@@ -7,6 +7,7 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast::app {
@@ -28,8 +29,8 @@ int make_deck(const std::string& name, const std::string& from) {
   write_text_file(
       file,
       fmt::format("{}{}", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string()), found->text));
-  fmt::print("{} is written. Next:\n  pyroclast check {}\n  pyroclast run {}\n", file.string(), file.string(),
-             file.string());
+  fmt::print("{} is written. Next:\n  pyroclast check {}\n  pyroclast run {}\n", file.string(),
+             shell_path(file), shell_path(file));
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/app/watcher.hpp"
+#include "pyroclast/base/shell_words.hpp"
 
 namespace pyroclast::app {
 
@@ -165,7 +166,7 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   log.say(describe(summary, session.opened().setup.specimen, folder));
   if (summary.outcome == Outcome::stopped)
-    log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
+    log.say(fmt::format("to go on        pyroclast resume {}", shell_path(folder)));
   if (options.figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
     draw_figures("run", folder, log.speech(), [&] { return interrupt.asked_twice(); });

@@ -13,6 +13,7 @@
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/app/python_package.hpp"
 #include "pyroclast/app/say_aside.hpp"
+#include "pyroclast/base/shell_words.hpp"
 
 namespace pyroclast::app {
 
@@ -71,7 +72,7 @@ void Watcher::tell_end(int status) {
       "warning: the watcher ended ({}); the run does not. To watch it again: pyroclast watch {}\n",
       WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
                         : fmt::format("signal {}", WTERMSIG(status)),
-      folder_.string()));
+      shell_path(folder_)));
 }
 
 void watch(const std::vector<std::string>& words) {

@@ -24,6 +24,7 @@
 #include "pyroclast/base/own_program.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/plugin/build_settings.hpp"
 #include "pyroclast/plugin/cpp_lines.hpp"
 #include "pyroclast/plugin/stamp.hpp"
@@ -247,7 +248,7 @@ fs::path compile_law(const fs::path& header, const std::string& type, const LawC
       throw Error(fmt::format(
           "{}: does not compile as the contact law {}; the compiler says:{}\nIt was run as: {}\n"
           "All that it says: {}",
-          file.string(), type, essence(read_file(messages), file), fmt::join(words, " "), messages.string()));
+          file.string(), type, essence(read_file(messages), file), shell_command(words), messages.string()));
   };
   if (!run_program({compiler.program, "--version"}, messages, compiler.poll))
     throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
@@ -264,7 +265,7 @@ fs::path compile_law(const fs::path& header, const std::string& type, const LawC
   if (fs::exists(kept)) return kept;
   const fs::path aside = in_cache("law.so");
   const auto words = with({"-shared", source.string(), "-o", aside.string()});
-  compiler.tell(fmt::format("{}", fmt::join(words, " ")));
+  compiler.tell(shell_command(words));
   attempt(words);
   fs::rename(aside, kept);
   return kept;

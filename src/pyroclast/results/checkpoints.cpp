@@ -11,6 +11,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast {
@@ -137,7 +138,7 @@ CheckpointFile newest_checkpoint(const fs::path& run_folder) {
       if (may_be_newer(file, newest.info()))
         throw Error(
             fmt::format("{}; to go on from the checkpoint before it, of step {}, say --checkpoint-file {}",
-                        what, newest.info().step, newest.path().string()));
+                        what, newest.info().step, shell_path(newest.path())));
     return newest;
   }
   throw Error(

@@ -8,6 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/later.hpp"
@@ -116,7 +117,7 @@ std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path&
   if (run.outcome() != Outcome::running && fs::exists(folder / "summary.json"))
     throw Error(fmt::format(
         "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
-        folder.string(), describe(run.outcome()), folder.string()));
+        folder.string(), describe(run.outcome()), shell_path(folder)));
   session->last_checkpoint_ = checkpoint.path();
   session->open(checkpoint.info().number);
   return session;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/later.hpp"
@@ -134,7 +135,7 @@ auto Session::telling_where_to_go_on(Act act) {
     if (last_checkpoint_.empty()) throw;
     throw Error(
         fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
-                    error.what(), last_checkpoint_.string(), folder_.string()));
+                    error.what(), last_checkpoint_.string(), shell_path(folder_)));
   }
 }
 

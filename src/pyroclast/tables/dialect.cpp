@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/tables/header.hpp"
 
 namespace pyroclast {
@@ -302,7 +303,8 @@ class GridReader {
                "write one of them, such as by `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g' {} > "
                "points_{}` for decimal commas",
                number.number, *plain_number(number.number, DecimalSign::comma),
-               *plain_number(number.number, DecimalSign::point), name, name));
+               *plain_number(number.number, DecimalSign::point), shell_path(name),
+               shell_word("points_" + name)));
   }
 
   const std::vector<TableLine>& lines_;

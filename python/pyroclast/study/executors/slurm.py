@@ -234,7 +234,7 @@ class _Queue:
         unknown = sorted({name for name, _ in found} - {array.name for array in self._book.arrays})
         if unknown:
             raise Error(f"{self._book.folder}.json: does not know the jobs {', '.join(unknown)} of this study, which "
-                        f"are in the queue; to end them: scancel --name={','.join(unknown)}")
+                        f"are in the queue; to end them: scancel {shlex.quote('--name=' + ','.join(unknown))}")
         return found
 
     def _look(self, states: dict[tuple[str, int], str]) -> None:
