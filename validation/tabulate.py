@@ -34,7 +34,7 @@ def number(value: float | None) -> str:
 def main() -> None:
     folder = pathlib.Path(sys.argv[1])
     runs: dict[str, list[dict]] = {}
-    print("variant,seed," + ",".join(COLUMNS) + ",kinetic_over_elastic,platen_difference_percent,"
+    print("physics_version,variant,seed," + ",".join(COLUMNS) + ",kinetic_over_elastic,platen_difference_percent,"
           "ledger_error_percent,aggregate_fraction,steps,wall_time_s")
     for file in sorted(folder.glob("*/summary.json")):
         summary = json.loads(file.read_text())
@@ -42,15 +42,18 @@ def main() -> None:
         variant = file.parent.name.rpartition("-")[0]
         result = next(stage["results"] for stage in summary["stages"] if stage["kind"] == "compress")
         kinetic, difference = inertia(file.parent / "history.csv")
-        runs.setdefault(variant, []).append(result)
-        print(f"{variant},{manifest['seed']}," + ",".join(number(result[c]) for c in COLUMNS) +
+        runs.setdefault(variant, []).append(result | {"version": manifest["physics_version"]})
+        version = manifest["physics_version"]
+        print(f"{version},{variant},{manifest['seed']}," + ",".join(number(result[c]) for c in COLUMNS) +
               f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_turnover']:.3f}"
               f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},"
               f"{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):
             columns = ([r[c] for r in results if r[c] is not None] for c in COLUMNS)
-            print(f"{variant},{name}," + ",".join(number(of(values) if values else None) for values in columns) + ",,,,,,")
+            versions = " and ".join(sorted({str(r["version"]) for r in results}))
+            numbers = ",".join(number(of(values) if values else None) for values in columns)
+            print(f"{versions},{variant},{name},{numbers},,,,,,")
 
 
 if __name__ == "__main__":

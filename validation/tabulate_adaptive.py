@@ -12,16 +12,17 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from pyroclast.results import Results  # noqa: E402
 
-COLUMNS = ("kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static",
-           "strain_500", "critical_degC", "not_converged", "wall_time_s")
+COLUMNS = ("physics_version", "kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak",
+           "quasi_static", "strain_500", "critical_degC", "not_converged", "wall_time_s")
 
 
 def row_of(folder: pathlib.Path) -> dict:
     """What a run came to; what it has not is empty."""
     summary = json.loads((folder / "summary.json").read_text())
     kind, variant, *level, seed = folder.name.split("-")
-    row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "variant": variant, "level": level[0] if level else "",
-                                        "seed": seed,
+    version = json.loads((folder / "manifest.json").read_text())["physics_version"]
+    row = dict.fromkeys(COLUMNS, "") | {"physics_version": version, "kind": kind, "variant": variant,
+                                        "level": level[0] if level else "", "seed": seed,
                                         "steps": summary["steps"], "wall_time_s": round(summary["wall_time_s"])}
     if kind == "compression":
         result = Results(folder).compression

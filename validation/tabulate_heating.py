@@ -30,16 +30,17 @@ def band(level: float) -> list[str]:
 def main() -> None:
     runs = [Results(file.parent) for file in sorted(pathlib.Path(sys.argv[1]).glob("*/summary.json"))]
     names = [f"strain_{t}" for t in TEMPERATURES]
-    print("variant,level,seed," + ",".join(names) + ",critical_degC,exchanges,not_converged,worst_ratio,cycles,"
-          "ledger_error_percent,wall_time_s")
+    print("physics_version,variant,level,seed," + ",".join(names) + ",critical_degC,exchanges,not_converged,"
+          "worst_ratio,cycles,ledger_error_percent,wall_time_s")
     for level in sorted({run.load_level for run in runs}):
-        print(f"band,{level:g},," + ",".join(band(level)) + ",,,,,,,")
+        print(f"none,band,{level:g},," + ",".join(band(level)) + ",,,,,,,")
     for run in runs:
         variant, level, seed = run.folder.name.rsplit("-", 2)
         strains = 1e3 * run.standing_strain(TEMPERATURES)
         heating = run.heating
         critical = heating["critical_temperature_degC"]
-        print(f"{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)
+        version = run.manifest["physics_version"]
+        print(f"{version},{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)
               + f",{'' if critical is None else f'{critical:.0f}'},{heating['exchanges']:.0f},"
               f"{heating['exchanges_not_converged']:.0f},{heating['worst_unbalanced_ratio']:.1e},"
               f"{heating['cycles']:.0f},"

@@ -98,7 +98,7 @@ def heating_cracks(run: Results) -> Figure:
     course = heating_course(run)
     _draw_extents(lengths, course)
     opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
-    opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
+    opening.set_ylabel("Mean opening of contacts\ndamaged in tension or mixed mode [µm]")
     opening.set_ylim(bottom=0.0)
     opening.sharex(lengths)
     lengths.tick_params(labelbottom=False)

@@ -730,7 +730,8 @@ class Run:
 
     def contacts(self) -> pandas.DataFrame:
         """State of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the number of the
-        `face`, `area_m2`, `normal_x` and `normal_y`, and fields of contacts that are numbers (docs/lookup/fields.md):
+        `face`, `area_m2`, `normal_x` and `normal_y`, of a solid also `z_m` and `normal_z`, and fields of contacts that
+        are numbers (docs/lookup/fields.md):
         `opening_m`, what their laws remember (`closure_m`), what they lost (`lost_tension_J_m2`), ...
         """
         columns = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}
@@ -744,8 +745,7 @@ class Run:
     def to_meshio(self) -> meshio.Mesh:
         """The body now as a mesh of triangles in space, z = 0, or of tetrahedra, in m, with its fields
         (`displacement_m`, `stress_Pa`, ...), and `block` and `material` of zones. `field_data` has the names of the
-        materials: their number and the
-        dimension of their zones, as meshes of gmsh do.
+        materials: their number and the dimension of their zones, as meshes of gmsh do.
         """
         block = self.zone_block
         points = {name: _in_space(values) if values.ndim > 1 else values

@@ -388,6 +388,10 @@ class Script(unittest.TestCase):
         np.testing.assert_array_equal(run.views.displacement[run.slot], run.fields.displacement)
         contacts = run.contacts()
         self.assertLessEqual({"z_m", "area_m2"}, set(contacts))
+        self.assertGreater(contacts["slip_m"].max(), 0.0)  # at the platens, which have no friction
+        self.assertGreaterEqual(contacts["slip_m"].min(), 0.0)  # the size of a vector along the face
+        beyond = contacts["tangential_jump_m"] - contacts["slip_m"] - contacts["held_jump_m"]
+        self.assertLess(beyond.max(), 1e-15)  # the jump is the sum of both vectors
         self.assertEqual([cells.type for cells in run.to_meshio().cells], ["tetra"])
         twin = run.copy()
         for going in (run, twin):

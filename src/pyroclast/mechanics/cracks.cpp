@@ -91,8 +91,8 @@ std::vector<std::uint8_t> damages(const Body<Dim>& body) {
 
 struct CrackSums {
   std::vector<CrackCount> of_kind;
-  double opening = 0.0;  ///< sum of openings times extents over contacts that have come apart
-  double extent = 0.0;   ///< sum of their extents
+  double opening = 0.0;  ///< sum of openings times extents over contacts damaged in tension or mixed mode
+  double extent = 0.0;   ///< sum of the extents of these contacts
 
   void operator+=(const CrackSums& other) {
     of_kind.resize(std::max(of_kind.size(), other.of_kind.size()));

@@ -396,8 +396,9 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
       simulation.moves() && simulation.motion().parameters().kinematics == Kinematics::small;
   if (const auto row = is_small ? large_jump(run, s) : std::nullopt)
     s.warnings.push_back(fmt::format(
-        "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: {} (docs/validation/"
-        "jumps.md)",
+        "jumps exceed {} from {:.0f} degC{} on, before the results were decided: {} "
+        "(docs/validation/jumps.md)",
+        simulation.model().dimension() == 2 ? "an edge" : "a block size",
         *history.cell(*row, "temperature_degC"),
         simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : "",
         simulation.model().dimension() == 2

@@ -69,7 +69,7 @@ void read_beside_cells(const Section& root, const Section& s, const DeckSpace& s
   p.cells = std::move(outline.cells);
 }
 
-/// Records an error where a phase has the name of a bearing's solid.
+/// Records an error where a phase has the name of a bearing's material.
 void check_phases(const Section& s, const specimen::SpecimenParameters& p,
                   std::span<const ReadBearing> bearings) {
   for (const auto& phase : specimen::phases(p))

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <initializer_list>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,7 +36,6 @@ bool parts_heat(const S& s) {
 }
 
 constexpr int kMostComponents = 6;  // components of a tensor
-constexpr int kPlane = 2;           // dimension of the bodies that decks make
 constexpr std::array<std::string_view, 4> kItemNames{"gridpoint", "zone", "contact", "contact_end"};
 
 void put(double* to, const Vec<3>& v) {
@@ -153,7 +155,7 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      "only where "
      "a phase creeps. ZZ acts on nothing"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,
-     [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "platens stay at 20 °C"},
+     [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "bearings stay at 20 °C"},
 });
 
 constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, ValueKind::vector,
@@ -162,16 +164,16 @@ constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, Va
 constexpr auto kOfContacts = std::to_array<KnownField>({
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack(r, i); },
-     "the largest damage by any mode, 0 intact, 1 broken; 0 at the platens, which are no cracks"},
+     "the largest damage by any mode, 0 intact, 1 broken; 0 at bearings, whose contacts are no cracks"},
     {"crack_step", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack_step(r, i); },
-     "step of the first row of the history that found the largest damage above 0.5; -1 before, and at the "
-     "platens"},
+     "step of the first row of the history that found the largest damage above 0.5; -1 before, and at "
+     "bearings"},
     {"opening", unit::length, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = r.contact(i).opening; }, "normal jump, positive when open"},
     {"tangential_jump", unit::length, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = along_face(r, r.contact(i).tangential_jump); },
-     "slip along the face; of a solid its size"},
+     "jump along the face; of a solid its size"},
     {"normal_traction", unit::stress, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = r.contact(i).normal_traction; }, "positive in tension"},
     {"shear_traction", unit::stress, Item::contact, ValueKind::number, true, moves,
@@ -194,11 +196,29 @@ FieldInfo info_of(const KnownField& f) {
   return {f.name, f.unit, f.item, f.kind, f.meaning, f.in_files};
 }
 
+/// Returns how many internal variables of a law have a name: a vector along the face has two in 3D.
+auto numbers_named(const LawTable& law, int dimension, std::string_view name) {
+  return std::ranges::count(law.internals(dimension), name, [](const auto& info) { return info.name; });
+}
+
 /// Adds the internal variables of a law, without those whose names another law has given already.
 void add_memory(const LawTable& law, int dimension, std::vector<FieldInfo>& all) {
   for (const InternalInfo& info : law.internals(dimension))
     if (std::ranges::find(all, std::string(info.name), &FieldInfo::name) == all.end())
-      all.push_back({info.name, info.unit, Item::contact, ValueKind::number, info.meaning, info.in_files});
+      all.push_back({info.name, info.unit, Item::contact, ValueKind::number,
+                     fmt::format("{}{}", info.meaning,
+                                 numbers_named(law, 3, info.name) > 1 ? "; of a solid its size" : ""),
+                     info.in_files});
+}
+
+/// Returns an internal variable of a contact; of one with two components the size.
+double memory_of(const ContactState& contact, std::string_view name) {
+  if (numbers_named(*contact.law, contact.dimension, name) < 2) return contact.remembered(name);
+  double squares = 0.0;
+  const auto infos = contact.law->internals(contact.dimension);
+  for (std::size_t i = 0; i < infos.size(); ++i)
+    if (infos[i].name == name) squares += contact.internals[i] * contact.internals[i];
+  return std::sqrt(squares);
 }
 
 /// Adds the losses of a law, without those whose names another law has given already.
@@ -211,10 +231,11 @@ void add_losses(const LawTable& law, int /*dimension*/, std::vector<FieldInfo>& 
 }
 
 template <class Laws>
-std::vector<FieldInfo> of_laws(const Laws& laws, int dimension,
+std::vector<FieldInfo> of_laws(const Laws& laws, std::initializer_list<int> dimensions,
                                void (*add)(const LawTable&, int dimension, std::vector<FieldInfo>&)) {
   std::vector<FieldInfo> all;
-  for (const LawTable* law : laws) add(*law, dimension, all);
+  for (const int dimension : dimensions)
+    for (const LawTable* law : laws) add(*law, dimension, all);
   return all;
 }
 
@@ -301,12 +322,11 @@ std::vector<Field> fields_of(const Simulation& simulation) {
   if (!simulation.moves()) return all;
   const int dimension = simulation.model().dimension();
   const auto laws = laws_in_order(simulation.motion());
-  for (const FieldInfo& info : of_laws(laws, dimension, add_memory))
-    all.push_back({info, [name = info.name](R& r, int i, double* to) {
-                     *to = r.contact(i).remembered(std::string_view(name));
-                   }});
+  for (const FieldInfo& info : of_laws(laws, {dimension}, add_memory))
+    all.push_back(
+        {info, [name = info.name](R& r, int i, double* to) { *to = memory_of(r.contact(i), name); }});
   for (const KnownField& f : kOfContacts) add(f);
-  for (const FieldInfo& info : of_laws(laws, dimension, add_losses))
+  for (const FieldInfo& info : of_laws(laws, {dimension}, add_losses))
     all.push_back({info, [name = info.name.substr(info.name.find('_') + 1)](R& r, int i, double* to) {
                      *to = r.contact(i).lost(name);
                    }});
@@ -317,9 +337,9 @@ std::vector<FieldInfo> possible_fields() {
   std::vector<FieldInfo> all;
   for (const KnownField& f : kOfBlocks) all.push_back(info_of(f));
   all.push_back(info_of(kOfEnds));
-  std::ranges::copy(of_laws(built_in_laws(), kPlane, add_memory), std::back_inserter(all));
+  std::ranges::copy(of_laws(built_in_laws(), {2, 3}, add_memory), std::back_inserter(all));
   for (const KnownField& f : kOfContacts) all.push_back(info_of(f));
-  std::ranges::copy(of_laws(built_in_laws(), kPlane, add_losses), std::back_inserter(all));
+  std::ranges::copy(of_laws(built_in_laws(), {2, 3}, add_losses), std::back_inserter(all));
   return all;
 }
 

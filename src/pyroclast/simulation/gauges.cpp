@@ -48,10 +48,12 @@ constexpr auto kClock = std::to_array<ColumnOf<M>>({
 using S = Simulation;
 constexpr auto kTemperature = std::to_array<ColumnOf<S>>({
     {"heating_time_s", "s", "time since heating began", [](const S& s) { return s.heating_time(); }},
-    {"temperature_degC", "degC", "mean temperature over the volume",
+    {"temperature_degC", "degC", "mean temperature over the volume of the specimen",
      [](const S& s) { return s.field().mean(); }},
-    {"temperature_min_degC", "degC", "lowest temperature", [](const S& s) { return s.field().minimum(); }},
-    {"temperature_max_degC", "degC", "highest temperature", [](const S& s) { return s.field().maximum(); }},
+    {"temperature_min_degC", "degC", "lowest temperature of the specimen",
+     [](const S& s) { return s.field().minimum(); }},
+    {"temperature_max_degC", "degC", "highest temperature of the specimen",
+     [](const S& s) { return s.field().maximum(); }},
 });
 
 using P = Press;
@@ -61,7 +63,8 @@ constexpr auto kPress = std::to_array<ColumnOf<P>>({
      "as positive",
      [](const P& p) { return p.strain(); }},
     {"stage_strain", "1", "the same since the stage began", [](const P& p) { return p.stage_strain(); }},
-    {"specimen_strain", "1", "approach of the specimen's own ends over its height",
+    {"specimen_strain", "1",
+     "approach of the specimen's own ends over its height, since the body came to rest",
      [](const P& p) { return p.specimen_strain(); }},
     {"stress_MPa", "MPa", "mean reaction of both platens over the area; compression counts as positive",
      [](const P& p) { return p.stress() * kMega; }},
@@ -69,7 +72,10 @@ constexpr auto kPress = std::to_array<ColumnOf<P>>({
      [](const P& p) { return p.stress_top() * kMega; }},
     {"stress_bottom_MPa", "MPa", "reaction of the lower platen over the area",
      [](const P& p) { return p.stress_bottom() * kMega; }},
-    {"lateral_strain", "1", "mean widening over the width", [](const P& p) { return p.lateral_strain(); }},
+    {"lateral_strain", "1",
+     "widening over the width, since the body came to rest; of a solid the mean of both directions across "
+     "the axis",
+     [](const P& p) { return p.lateral_strain(); }},
 });
 
 /// Measurements of the whole body's motion.
@@ -89,7 +95,8 @@ constexpr auto kMotion = std::to_array<ColumnOf<MotionReading>>({
      [](const MotionReading& m) { return m.unbalanced_ratio; }},
     {"kinetic_over_strain", "1", "kinetic over elastic energy",
      [](const MotionReading& m) { return m.energy.kinetic_over_elastic(); }},
-    {"largest_jump", "1", "largest jump over the length of its edge; in space over the mean block size",
+    {"largest_jump", "1",
+     "largest jump of a contact point over the length of its edge; of a solid over the mean block size",
      [](const MotionReading& m) { return m.largest_jump; }},
 });
 
@@ -300,23 +307,27 @@ std::vector<ColumnInfo> possible_gauge_columns() {
   add_infos(infos, kPress);
   add_infos(infos, kMotion);
   add_infos(infos, kEnergies, "energy");
-  infos.push_back({"dissipated_NAME_J", "J", "energy lost by one part of a contact law, or by creep"});
+  infos.push_back({"dissipated_NAME_J", "J", "energy lost by one part of the contact laws, or by creep"});
   const std::string crack = "MODE_INTERFACE_";
   infos.push_back(
       {crack + "damaged", "1", "contact points of the interface whose damage by the mode is above 0"});
   infos.push_back({crack + "broken", "1", "contact points of the interface whose damage by the mode is 1"});
-  infos.push_back({crack + "length_m", "m", "length of the damaged contacts, in the plane"});
-  infos.push_back({crack + "area_m2", "m2", "area of the damaged contacts, of a solid"});
-  infos.push_back({crack + "broken_length_m", "m", "length of the broken contacts, in the plane"});
-  infos.push_back({crack + "broken_area_m2", "m2", "area of the broken contacts, of a solid"});
-  infos.push_back({"mean_opening_m", "m", "mean opening of the broken contacts"});
+  infos.push_back(
+      {crack + "length_m", "m", "length that the damaged contact points stand for, of a plane body"});
+  infos.push_back({crack + "area_m2", "m2", "area that the damaged contact points stand for, of a solid"});
+  infos.push_back(
+      {crack + "broken_length_m", "m", "length that the broken contact points stand for, of a plane body"});
+  infos.push_back(
+      {crack + "broken_area_m2", "m2", "area that the broken contact points stand for, of a solid"});
+  infos.push_back(
+      {"mean_opening_m", "m", "mean opening of contacts damaged in tension or mixed mode, by extent"});
   infos.push_back({"NAME_UNIT", "its own", "a [[record]] of the deck"});
   infos.push_back({"rate_K_s", "K/s", "root of the mean square of the temperature's rate over the volume"});
   infos.push_back({"gas_max_degC", "degC", "hottest gas of all boundaries of heat"});
   add_infos(infos, kHeats, "heat");
-  infos.push_back(
-      {"heat_gap_length_m", "m", "length of the contacts whose sides have temperatures of their own"});
-  infos.push_back({"heat_gap_area_m2", "m2", "the same of a solid: their area"});
+  infos.push_back({"heat_gap_length_m", "m",
+                   "length of the contacts whose sides have temperatures of their own, of a plane body"});
+  infos.push_back({"heat_gap_area_m2", "m2", "area of these contacts, of a solid"});
   infos.push_back({"probe_NAME_degC", "degC", "temperature at a [[probes]] of the deck"});
   return infos;
 }

@@ -61,7 +61,7 @@ MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team = null
 
 /// Numbers of a specimen that materials, heat and exchanges ask for.
 struct SpecimenNumbers {
-  std::vector<double> fraction;  ///< share of each phase, in the order of the solids
+  std::vector<double> fraction;  ///< share of each phase, in the order of the materials of blocks
   double mean_size = 0.0;        ///< mean size of its blocks, m, see specimen::Metrics
   double block_size = 0.0;  ///< size of a block that counts for fracture zones, m, see specimen::block_size
   /// Side of the square of its area, m, against which lengths of the body are measured; of a solid the edge

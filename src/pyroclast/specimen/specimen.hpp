@@ -138,8 +138,6 @@ struct BlockParameters {
   /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;
   int relaxation = 0;  ///< Lloyd iterations; 0 leaves the seeds at random
-  /// True where blocks follow the surfaces of grains, by mirrored seeds; then nothing is superposed but
-  /// fibres.
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
   double largest_bend = 0.0;   ///< of a face between blocks of a solid, in [0, kMostBend], rad
   /// Tessellation of the region, made elsewhere and still to be regularised; then only `shortest_edge`

@@ -23,14 +23,14 @@ namespace {
 
 /// Steps between two adjustments of loads and velocities.
 constexpr std::int64_t kStepsPerAdjustment = 20;
-/// Steps between two adjustments of a control, and up to which square of (frequency x time of these steps)
-/// the sets on their pair, a spring whose force is held for so long, come to rest.
+/// Interval between two adjustments of a control's pair of forces, which is a spring whose force stays the
+/// same for so long.
 struct ControlInterval {
-  std::int64_t steps;
-  double stable;
+  std::int64_t steps;  ///< steps of an interval; they divide the steps between two looks
+  double stable;       ///< largest (omega t)^2 at which the sets come to rest; t: time of an interval
 };
-/// They divide the steps between two looks. Measured on the disc of 500 blocks: at rest with 5.2, 2.5
-/// and 1.7, and shaken without bound with 10, 3.3 and 1.9.
+/// Measured on the disc of 500 blocks: it came to rest at 5.2, 2.5 and 1.7, and shook without bound at 10,
+/// 3.3 and 1.9.
 constexpr std::array<ControlInterval, 3> kControlIntervals{{{5, 5.0}, {2, 2.0}, {1, 1.5}}};
 /// Share that the pair may add to the largest load, and do of the work of the loads, without a warning.
 constexpr double kLeftToPair = 0.05;
