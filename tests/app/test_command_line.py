@@ -43,6 +43,13 @@ class CommandLine(unittest.TestCase):
                 is_record = any(re.fullmatch(rf"{record}_\w+", column) for record in records)
                 self.assertTrue(is_record or re.fullmatch(names, column), f"{case}: {column}")
 
+    def test_lists_say_what_the_code_computes_in_both_dimensions(self):
+        columns, fields = (self.pyroclast("list", what).stdout for what in ("columns", "fields"))
+        self.assertRegex(columns, r"mean_opening_m .*contacts damaged in tension or mixed mode, by extent\n")
+        self.assertRegex(columns, r"largest_jump .*edge; of a solid over the mean block size\n")
+        for name in ("slip", "tangential_jump", "shear_traction"):  # two components in a solid
+            self.assertRegex(fields, rf"\n{name} .*of a solid its size\n")
+
     def test_an_unknown_word_is_named_with_the_nearest(self):
         self.assertIn('"rnu" is no command; did you mean "run"?', self.error("rnu", "x.toml"))
         self.assertIn('"--treads" is no option of run; did you mean "--threads"?', self.error("run", "x", "--treads", "3"))
