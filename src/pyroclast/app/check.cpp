@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -123,9 +122,12 @@ int check(const RunOptions& options) {
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());
-  if (!model.symmetry.empty())
+  if (!model.symmetry.empty()) {
+    std::vector<std::string> sides;
+    for (const PlaneOfSymmetry& plane : model.symmetry) sides.push_back(plane.side);
     fmt::print("symmetry        a plane at {}: forces, energies and cracks count this part alone\n",
-               fmt::join(model.symmetry | std::views::transform(&PlaneOfSymmetry::side), ", at "));
+               fmt::join(sides, ", at "));
+  }
   if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));

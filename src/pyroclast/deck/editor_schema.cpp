@@ -205,18 +205,26 @@ class EditorSchema {
   }
 
  private:
+  /// Entry of a list that is searched by name. Clang 14 cannot hold a pair with a type that holds such a list.
+  template <class T>
+  struct Named {
+    std::string name;
+    T value;
+  };
+
   /// Table with its keys, and the tables in it by their steps.
   struct Node {
     const DeckTable* table = nullptr;
-    std::vector<std::pair<std::string, std::vector<DeckKey>>> keys;
-    std::vector<std::pair<std::string, Node>> tables;
+    std::vector<Named<std::vector<DeckKey>>> keys;
+    std::vector<Named<Node>> tables;
     std::vector<Json> rules;
 
-    template <class List>
-    static auto& in(List& list, const std::string& name) {
-      const auto known = std::ranges::find(list, name, [](const auto& entry) { return entry.first; });
-      if (known != list.end()) return known->second;
-      return list.emplace_back(name, typename List::value_type::second_type{}).second;
+    template <class T>
+    static T& in(std::vector<Named<T>>& list, const std::string& name) {
+      const auto known = std::ranges::find(list, name, &Named<T>::name);
+      if (known != list.end()) return known->value;
+      list.push_back({name, T{}});
+      return list.back().value;
     }
   };
 
@@ -332,9 +340,8 @@ class EditorSchema {
     for (const Json& rule : node.rules) result["allOf"].push_back(rule);
     if (!node.table || node.table->code_key.empty()) return result;
     // code of one's own has keys of its own
-    const auto code =
-        std::ranges::find(node.keys, node.table->code_key, [](const auto& key) { return key.first; });
-    return any_of({result, holds_other_text(code->first, code->second.front())});
+    const auto code = std::ranges::find(node.keys, node.table->code_key, &Named<std::vector<DeckKey>>::name);
+    return any_of({result, holds_other_text(code->name, code->value.front())});
   }
 
   static Json holds_other_text(const std::string& key, const DeckKey& words) {

@@ -59,10 +59,10 @@ bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, 
       highest = low;
       best = first;
     }
-    std::ranges::rotate(corners, begins_at(1));
+    std::rotate(corners.begin(), begins_at(1), corners.end());  // Clang 14 cannot do ranges::rotate
   }
   if (best == corners.size()) return false;
-  std::ranges::rotate(corners, begins_at(best));
+  std::rotate(corners.begin(), begins_at(best), corners.end());
   return true;
 }
 

@@ -228,7 +228,7 @@ class Joiner {
     std::ranges::reverse(other);
     const auto first = std::ranges::find(other, loop.front());
     if (first == other.end()) return false;
-    std::ranges::rotate(other, first);
+    std::rotate(other.begin(), first, other.end());  // Clang 14 cannot do ranges::rotate
     return loop == other;
   }
 

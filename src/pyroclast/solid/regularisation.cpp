@@ -271,7 +271,7 @@ class CellRegulariser {
           best = loop;
         }
       }
-      std::ranges::rotate(loop, loop.begin() + 1);
+      std::rotate(loop.begin(), loop.begin() + 1, loop.end());  // Clang 14 cannot do ranges::rotate
     }
     if (best.empty()) return;
     loop = best;

@@ -5,7 +5,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <string>
 #include <utility>
@@ -99,8 +98,8 @@ class SeedDraw {
   /// \param unfit  seeds, ascending
   void redraw(const std::vector<int>& unfit, bool are_empty, int round) {
     std::vector<std::size_t> numbers;
-    for (const int seed : unfit | std::views::reverse) {
-      const auto number = static_cast<std::size_t>(seed);
+    for (auto seed = unfit.rbegin(); seed != unfit.rend(); ++seed) {  // Clang 14 cannot do views::reverse
+      const auto number = static_cast<std::size_t>(*seed);
       const bool is_of_grain = number >= outline_.positions().size() && number < kept_;
       if (is_of_grain && (are_empty || round >= kGivesWay)) {
         drop(number);
@@ -109,7 +108,7 @@ class SeedDraw {
         numbers.push_back(number);
       }
     }
-    for (const std::size_t number : numbers | std::views::reverse) redraw(number);
+    for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) redraw(*number);
     fill_up();
   }
 

@@ -133,12 +133,17 @@ struct Packs {
       Set::put_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
     });
   }
+  /// Returns fours as the array of numbers that they lie in: more than the four numbers of the first.
+  static const double* numbers_of(const Four* fours) {
+    return static_cast<const double*>(static_cast<const void*>(fours));
+  }
+  static double* numbers_of(Four* fours) { return static_cast<double*>(static_cast<void*>(fours)); }
   /// Reads fours by their places in an array of numbers.
   template <class Place>
   static Vector gather(const Four* fours, const std::array<Place, kLanes>& place) {
     Vector v;
     unroll<Real::kParts>([&](auto i) {
-      const auto at = [&](int lane) { return fours->c + place[i * Set::kWidth + lane]; };
+      const auto at = [&](int lane) { return numbers_of(fours) + place[i * Set::kWidth + lane]; };
       Set::gather_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
     });
     return v;
@@ -153,7 +158,7 @@ struct Packs {
   template <class Place>
   static void add(const Vector& v, Four* fours, const std::array<Place, kLanes>& place) {
     unroll<Real::kParts>([&](auto i) {
-      const auto at = [&](int lane) { return fours->c + place[i * Set::kWidth + lane]; };
+      const auto at = [&](int lane) { return numbers_of(fours) + place[i * Set::kWidth + lane]; };
       Set::add_to_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
     });
   }
