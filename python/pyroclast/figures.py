@@ -13,7 +13,8 @@ a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png. A run that keeps no fields gets
-those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png.
+those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png,
+unless no law of its contacts has a damage.
 
 Prints the path of each figure. Ends with 1 and a line on stderr for each thing that is missing or malformed; figures
 that need none of these are drawn.
@@ -90,6 +91,12 @@ def _fractured(name: str, drawn: Rows, magnification: float | None) -> Picture:
                    lambda figures, _: write_counts(figures / f"{name}.csv", drawn))
 
 
+def _inside(run: Results) -> Iterator[Picture]:
+    """The cracks inside of a solid whose contacts can break."""
+    if run.frames and run.crack_modes and run.mesh.blocks.dimension == 3:
+        yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
+
+
 def _of_heating(run: Results, magnification: float | None, temperatures: Sequence[float] | None) -> Iterator[Picture]:
     if run.restrained:
         yield Picture("thrust", lambda: thrust(run))
@@ -103,8 +110,8 @@ def _of_heating(run: Results, magnification: float | None, temperatures: Sequenc
         yield from _of_conduction(run)
     if run.has_fields:
         yield _fractured("heating_fracture", heating_fracture(run, temperatures), magnification)
-        if run.frames and run.ends_heated and run.mesh.blocks.dimension == 3:
-            yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
+        if run.ends_heated:
+            yield from _inside(run)
 
 
 def _of_records(run: Results, magnification: float | None) -> Iterator[Picture]:
@@ -117,8 +124,7 @@ def _of_records(run: Results, magnification: float | None) -> Iterator[Picture]:
         yield from _of_conduction(run)
     if run.has_fields:
         yield _fractured("fracture", record_fracture(run), magnification)
-        if run.frames and run.mesh.blocks.dimension == 3:
-            yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
+        yield from _inside(run)
 
 
 def _of_conduction(run: Results) -> Iterator[Picture]:
@@ -147,8 +153,7 @@ def _of_compression(run: Results, magnification: float | None) -> Iterator[Pictu
         path = run.folder / "fields" / "frames.csv"
         raise Error(f"{path}: no frame of the loading stage; fracture cannot be drawn")
     yield _fractured("fracture", fracture(run, marks), magnification)
-    if run.mesh.blocks.dimension == 3:
-        yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
+    yield from _inside(run)
 
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from . import style
 from .crack_styles import can_crack, crack_legend, cracked, cracks_of, material_legend
 from .cut import Plane, Polygons, joined, outline, section, surface, traces, without_corner
+from .errors import Error
 from .mesh import BlockMesh, Mesh, specimen_box
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ _TENTHS = 10
 _IN_PLANE = {"x": (2, 1), "y": (0, 2), "z": (0, 1)}
 """By the axis across a plane: the axes to the right and upwards in its picture."""
 _NEAR = 3e-7  # of the size of a body: a point so near to a side lies on it
+_EDGE = 1e-3  # of the size of a body: a cut so narrow is an edge
+_WITHIN = 1e-6
+"""Of the size of a body: planes stand so far within its ends, where they cut its blocks and not those of a bearing."""
 
 
 @dataclass(frozen=True)
@@ -223,11 +227,12 @@ class CrackFaces:
 
 
 def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
-    """Contact points of a solid whose damage is above `least`."""
+    """Contact points of a solid whose damage is above `least`: none where no law of its contacts has a damage."""
     contacts = run.mesh.contacts
-    damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
+    modes = list(run.crack_modes) or ["tension"]
+    values = np.array([run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes]
+                      or [np.zeros(len(contacts.cells))])
     interfaces = {name for names in run.crack_modes.values() for name in names}
-    modes, values = list(damages), np.array(list(damages.values()))
     largest = values.max(axis=0)
     which = can_crack(run, interfaces) & (largest > least)
     cells = contacts.points[contacts.cells[which]]
@@ -340,17 +345,23 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     """A plane through a solid at a frame: blocks by material, and the cracks of each mode that it meets.
 
     axis: "x", "y" or "z", across which the plane stands. at: its place, as a share of the specimen's size along the
-    axis before it moved. magnification: of displacements.
+    axis before it moved, 0 and 1 for its ends. magnification: of displacements. The picture is as large as the specimen
+    is along the other axes. Raises Error for another axis or share.
     """
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
-    plane = axis_plane(blocks, axis, at)
+    if axis not in _IN_PLANE:
+        raise Error(f"axis is {axis!r}; it must be one of {', '.join(_IN_PLANE)}")
+    if not 0.0 <= at <= 1.0:
+        raise Error(f"at is {at:g}; a plane stands at a share between 0 and 1 of the specimen's size along {axis}")
+    named, plane = (axis_plane(blocks, axis, share) for share in (at, min(max(at, _WITHIN), 1.0 - _WITHIN)))
     # the plane goes with the body: only displacements along it move what it shows
     points = blocks.points + magnification * plane.along(run.gridpoint_displacement(frame))
     across, up = _IN_PLANE[axis]
     cut = section(blocks, plane, points)
     fills = _fills(blocks)[blocks.material[cut.owner]]
     shown = cut.corners[..., [across, up]]
-    low, high = shown.reshape(-1, 2).min(axis=0), shown.reshape(-1, 2).max(axis=0)
+    extent = np.concatenate([shown.reshape(-1, 2), np.array(specimen_box(blocks))[:, [across, up]]])
+    low, high = extent.min(axis=0), extent.max(axis=0)
     figure = style.new_figure(1.6 + 4.0 * min((high - low)[1] / (high - low)[0], 2.2), width=5.0)
     axes, below = figure.subplots(2, 1, gridspec_kw={"height_ratios": [1.0, 0.16]})
     axes.add_collection(PolyCollection(style.MILLI * shown, facecolors=fills, edgecolors=fills, linewidths=0.15,
@@ -361,6 +372,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
         axes.add_collection(LineCollection(style.MILLI * lines[..., [across, up]], colors=crack.colour,
                                            linewidths=crack.width, capstyle="round", rasterized=True))
     handles = crack_legend(run) + material_legend(blocks, cut.owner, "platen" if run.has_platens else "bearing")
+    axes.update_datalim(style.MILLI * np.array([low, high]))
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.grid(False)
@@ -369,8 +381,10 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center",
                        ncol=1 if style.page().is_column else 2)
     at_strain = f", strain {style.PER_MILLE * frame.strain:.2f}×10⁻³" if np.isfinite(frame.strain) else ""
-    told = (f"{axis} = {style.MILLI * plane.offset:.4g} mm, frame {frame.number}{at_strain}, "
+    told = (f"{axis} = {style.MILLI * named.offset:.4g} mm, frame {frame.number}{at_strain}, "
             f"displacements ×{magnification:g}")
+    if np.ptp(shown.reshape(-1, 2), axis=0).min() < _EDGE * (high - low).min():
+        told += ", where the body ends in an edge"
     axes.set_title("\n".join([style.title_of(run), *style.lines_of(told, style.page().letters)]),
                    fontsize=style.page().size(8.0))
     return figure
