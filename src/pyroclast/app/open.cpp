@@ -68,8 +68,10 @@ std::string describe_specimen(const solid::SolidSpecimen& s) {
         "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "
         "without a block\n",
         kMilli * c.from, kMilli * c.to, c.asked, c.placed, c.stones, c.superposed, c.without_a_block);
-  text += fmt::format("blocks          mean size {:.3f} mm, {:.1f} zones, faces of up to {} corners\n",
-                      kMilli * m.mean_size, m.zones_per_block, m.most_corners);
+  text += fmt::format("blocks          mean size {:.3f} mm, {:.1f} zones", kMilli * m.mean_size,
+                      m.zones_per_block);
+  if (m.most_corners > 0) text += fmt::format(", faces of up to {} corners", m.most_corners);
+  text += "\n";
   text += describe_sizes(s.size);
   text += fmt::format(
       "                shortest edge {:.3g} mm, lowest zone {:.3g} mm, of block {}; {} seeds redrawn\n",

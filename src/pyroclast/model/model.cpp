@@ -1,6 +1,7 @@
 #include "pyroclast/model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -82,10 +83,30 @@ ChunkList Model::chunks_of(const std::vector<int>& of_block) const {
   return chunks().of(std::move(begins));
 }
 
+namespace {
+
+/// Returns the number of blocks of a solid whose faces surely have fewer corners than contacts can join.
+/// Along a rim the corners of a face are as many as sides of the rim that it meets, and go with the size of a
+/// block. \param corners  most corners of a face with `blocks` blocks
+int blocks_for(std::size_t corners, int blocks) {
+  constexpr double kUsual = 11.0;  // most corners of faces within a body
+  return static_cast<int>(std::ceil(blocks * std::pow(static_cast<double>(corners) / kUsual, 3)));
+}
+
+}  // namespace
+
 template <int Dim>
 void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface,
                               double block_size) {
   const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 15;
+  if (Dim == 3 && a.size() == b.size() && a.size() > most) {
+    int blocks = 0;
+    for (int block = 0; block < block_count(); ++block) blocks += is_of_bearing(block) ? 0 : 1;
+    throw Error(fmt::format(
+        "a face of a block has {} corners, but contacts can join {} at most: {} blocks are too few for "
+        "the outline, take {} or more",
+        a.size(), most, blocks, blocks_for(a.size(), blocks)));
+  }
   if (a.size() != b.size() || a.size() < fewest || a.size() > most)
     throw Error(fmt::format("faces with {} and {} corners cannot be joined: both must have {}", a.size(),
                             b.size(), Dim == 2 ? "2" : "the same number, from 3 to 15"));
