@@ -20,7 +20,7 @@ constexpr double kOnOutline = 1e-9;
 std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen) {
   std::vector<ProbePosition> probes;
   // A specimen that stands in for an error refuses no probe.
-  const bool known = root.section("specimen").ok();
+  const bool known = root.section("specimen").ok() && root.section_or_none("blocks").ok();
   const auto within = [&](int axis) {
     return known ? Range::between(specimen.low()[axis], specimen.high()[axis]) : Range::any();
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -45,6 +46,26 @@ void check_matrix(const Section& s, std::string_view key, const std::vector<std:
                              fmt::join(phases, ", "), p.matrix));
 }
 
+/// Gives a specimen whose file was not read the phases that [materials] has, each with stones: default phases
+/// in their place would be second errors.
+void let_materials_stand_in(const Section& root, std::span<const ReadBearing> bearings, AskedSpecimen& p) {
+  specimen::Cells& cells = p.cells.emplace();
+  const Section materials = root.section("materials");
+  for (const std::string& name : materials.keys())
+    if (materials.is_table(name) && name != "platen" &&
+        std::ranges::none_of(bearings, [&](const ReadBearing& b) { return b.bearing.material == name; }))
+      cells.phases.push_back(name);
+  cells.phase.resize(cells.phases.size());
+  std::iota(cells.phase.begin(), cells.phase.end(), 0);
+  cells.grain = cells.phase;
+  if (cells.phases.size() == 1) p.matrix = cells.phases.front();
+}
+
+/// Tells whether known stones could not be read.
+bool lacks_stones(const Section& s) {
+  return (s.has("stones") || s.has("outlines")) && !s.ok();
+}
+
 /// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
 /// effect.
 void read_beside_cells(const Section& root, const Section& s, const DeckSpace& space,
@@ -55,18 +76,20 @@ void read_beside_cells(const Section& root, const Section& s, const DeckSpace& s
   else
     p.region = make_region(s, outline, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
-  if (outline.polyhedra && s.ok()) {
+  if (outline.polyhedra) {
     p.blocks.count = static_cast<int>(outline.polyhedra->complex.cells.size());
     p.blocks.phases = outline.polyhedra->phases;
     check_outline(s, outline, p);
     check_matrix(s, "file", p.blocks.phases, has_matrix, p);
     p.polyhedra = std::move(outline.polyhedra);
+  } else if (outline.cells) {
+    p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
+    check_outline(s, outline, p);
+    check_matrix(s, "file", outline.cells->phases, has_matrix, p);
+    p.cells = std::move(outline.cells);
+  } else if (!s.ok()) {
+    let_materials_stand_in(root, bearings, p);
   }
-  if (!outline.cells || !s.ok()) return;
-  p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
-  check_outline(s, outline, p);
-  check_matrix(s, "file", outline.cells->phases, has_matrix, p);
-  p.cells = std::move(outline.cells);
 }
 
 /// Records an error where a phase has the name of a bearing's material.
@@ -133,18 +156,24 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   set_fraction(p.extent(), p.aggregates);
   for (specimen::Inclusions& kind : p.inclusions)
     if (auto* circles = std::get_if<specimen::AggregateParameters>(&kind)) set_fraction(p.extent(), *circles);
-  if (s.ok()) check_bearings(p, bearings);
+  if (s.ok() && blocks.ok()) check_bearings(p, bearings);
   if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
   if (!aggregates && p.inclusions.empty()) {
     const bool has_matrix = read_matrix_alone(root, p);
     if (!p.blocks.phases.empty()) check_matrix(blocks, "groups", p.blocks.phases, has_matrix, p);
     p.aggregates.phase = p.matrix;
+    if (p.blocks.phases.empty() && (blocks.has("file") || outline.shape == Shape::tessellation) &&
+        !(s.ok() && blocks.ok()))
+      let_materials_stand_in(root, bearings, p);
     check_phases(s, p, bearings);
     return p;
   }
   const Section superposition = root.section("superposition", kSuperposition);
   if (!aggregates) p.aggregates.phase = first_phase(p.inclusions.front());
   p.matrix = superposition.text("matrix", p.matrix, kMatrix);
+  if ((aggregates && lacks_stones(*aggregates)) ||
+      std::ranges::any_of(root.optional_sections("inclusions"), lacks_stones))
+    let_materials_stand_in(root, bearings, p);
   check_phases(superposition, p, bearings);
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule",

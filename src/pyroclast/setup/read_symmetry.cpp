@@ -61,12 +61,14 @@ bool ends_there(const AskedSpecimen& specimen, int side, const PlaneOfSymmetry& 
 std::vector<PlaneOfSymmetry> read_symmetry(const Section& root, const AskedSpecimen& specimen,
                                            const std::vector<Bearing>& bearings) {
   const Section s = root.section("specimen");
+  const bool is_known = s.ok() && root.section_or_none("blocks").ok();  // else another outline stands in
   const auto sides = specimen.sides();
   std::vector<PlaneOfSymmetry> planes;
   for (const std::string& name : s.optional_texts(
            "symmetry",
            "sides in planes of symmetry, such as [\"left\"]: they are held along their normals, and "
            "the specimen is a half or a quarter; see [Symmetry](../do/bodies.md#symmetry)")) {
+    if (!is_known) return {};
     const auto found = std::ranges::find(sides, name);
     if (found == sides.end()) {
       s.error("symmetry", fmt::format("must name sides, {}; got \"{}\"", fmt::join(sides, ", "), name));
