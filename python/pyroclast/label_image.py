@@ -25,7 +25,8 @@ def pixels_of(image: ArrayLike | str | Path) -> tuple[NDArray[Any], str]:
         pixels = np.asanyarray(image)
     if pixels.ndim != 2 or not pixels.size:
         raise Error(f"{source}an image must be (rows, columns) of labels, not {pixels.shape}"
-                    + ("; the last may be its colours" if pixels.ndim == 3 and pixels.shape[2] in (3, 4) else ""))
+                    + ("" if pixels.ndim != 3 else "; the last may be its colours" if pixels.shape[2] in (3, 4) else
+                       "; blocks are made of a slice, not of a body in space"))
     masked = np.broadcast_to(getattr(pixels, "mask", False), pixels.shape)
     for hidden, word, remedy in ((masked, "masked", "image.filled(label)"),
                                  (np.isnan(pixels) & ~masked if pixels.dtype.kind == "f" else None, "NaN",

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     import meshio
 
 KINDS = {"triangle": 3, "quad": 4, "polygon": 0}  #: how many of the points are corners; 0: all
+IN_SPACE = ('blocks in space come by [specimen] shape = "polyhedra" and file, which is JSON with their faces (see '
+            "docs/do/bodies.md, Blocks made elsewhere)")
 _LESS_THAN_CELLS = ("vertex", "line")
+_OF_SPACE = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "penta_prism", "hexa_prism")
 _PHYSICAL, _PLANE = "gmsh:physical", 2  # gmsh's cell data; the dimension of its groups of cells
 
 
@@ -25,7 +28,8 @@ def corners_of_type(cell_type: str) -> int | None:
     if name in _LESS_THAN_CELLS:
         return None
     if name not in KINDS:
-        raise Error(f"the mesh has cells of type {cell_type!r}; blocks can be {', '.join(KINDS)}")
+        raise Error(f"the mesh has cells of type {cell_type!r}; blocks can be {', '.join(KINDS)}"
+                    + (f". A specimen of a mesh is of the plane; {IN_SPACE}" if name in _OF_SPACE else ""))
     return KINDS[name]
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Label = Union[int, str]
 _Core = TypeVar("_Core", _core.Specimen, _core.SolidSpecimen)
 
-_FLAT = 1e-9  # of the size of a mesh
+_FLAT = 1e-6  # of the size of a mesh: coordinates in single precision are off by up to 6e-8 of it
 _USUAL = (0.01, 10.0)  # width and height of a body, m, as for a deck
 
 
@@ -126,10 +126,6 @@ class Specimen(_Blocks[_core.Specimen]):
         not there, for a cell in no set or in two, and as `from_arrays`.
         """
         points = np.asarray(mesh.points, float)
-        size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
-        if points.ndim == 2 and points.shape[1] == 3 and len(points) and np.ptp(points[:, 2]) > _FLAT * size:
-            raise Error(f"the mesh does not lie in a plane z = const.: z goes from {points[:, 2].min():g} to "
-                        f"{points[:, 2].max():g}; turn it into one")
         taken: list[int] = []
         cells: list[NDArray[Any]] = []
         for number, block in enumerate(mesh.cells):
@@ -137,6 +133,11 @@ class Specimen(_Blocks[_core.Specimen]):
                 continue
             taken.append(number)
             cells += [np.asarray(cell)[:corners or None] for cell in block.data]
+        size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+        if points.ndim == 2 and points.shape[1] == 3 and len(points) and np.ptp(points[:, 2]) > _FLAT * size:
+            raise Error(f"the mesh does not lie in a plane z = const., to {_FLAT:g} of its size: z goes from "
+                        f"{points[:, 2].min():g} to {points[:, 2].max():g}; turn it into one. A specimen of a mesh is "
+                        f"of the plane; {mesh_cells.IN_SPACE}")
         labels, names = mesh_cells.labels_of(mesh, data, phases, taken)
         if not cells:
             raise Error(f"the mesh has no cells that can be blocks: {', '.join(mesh_cells.KINDS)}")
@@ -280,9 +281,15 @@ class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
         self._core = core
 
     @classmethod
-    def read(cls, file: str | Path) -> SolidSpecimen:
-        """From a file as `save` writes it; it has no `balls`. Raises Error, which names the file."""
-        return cls(_core.SolidSpecimen.read(str(file)))
+    def read(cls, file: str | Path, join: str | Quantity | None = None) -> SolidSpecimen:
+        """From a file as `save` writes it; it has no `balls`.
+
+        join: vertices nearer to each other than this length become one, and faces that then have the same corners one
+            face between two blocks ("1 um"); None: blocks share the vertices and faces that the file says.
+
+        Raises Error, which names the file.
+        """
+        return cls(_core.SolidSpecimen.read(str(file), _join(join)))
 
     def save(self, file: str | Path) -> None:
         """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "polyhedra"` and `file`."""
@@ -361,7 +368,8 @@ def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
     metres = _length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
     at = np.asarray(vertices, float)
     if at.ndim != 2 or at.shape[1] != 2:
-        raise Error(f"vertices must be (n, 2), not {at.shape}")
+        raise Error(f"vertices must be (n, 2), not {at.shape}"
+                    + (f"; {mesh_cells.IN_SPACE}" if at.ndim == 2 and at.shape[1] == 3 else ""))
     sizes = np.asarray(block_size, float).ravel()
     if metres != 1.0:
         at, sizes = (x * metres if metres > 1.0 else x / (1.0 / metres) for x in (at, sizes))  # nearest double of mm

@@ -357,7 +357,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Fault{"start", "***tess\n", "***tesr\n", "line 1: expected '\\*\\*\\*tess', found '\\*\\*\\*tesr'"},
         Fault{"version", "3.5", "1.9", "line 3: expected a format version 2.x or 3.x, found '1.9'"},
-        Fault{"dimension", "2 standard", "3 standard", "line 5: expected the dimension 2"},
+        Fault{"dimension", "2 standard", "1 standard", "line 5: expected the dimension 2"},
+        Fault{"space", "2 standard", "3 standard",
+              "line 5: the tessellation is of space.*\"polyhedra\" and file"},
         Fault{"type", "2 standard", "2 periodic",
               "line 5: the tessellation is periodic: .* Make it without -periodicity"},
         Fault{"other type", "2 standard", "2 raster", "line 5: expected the type 'standard'"},

@@ -109,12 +109,12 @@ void bind_solid_specimens(py::module_& m) {
                                                             "Polyhedral blocks, each with its material.")
       .def_static(
           "read",
-          [](const std::string& file) {
-            solid::Polyhedra polyhedra = solid::read_polyhedra(file);
+          [](const std::string& file, double join) {
+            solid::Polyhedra polyhedra = solid::read_polyhedra(file, join);
             const solid::Prism body = polyhedra.body;
             return solid::specimen_from(std::move(polyhedra), body);
           },
-          py::arg("file"))
+          py::arg("file"), py::arg("join"))
       .def("text", &solid::polyhedra_text, "As a file holds it.")
       .def_property_readonly("vertices",
                              [](const SolidSpecimen& s) { return vectors(s.complex.vertices, 3); })

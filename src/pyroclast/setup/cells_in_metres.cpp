@@ -6,6 +6,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/pieces.hpp"
 #include "pyroclast/units/units.hpp"
 
@@ -27,10 +28,12 @@ specimen::Cells cells_in_metres(const std::filesystem::path& file, double join) 
   }
   cells.origin = file.string();
   try {
-    return specimen::joined(std::move(cells), join);
+    cells = specimen::joined(std::move(cells), join);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.string(), error.what()));
   }
+  specimen::lay_on_sides(cells.tessellation);
+  return cells;
 }
 
 }  // namespace pyroclast

@@ -16,6 +16,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/base/overloaded.hpp"
+#include "pyroclast/specimen/json_lists.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 
 namespace pyroclast {
@@ -27,7 +28,8 @@ constexpr Range kBlockCount = Range::between(4, 100e6);
 
 /// Reads the blocks of a Neper file; returns none after an error, or where the outline takes no such file.
 std::optional<specimen::NeperTess> read_tessellation(const Section& blocks, const std::filesystem::path& file,
-                                                     const ReadOutline& outline) {
+                                                     const ReadOutline& outline, const DeckSpace& space) {
+  if (space.is_solid()) return std::nullopt;
   try {
     if (outline.shape == Shape::rectangle && outline.width > 0.0 && outline.height > 0.0)
       return specimen::read_neper_tess(file, outline.width, outline.height);
@@ -272,7 +274,10 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
   specimen::BlockParameters& b = read.parameters;
   read_regularity(s, space, b);
   if (s.has("file") && space.is_solid())
-    s.error("file", "holds cells of a plane; a solid makes its own blocks: count or size says how many");
+    s.error(
+        "file",
+        fmt::format("holds cells of a plane; a solid makes its own blocks: count or size says how many. {}",
+                    specimen::kInSpace));
   if (s.has("file")) {
     const std::filesystem::path file =
         folder /
@@ -284,7 +289,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
         "groups",
         "phases of the groups that the file puts its cells into (`*group`), in the ascending "
         "order of their numbers; then nothing else gives blocks their phases");
-    if (auto tess = read_tessellation(s, file, outline)) {
+    if (auto tess = read_tessellation(s, file, outline, space)) {
       read_groups(s, *tess, names, is_covered, b);
       b.tessellation = std::move(tess->tessellation);
     }

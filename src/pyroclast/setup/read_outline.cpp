@@ -39,19 +39,25 @@ auto read_blocks_file(const Section& s, const std::filesystem::path& folder, Rea
   try {
     return read(folder / name);
   } catch (const Error& error) {
-    s.error("file", error.what());
+    const bool is_tess = std::filesystem::path(name).extension() == ".tess";
+    s.error(
+        "file",
+        fmt::format("{}{}", error.what(),
+                    is_tess ? "; a tessellation of Neper, which is of the plane, is blocks.file, and shape = "
+                              "\"tessellation\" takes its outline"
+                            : ""));
     return std::nullopt;
   }
 }
 
-/// Reads all of a specimen of the plane from a file; returns none after an error.
-std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
-  const double join = s.quantity(
+/// Reads the distance within which the cells of a file are joined, m.
+double read_join(const Section& s) {
+  return s.quantity(
       "join", unit::length, Range::non_negative(), 0.0,
-      "vertices of the file nearer to each other than this become one, and those nearer to an edge of "
-      "a cell a corner of it; 0: cells share the vertices that the file says");
-  return read_blocks_file(s, folder,
-                          [join](const std::filesystem::path& file) { return cells_in_metres(file, join); });
+      "vertices of the file nearer to each other than this become one; in the plane those nearer to an edge "
+      "of "
+      "a cell become a corner of it, and in space faces with the same corners become one. 0: cells share the "
+      "vertices, and faces, that the file says");
 }
 
 /// Reads the unit of a file's coordinates, m; returns 0 after an error.
@@ -91,12 +97,14 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
     }
     s.know({"holes", "notches"});
   } else if (o.shape == Shape::cells) {
-    o.cells = read_cells(s, folder);
+    const double join = read_join(s);
+    o.cells = read_blocks_file(
+        s, folder, [join](const std::filesystem::path& file) { return cells_in_metres(file, join); });
     s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::polyhedra) {
+    const double join = read_join(s);
     o.polyhedra = read_blocks_file(
-        s, folder, [](const std::filesystem::path& file) { return solid::read_polyhedra(file); });
-    if (s.has("join")) s.error("join", "has no meaning here: faces share the vertices that the file says");
+        s, folder, [join](const std::filesystem::path& file) { return solid::read_polyhedra(file, join); });
     s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::cylinder) {
     o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");

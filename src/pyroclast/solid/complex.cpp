@@ -132,8 +132,9 @@ void require_valid(const Complex& complex, const Prism& body, const std::string&
     filled += its;
   }
   if (!(std::abs(filled - body.volume()) <= kVolumeError * body.volume()))
-    throw Error(fmt::format("{}: its cells fill {:.12g} m3, but the body has {:.12g} m3", what, filled,
-                            body.volume()));
+    throw Error(fmt::format(
+        "{}: its cells fill {:.12g} m3, but the body has {:.12g} m3; both may differ by {:g} of it", what,
+        filled, body.volume(), kVolumeError));
 }
 
 }  // namespace pyroclast::solid

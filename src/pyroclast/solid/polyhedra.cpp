@@ -5,14 +5,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/solid/pieces.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/json_lists.hpp"
+#include "pyroclast/specimen/polygon.hpp"
 
 namespace pyroclast::solid {
 
@@ -21,9 +24,11 @@ namespace {
 using specimen::Json;
 using specimen::list_in;
 
-/// Largest distance of a corner from the side on which its face lies, over the size of a block: vertices that
-/// are closer than 1e-7 of it became one.
-constexpr double kOnSide = 1e-6;
+/// Distance that computing alone may leave between a vertex and its side, as a share of the body's size:
+/// vertices stay where they are no farther from it.
+constexpr double kExact = 1e-12;
+/// Sine of the angle between two planes of the body below which a vertex on both has no place of its own.
+constexpr double kParallel = 1e-4;
 
 /// Name of the list of the sizes that cells were to have.
 constexpr const char* kBlockSize = "block_size_m";
@@ -36,7 +41,29 @@ Vec<Count> place_in_list(const Json& item) {
   return {stated};
 }
 
-Prism body_in(const Json& json) {
+/// Farthest way onto the line or point where planes meet, over the largest distance from one of them.
+constexpr double kFarthest = 10.0;
+
+/// Returns the size of a block in a body, m.
+double block_size(double volume, const Complex& complex) {
+  return std::cbrt(volume / static_cast<double>(complex.cells.size()));
+}
+
+/// Lays corners of a section that jut into the body by no more than `slack` (m) onto the line between their
+/// neighbours.
+void straighten(std::vector<Vec<2>>& section, double slack) {
+  const double sense = specimen::area(section) < 0.0 ? -1.0 : 1.0;
+  const std::size_t n = section.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec<2>&from = section[(i + n - 1) % n], &to = section[(i + 1) % n];
+    const Vec<2> along = to - from, off = section[i] - from;
+    const double in = sense * cross(along, off) / norm(along);
+    if (in > kExact * norm(along) && in <= slack)
+      section[i] = from + (dot(off, along) / dot(along, along)) * along;
+  }
+}
+
+Prism body_in(const Json& json, const Complex& complex) {
   const auto found = json.find("body");
   if (found == json.end() || !found->is_object()) throw Error("there is no table \"body\"");
   const auto sides = list_in(*found, "sides", "a name", specimen::text_in);
@@ -50,6 +77,9 @@ Prism body_in(const Json& json) {
     if (std::find(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(i), sides[i]) !=
         sides.begin() + static_cast<std::ptrdiff_t>(i))
       throw Error(fmt::format("body: two sides are called \"{}\"", sides[i]));
+  if (corners.size() >= 3)
+    straighten(corners, specimen::kOffSide *
+                            block_size(std::abs(specimen::area(corners)) * length.get<double>(), complex));
   auto section = specimen::Region::polygon(std::move(corners), sides, sides.size() == 1);
   return {std::move(section), axis == "y" ? Prism::Axis::y : Prism::Axis::z, length.get<double>()};
 }
@@ -120,7 +150,8 @@ std::vector<bool> outward_faces(const Complex& complex, std::size_t cell) {
 }
 
 /// Finds the cells on both sides of each face, and turns the faces of the surface outwards.
-void find_neighbours(Complex& complex) {
+/// \param number  number of each face in the file
+void find_neighbours(Complex& complex, const std::vector<int>& number) {
   std::vector<std::vector<std::pair<int, bool>>> cells_of(complex.faces.size());
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     const auto is_outward = outward_faces(complex, cell);
@@ -131,7 +162,8 @@ void find_neighbours(Complex& complex) {
     CellFace& face = complex.faces[f];
     const auto& cells = cells_of[f];
     if (cells.empty() || cells.size() > 2)
-      throw Error(fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", f, cells.size()));
+      throw Error(
+          fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", number[f], cells.size()));
     const auto [first, is_of_first] = cells[0];
     if (cells.size() == 1) {
       face.inner = first;
@@ -143,24 +175,69 @@ void find_neighbours(Complex& complex) {
   }
 }
 
+/// Finds the plane of the body nearest to all corners of a face. Returns it, and the corner farthest from it.
+std::pair<const Plane*, int> plane_of(const CellFace& face, const Complex& complex, const Prism& body) {
+  std::pair<const Plane*, int> found{};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Plane& plane : body.planes()) {
+    const auto off = [&](int v) { return std::abs(plane.distance(complex.vertices[v])); };
+    const int farthest = *std::ranges::max_element(face.corners, {}, off);
+    if (off(farthest) >= nearest) continue;
+    nearest = off(farthest);
+    found = {&plane, farthest};
+  }
+  return found;
+}
+
 /// Finds the side of the body on which each face of the surface lies.
 void find_sides(Complex& complex, const Prism& body) {
-  const double block = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
+  for (CellFace& face : complex.faces)
+    if (face.outer < 0) face.side = plane_of(face, complex, body).first->side;
+}
+
+/// Returns a place laid onto some planes, in turn.
+/// \param slack  farthest way onto a plane, m: where planes hardly differ, their common line may be far away
+Vec<3> laid_on(const std::vector<const Plane*>& planes, Vec<3> place, double slack) {
+  std::vector<Vec<3>> taken;  // directions in which it may not move any more
+  for (const Plane* plane : planes) {
+    Vec<3> way = plane->normal;
+    for (const Vec<3>& direction : taken) way = way - dot(way, direction) * direction;
+    const double length = norm(way), far = plane->distance(place) / length;
+    if (length < kParallel || std::abs(far) > slack) continue;
+    way *= 1.0 / length;
+    place = place - far * way;
+    taken.push_back(way);
+    for (int d = 0; d < 3; ++d)  // exactly, where the plane is across an axis
+      if (std::ranges::count(plane->normal.c, 0.0) == 2 && plane->normal[d] != 0.0)
+        place[d] = plane->offset * plane->normal[d];
+  }
+  return place;
+}
+
+/// Lays vertices that are off by rounding onto the sides of their faces. Throws Error where a face of the
+/// surface lies on no side.
+/// \param number  number of each face in the file
+void lay_on_sides(Complex& complex, const Prism& body, const std::vector<int>& number) {
+  const double slack = specimen::kOffSide * block_size(body.volume(), complex),
+               exact = kExact * norm(body.high() - body.low());
+  std::vector<std::vector<const Plane*>> planes(complex.vertices.size());
   for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-    CellFace& face = complex.faces[f];
+    const CellFace& face = complex.faces[f];
     if (face.outer >= 0) continue;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Plane& plane : body.planes()) {
-      double farthest = 0.0;
-      for (const int v : face.corners)
-        farthest = std::max(farthest, std::abs(plane.distance(complex.vertices[v])));
-      if (farthest >= nearest) continue;
-      nearest = farthest;
-      face.side = plane.side;
-    }
-    if (nearest > kOnSide * block)
-      throw Error(
-          fmt::format("face {} (from 0), of cell {} alone, lies on no side of the body", f, face.inner));
+    const auto [plane, farthest] = plane_of(face, complex, body);
+    const Vec<3>& at = complex.vertices[farthest];
+    if (const double off = std::abs(plane->distance(at)); off > slack)
+      throw Error(fmt::format(
+          "face {} (from 0), of cell {} alone, lies on no side of the body: its corner ({:.6g}, "
+          "{:.6g}, {:.6g}) m is {:.3g} m off \"{}\", the nearest; {:.3g} m is allowed, {:g} of a block",
+          number[f], face.inner, at[0], at[1], at[2], off, body.sides()[plane->side], slack,
+          specimen::kOffSide));
+    for (const int v : face.corners)
+      if (std::ranges::find(planes[v], plane) == planes[v].end()) planes[v].push_back(plane);
+  }
+  for (std::size_t v = 0; v < planes.size(); ++v) {
+    const Vec<3> laid = laid_on(planes[v], complex.vertices[v], kFarthest * slack);
+    if (norm(laid - complex.vertices[v]) > exact) complex.vertices[v] = laid;
   }
 }
 
@@ -196,16 +273,20 @@ std::string polyhedra_text(const SolidSpecimen& specimen) {
   return json.dump() + "\n";
 }
 
-Polyhedra read_polyhedra(const std::filesystem::path& file) {
-  return polyhedra_from(read_file(file), file.string());
+Polyhedra read_polyhedra(const std::filesystem::path& file, double join) {
+  return polyhedra_from(read_file(file), file.string(), join);
 }
 
-Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
+Polyhedra polyhedra_from(const std::string& text, const std::string& name, double join) {
   Polyhedra read;
   read.origin = name;
-  specimen::read_table(text, name, [&read](const Json& json) {
+  specimen::read_table(text, name, [&read, join](const Json& json) {
+    if (!json.contains("faces") && !json.contains("body") && json.contains("cells"))
+      throw Error(
+          "holds cells of the plane, without \"faces\" and \"body\", and is read as blocks in space. Cells "
+          "of "
+          "the plane come by [specimen] shape = \"cells\"");
     read.phases = list_in(json, "phases", "a name", specimen::text_in);
-    read.body = body_in(json);
     Complex& complex = read.complex;
     complex.vertices = list_in(json, "vertices_m", "a place, [x, y, z] in m", place_in_list<3>);
     const auto corners =
@@ -220,7 +301,17 @@ Polyhedra polyhedra_from(const std::string& text, const std::string& name) {
     require_numbers(corners, "face", 3, {"vertex", "vertices"}, complex.vertices.size());
     require_numbers(complex.cells, "cell", 4, {"face", "faces"}, corners.size());
     for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
-    find_neighbours(complex);
+    read.body = body_in(json, complex);
+    std::vector<int> number(complex.faces.size());
+    std::iota(number.begin(), number.end(), 0);
+    if (join > 0.0) number = solid::join(complex, join);
+    find_neighbours(complex, number);
+    try {
+      if (const std::string pieces = describe_pieces(complex); !pieces.empty()) throw Error(pieces);
+      lay_on_sides(complex, read.body, number);
+    } catch (const Error& error) {
+      throw Error(error.what() + describe_joinable(complex));
+    }
   });
   return read;
 }
@@ -230,11 +321,7 @@ SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body) {
   SolidSpecimen specimen;
   specimen.body = body;
   specimen.complex = std::move(polyhedra.complex);
-  try {
-    find_sides(specimen.complex, body);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", what, error.what()));
-  }
+  find_sides(specimen.complex, body);
   require_valid(specimen.complex, body, what);
   specimen.phases = std::move(polyhedra.phases);
   specimen.phase = std::move(polyhedra.phase);

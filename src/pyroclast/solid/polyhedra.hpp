@@ -12,7 +12,7 @@ namespace pyroclast::solid {
 /// Blocks in space that were made before.
 struct Polyhedra {
   Prism body;
-  Complex complex;  ///< its faces are on no side yet
+  Complex complex;
   std::vector<std::string> phases;
   std::vector<int> phase;  ///< phase of each cell, index into `phases`
   /// Size that each cell was to have, m, as SolidSpecimen has it; empty where blocks are alike.
@@ -31,13 +31,16 @@ struct Polyhedra {
 std::string polyhedra_text(const SolidSpecimen& specimen);
 
 /// Reads a file of blocks in space, and turns each face counter-clockwise seen from outside of the first of
-/// its cells. Throws Error, with the file, for a text of another form, and for lists that do not fit.
-Polyhedra read_polyhedra(const std::filesystem::path& file);
+/// its cells. Vertices of faces on a side of the body are laid onto it where they are off by no more than
+/// `specimen::kOffSide`, as the file rounds them. Throws Error, with the file, for a text of another form,
+/// for lists that do not fit, for cells in several pieces, and for a face on the surface that lies on none of
+/// the sides; the message then says whether vertices could be joined (`describe_joinable`). \param join
+/// distance below which vertices are joined, m (`solid::join`); 0: none
+Polyhedra read_polyhedra(const std::filesystem::path& file, double join = 0.0);
 /// Reads blocks from a text; `name` takes the file's place in messages.
-Polyhedra polyhedra_from(const std::string& text, const std::string& name);
+Polyhedra polyhedra_from(const std::string& text, const std::string& name, double join = 0.0);
 
-/// Makes a specimen of blocks that were made before. Throws Error when they do not fill the body, or a face
-/// on the surface lies on none of its sides.
+/// Makes a specimen of blocks that were made before. Throws Error when they do not fill the body.
 /// \param body  body of the blocks, perhaps with patches
 SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body);
 

@@ -63,6 +63,9 @@ CellsFile read_cells(const std::filesystem::path& file) {
 CellsFile cells_from(const std::string& text, const std::string& name) {
   CellsFile file;
   read_table(text, name, [&file](const Json& json) {
+    if (json.contains("faces") || json.contains("body"))
+      throw Error(fmt::format("holds blocks of space, with \"{}\", and is read as cells of the plane. {}",
+                              json.contains("faces") ? "faces" : "body", kInSpace));
     const std::string key = vertices_key(json);
     file.unit = key.substr(kVertices.size());
     Cells cells;

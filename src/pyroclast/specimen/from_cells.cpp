@@ -1,6 +1,7 @@
 #include "pyroclast/specimen/from_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -16,10 +17,9 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Largest turn between two sides that count as one, radians.
-constexpr double kStraight = 1e-6;
-/// Largest difference between two coordinates that count as equal, as a share of the body's size.
-constexpr double kSameLevel = 1e-9;
+/// Distance that twelve decimals leave between a vertex and its side, as a share of the body's size: vertices
+/// stay where they are no farther from it.
+constexpr double kExact = 1e-12;
 
 /// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
 /// are not one piece, or parts of the outline meet in one point.
@@ -47,30 +47,115 @@ std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const s
   return loops;
 }
 
-/// Returns the corners of a loop: the vertices where it turns.
-std::vector<Vec<2>> corners_of(const std::vector<int>& loop, const std::vector<Vec<2>>& vertices) {
-  std::vector<Vec<2>> corners;
-  const std::size_t n = loop.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec<2>& here = vertices[loop[i]];
-    const Vec<2> before = here - vertices[loop[(i + n - 1) % n]], after = vertices[loop[(i + 1) % n]] - here;
-    if (std::abs(std::atan2(cross(before, after), dot(before, after))) > kStraight) corners.push_back(here);
+/// Returns the largest distance of a vertex from its side, m (`kOffSide`).
+double slack_of(const Tessellation& tessellation) {
+  double whole = 0.0;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    whole += std::abs(area(polygon));
   }
-  return corners;
+  return kOffSide * std::sqrt(whole / static_cast<double>(tessellation.cells.size()));
 }
 
-/// Returns the names of the sides from corner to corner. The first corner is the lowest, of several the
-/// leftmost.
-std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tolerance) {
-  const auto are_level = [&](int i, int j, int component) {
-    return std::abs(corners[i][component] - corners[j][component]) <= tolerance;
+/// Adds the corners between two vertices of a loop: of those farther than `slack` from the line between the
+/// ends, the farthest, and the corners on both of its sides (Douglas and Peucker 1973).
+void add_corners(const std::vector<int>& loop, const std::vector<Vec<2>>& at, std::size_t first,
+                 std::size_t last, double slack, std::vector<std::size_t>& found) {
+  std::vector<std::pair<std::size_t, std::size_t>> stretches{{first, last}};
+  const std::size_t n = loop.size();
+  while (!stretches.empty()) {
+    const auto [from, to] = stretches.back();
+    stretches.pop_back();
+    double farthest = slack;
+    std::size_t corner = from;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const double off = distance_from_segment(at[loop[i % n]], at[loop[from % n]], at[loop[to % n]]);
+      if (off <= farthest) continue;
+      farthest = off;
+      corner = i;
+    }
+    if (corner == from) continue;
+    found.push_back(corner % n);
+    stretches.emplace_back(from, corner);
+    stretches.emplace_back(corner, to);
+  }
+}
+
+/// Returns the corners of a loop, ascending: the places of the vertices where it turns.
+std::vector<std::size_t> corners_of(const std::vector<int>& loop, const std::vector<Vec<2>>& at,
+                                    double slack) {
+  const auto farthest_from = [&](const Vec<2>& point) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 1; i < loop.size(); ++i)
+      if (norm(at[loop[i]] - point) > norm(at[loop[farthest]] - point)) farthest = i;
+    return farthest;
   };
-  if (corners.size() == 4 && are_level(0, 1, 1) && are_level(1, 2, 0) && are_level(2, 3, 1) &&
-      are_level(3, 0, 0))
-    return {"bottom", "right", "top", "left"};
+  // the vertex farthest from any point is a corner, whatever is off by rounding
+  const std::size_t first = farthest_from(at[loop.front()]), second = farthest_from(at[loop[first]]);
+  std::vector<std::size_t> found{first, second};
+  add_corners(loop, at, std::min(first, second), std::max(first, second), slack, found);
+  add_corners(loop, at, std::max(first, second), std::min(first, second) + loop.size(), slack, found);
+  std::ranges::sort(found);
+  // of a stretch along a line between two others, all vertices are as far from it: any of them may be found
+  for (std::size_t i = 0; i < found.size() && found.size() > 3;) {
+    const std::size_t n = found.size(), before = found[(i + n - 1) % n], after = found[(i + 1) % n];
+    if (distance_from_segment(at[loop[found[i]]], at[loop[before]], at[loop[after]]) <= slack)
+      found.erase(found.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
+  }
+  return found;
+}
+
+/// Returns the places of the corners of a loop, m.
+std::vector<Vec<2>> places_of(const std::vector<std::size_t>& corner, const std::vector<int>& loop,
+                              const std::vector<Vec<2>>& at) {
+  std::vector<Vec<2>> places;
+  for (const std::size_t i : corner) places.push_back(at[loop[i]]);
+  return places;
+}
+
+/// Returns the lowest of some corners, of several the leftmost.
+/// \param slack  difference of heights that counts as none, m
+std::size_t lowest_of(const std::vector<Vec<2>>& corners, double slack) {
+  double low = corners.front()[1];
+  for (const Vec<2>& corner : corners) low = std::min(low, corner[1]);
+  std::size_t lowest = corners.size();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (corners[i][1] <= low + slack && (lowest == corners.size() || corners[i][0] < corners[lowest][0]))
+      lowest = i;
+  return lowest;
+}
+
+/// Tells whether four corners, the lowest first, are a rectangle along the axes.
+bool are_upright(const std::vector<Vec<2>>& corners, double slack) {
+  const auto are_level = [&](int i, int j, int component) {
+    return std::abs(corners[i][component] - corners[j][component]) <= slack;
+  };
+  return corners.size() == 4 && are_level(0, 1, 1) && are_level(1, 2, 0) && are_level(2, 3, 1) &&
+         are_level(3, 0, 0);
+}
+
+/// Returns the names of the sides from corner to corner, the lowest first.
+std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double slack) {
+  if (are_upright(corners, slack)) return {"bottom", "right", "top", "left"};
   std::vector<std::string> names;
   for (std::size_t i = 0; i < corners.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
   return names;
+}
+
+/// Moves the corners of a rectangle along the axes to the same height, or place along x, two and two.
+void make_upright(std::vector<Vec<2>>& corners, double slack) {
+  const std::size_t lowest = lowest_of(corners, slack);
+  std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(lowest), corners.end());
+  if (are_upright(corners, slack))
+    for (const auto& [i, j, component] :
+         {std::array{0, 1, 1}, std::array{1, 2, 0}, std::array{2, 3, 1}, std::array{3, 0, 0}}) {
+      const double middle = 0.5 * (corners[i][component] + corners[j][component]);
+      corners[i][component] = corners[j][component] = std::abs(middle) <= slack ? 0.0 : middle;
+    }
+  std::rotate(corners.begin(), corners.end() - static_cast<std::ptrdiff_t>(lowest), corners.end());
 }
 
 void require_cells(const Cells& cells) {
@@ -95,10 +180,12 @@ void require_cells(const Cells& cells) {
 
 Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge>& edges,
                         const Numbering& numbering) {
+  const double slack = slack_of(tessellation);
   std::vector<Vec<2>> outer;
   std::vector<Hole> holes;
   for (const auto& loop : loops_of(tessellation, edges, numbering)) {
-    std::vector<Vec<2>> corners = corners_of(loop, tessellation.vertices);
+    std::vector<Vec<2>> corners =
+        places_of(corners_of(loop, tessellation.vertices, slack), loop, tessellation.vertices);
     if (area(corners) < 0.0)
       holes.push_back({fmt::format("hole_{}", holes.size() + 1), std::move(corners)});
     else if (outer.empty())
@@ -107,12 +194,9 @@ Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge
       throw Error("the cells have more than one outer outline: some lie upon others");
   }
   if (outer.size() < 3 || !(area(outer) > 0.0)) throw Error("the cells enclose no area");
-  const Box box = box_of(outer);
-  const double tolerance = kSameLevel * std::max(box.width(), box.height());
-  const auto lowest = std::ranges::min_element(
-      outer, {}, [&](const Vec<2>& p) { return std::pair(std::round(p[1] / tolerance), p[0]); });
-  std::rotate(outer.begin(), lowest, outer.end());  // Clang 14 cannot do ranges::rotate
-  const std::vector<std::string> names = names_of(outer, tolerance);
+  const auto lowest = static_cast<std::ptrdiff_t>(lowest_of(outer, slack));
+  std::rotate(outer.begin(), outer.begin() + lowest, outer.end());  // Clang 14 cannot do ranges::rotate
+  const std::vector<std::string> names = names_of(outer, slack);
   const Vec<2> origin = outer.front(), opposite = outer[2];
   if (names.front() == "bottom" && origin == Vec<2>{})
     return Region::rectangle(opposite[0], opposite[1]).with_holes(holes);
@@ -120,6 +204,37 @@ Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge
 }
 
 }  // namespace
+
+void lay_on_sides(Tessellation& tessellation) {
+  auto& at = tessellation.vertices;
+  std::vector<std::vector<int>> loops;
+  try {
+    loops = loops_of(tessellation, edges(tessellation), {});
+  } catch (const Error&) {
+    return;
+  }
+  const double slack = slack_of(tessellation);
+  const Box box = box_of(at);
+  const double exact = kExact * std::max(box.width(), box.height());
+  const auto move = [&](int vertex, const Vec<2>& to) {
+    if (norm(at[vertex] - to) > exact) at[vertex] = to;
+  };
+  for (const auto& loop : loops) {
+    const std::vector<std::size_t> corner = corners_of(loop, at, slack);
+    if (corner.size() < 3) continue;
+    std::vector<Vec<2>> places = places_of(corner, loop, at);
+    if (area(places) > 0.0) make_upright(places, slack);
+    for (std::size_t k = 0; k < corner.size(); ++k) {
+      const Vec<2> from = places[k], along = places[(k + 1) % corner.size()] - from;
+      move(loop[corner[k]], from);
+      const std::size_t end = k + 1 < corner.size() ? corner[k + 1] : corner.front() + loop.size();
+      for (std::size_t i = corner[k] + 1; i < end; ++i) {
+        const int v = loop[i % loop.size()];
+        move(v, from + (dot(at[v] - from, along) / dot(along, along)) * along);
+      }
+    }
+  }
+}
 
 Region outline_of(const Tessellation& tessellation, const Numbering& numbering) {
   const std::vector<Edge> all = edges(tessellation, numbering);
@@ -164,6 +279,7 @@ Cells checked(Cells cells) {
 
 Specimen specimen_from(Cells cells) {
   cells = checked(std::move(cells));
+  lay_on_sides(cells.tessellation);
   Region region = outline_of(cells.tessellation);
   return specimen_from(std::move(cells), std::move(region));
 }

@@ -37,7 +37,10 @@ void read_table(const std::string& text, const std::string& name,
     if (!json.is_object()) throw Error("is no table of lists");
     read(json);
   } catch (const Json::parse_error& error) {
-    throw Error(fmt::format("{}: is not JSON, at byte {}", name, error.byte));
+    throw Error(fmt::format(
+        "{}: is not JSON, at byte {}: blocks made elsewhere come as JSON, to which the Python package turns "
+        "arrays, meshes and images of the plane",
+        name, error.byte));
   } catch (const Json::out_of_range& error) {  // the text is "[...] number overflow parsing '1e999'"
     const std::string_view what = error.what();
     throw Error(fmt::format("{}: {}", name, what.substr(what.find(']') + 2)));

@@ -30,6 +30,11 @@ auto list_in(const Json& table, const std::string& key, const std::string& neede
   return items;
 }
 
+/// Says, for messages, how blocks in space come.
+inline constexpr const char* kInSpace =
+    "Blocks in space come by [specimen] shape = \"polyhedra\" and file, which is JSON with their faces (see "
+    "docs/do/bodies.md, Blocks made elsewhere)";
+
 /// List of the stones of blocks, and words for an item.
 inline constexpr const char* kStone = "stone";
 inline constexpr const char* kStoneItem = "the number of a stone, from 0, or -1 for none";

@@ -19,6 +19,7 @@
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/specimen/convex_parts.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/json_lists.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/topology.hpp"
@@ -150,6 +151,9 @@ void read_format(Words& words) {
 
 void read_general(Words& words) {
   const int dimension = words.integer("the dimension");
+  if (dimension == 3)
+    words.fail(
+        fmt::format("the tessellation is of space, and the blocks here are of the plane. {}.", kInSpace));
   if (dimension != 2) words.fail(std::to_string(dimension), "the dimension 2 (made by neper -T -dim 2)");
   const std::string_view type = words.next();
   if (type == "periodic")
@@ -474,7 +478,8 @@ NeperTess read_neper_tess(std::istream& stream, const std::string& name, const T
     throw Error(fmt::format("{}: the domain is {:.8g} x {:.8g}.", name, in_file[0], in_file[1]));
   Read result =
       cells_of(file, plane, domain, (size.unit > 0.0 ? size.unit : size.width / in_file[0]) * in_file);
-  const Tessellation& cells = result.tess.tessellation;
+  Tessellation& cells = result.tess.tessellation;
+  lay_on_sides(cells);
   try {
     require_valid(cells, outline_of(cells, result.numbering), name, result.numbering);
   } catch (const Error& error) {

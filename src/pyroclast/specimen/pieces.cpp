@@ -1,6 +1,7 @@
 #include "pyroclast/specimen/pieces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -17,26 +18,6 @@
 
 namespace pyroclast::specimen {
 namespace {
-
-/// Distance below which vertices coincide in messages, as a share of the body's size.
-constexpr double kCoincide = 1e-6;
-
-/// Returns for each vertex the first one that lies nearer than a distance, or the vertex itself.
-std::vector<int> firsts(std::span<const Vec<2>> vertices, double distance) {
-  std::map<std::pair<double, double>, std::vector<int>> kept;  // by squares as wide as the distance
-  std::vector<int> first(vertices.size());
-  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
-    const double column = std::floor(vertices[v][0] / distance), row = std::floor(vertices[v][1] / distance);
-    first[v] = v;
-    for (const double x : {-1.0, 0.0, 1.0})
-      for (const double y : {-1.0, 0.0, 1.0})
-        if (const auto near = kept.find({column + x, row + y}); near != kept.end())
-          for (const int other : near->second)
-            if (norm(vertices[v] - vertices[other]) < distance) first[v] = std::min(first[v], other);
-    if (first[v] == v) kept[{column, row}].push_back(v);
-  }
-  return first;
-}
 
 /// Returns the edges that one cell alone has, each as the cell runs along it.
 std::vector<Edge> free_edges(const Tessellation& tessellation) {
@@ -93,20 +74,6 @@ std::vector<Hanging> hanging(const Tessellation& tessellation, std::span<const E
   return found;
 }
 
-/// Returns a number for each cell; cells that are joined by edges have the same.
-std::vector<int> pieces_of(std::size_t cells, std::span<const Edge> edges) {
-  std::vector<int> piece(cells);
-  std::iota(piece.begin(), piece.end(), 0);
-  const auto root = [&](int c) {
-    while (piece[c] != c) c = piece[c] = piece[piece[c]];
-    return c;
-  };
-  for (const Edge& e : edges)
-    if (e.right >= 0) piece[std::max(root(e.left), root(e.right))] = std::min(root(e.left), root(e.right));
-  for (int c = 0; c < static_cast<int>(piece.size()); ++c) piece[c] = root(c);
-  return piece;
-}
-
 void require_apart(const Cells& cells, const std::vector<int>& first, double distance) {
   for (std::size_t c = 0; c < cells.tessellation.cells.size(); ++c) {
     std::vector<int> corners;
@@ -140,30 +107,72 @@ void drop_unused(Tessellation& tessellation) {
 
 }  // namespace
 
-std::string describe_pieces(const Tessellation& tessellation, std::span<const Edge> edges,
-                            const Numbering& numbering) {
-  const std::vector<int> piece = pieces_of(tessellation.cells.size(), edges);
+template <int Dim>
+std::vector<int> first_near(std::span<const Vec<Dim>> vertices, double distance) {
+  using Square = std::array<double, Dim>;  // as wide as the distance, in space a cube
+  std::map<Square, std::vector<int>> kept;
+  constexpr int kAround = Dim == 2 ? 9 : 27;
+  std::vector<int> first(vertices.size());
+  for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
+    Square own;
+    for (int d = 0; d < Dim; ++d) own[d] = std::floor(vertices[v][d] / distance);
+    first[v] = v;
+    for (int number = 0; number < kAround; ++number) {
+      Square square = own;
+      for (int d = 0, rest = number; d < Dim; ++d, rest /= 3) square[d] += rest % 3 - 1;
+      if (const auto near = kept.find(square); near != kept.end())
+        for (const int other : near->second)
+          if (norm(vertices[v] - vertices[other]) < distance) first[v] = std::min(first[v], other);
+    }
+    if (first[v] == v) kept[own].push_back(v);
+  }
+  return first;
+}
+
+template std::vector<int> first_near<2>(std::span<const Vec<2>>, double);
+template std::vector<int> first_near<3>(std::span<const Vec<3>>, double);
+
+std::vector<int> pieces_of(std::size_t cells, std::span<const std::pair<int, int>> neighbours) {
+  std::vector<int> piece(cells);
+  std::iota(piece.begin(), piece.end(), 0);
+  const auto root = [&](int c) {
+    while (piece[c] != c) c = piece[c] = piece[piece[c]];
+    return c;
+  };
+  for (const auto& [cell, other] : neighbours)
+    if (other >= 0) piece[std::max(root(cell), root(other))] = std::min(root(cell), root(other));
+  for (int c = 0; c < static_cast<int>(piece.size()); ++c) piece[c] = root(c);
+  return piece;
+}
+
+std::string describe_pieces(const std::vector<int>& piece, const char* shared,
+                            const std::function<std::string(int)>& cell) {
   std::map<int, int> cells;
   for (const int p : piece) ++cells[p];
   if (cells.size() < 2) return {};
   const auto smallest = std::ranges::min_element(cells, {}, [](const auto& p) { return p.second; });
-  std::vector<Vec<2>> polygon;
-  corners(tessellation, smallest->first, polygon);
-  const Vec<2> at = centroid(polygon);
-  std::string text = fmt::format(
-      "the cells are {} pieces that have no edge in common, and must be one: {} at ({:.6g}, {:.6g}) m is of "
-      "a "
-      "piece of {} cell{}",
-      cells.size(), numbering.cell(smallest->first), at[0], at[1], smallest->second,
-      smallest->second == 1 ? "" : "s");
-  return text;
+  return fmt::format(
+      "the cells are {} pieces that have no {} in common, and must be one: {} is of a piece of {} cell{}",
+      cells.size(), shared, cell(smallest->first), smallest->second, smallest->second == 1 ? "" : "s");
+}
+
+std::string describe_pieces(const Tessellation& tessellation, std::span<const Edge> edges,
+                            const Numbering& numbering) {
+  std::vector<std::pair<int, int>> neighbours;
+  for (const Edge& e : edges) neighbours.emplace_back(e.left, e.right);
+  return describe_pieces(pieces_of(tessellation.cells.size(), neighbours), "edge", [&](int cell) {
+    std::vector<Vec<2>> polygon;
+    corners(tessellation, cell, polygon);
+    const Vec<2> at = centroid(polygon);
+    return fmt::format("{} at ({:.6g}, {:.6g}) m", numbering.cell(cell), at[0], at[1]);
+  });
 }
 
 std::string describe_joinable(const Tessellation& tessellation) {
   const Box box = box_of(tessellation.vertices);
   const double near = kCoincide * std::max(box.width(), box.height());
   if (!(near > 0.0)) return {};
-  const std::vector<int> first = firsts(tessellation.vertices, near);
+  const std::vector<int> first = first_near<2>(tessellation.vertices, near);
   std::ptrdiff_t coincide = 0;
   for (int v = 0; v < static_cast<int>(first.size()); ++v)
     if (first[v] != v) ++coincide;
@@ -183,7 +192,7 @@ std::string describe_joinable(const Tessellation& tessellation) {
 Cells joined(Cells cells, double distance) {
   if (!(distance > 0.0)) return cells;
   Tessellation& t = cells.tessellation;
-  const std::vector<int> first = firsts(t.vertices, distance);
+  const std::vector<int> first = first_near<2>(t.vertices, distance);
   require_apart(cells, first, distance);
   for (auto& cell : t.cells)
     for (int& v : cell) v = first[v];

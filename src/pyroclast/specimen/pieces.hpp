@@ -1,14 +1,36 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
 
-/// Describes cells that are not joined by edges: the number of their pieces, one cell of the smallest and its
-/// place. Empty where the cells are one piece.
+/// Distance below which vertices coincide in messages, as a share of the body's size.
+inline constexpr double kCoincide = 1e-6;
+
+/// Returns for each vertex the first one that lies nearer than a distance, or the vertex itself.
+template <int Dim>
+std::vector<int> first_near(std::span<const Vec<Dim>> vertices, double distance);
+
+/// Returns a number for each cell; neighbours, and those that neighbours join, have the same.
+/// \param neighbours  pairs of cells that share an edge, in space a face; a pair with -1 joins nothing
+std::vector<int> pieces_of(std::size_t cells, std::span<const std::pair<int, int>> neighbours);
+
+/// Describes pieces of cells: their number, one cell of the smallest and its place. Empty where the cells are
+/// one piece.
+/// \param piece   number of the piece of each cell
+/// \param shared  word for the parts that neighbours share, "edge" or "face"
+/// \param cell    function that names a cell and its place
+std::string describe_pieces(const std::vector<int>& piece, const char* shared,
+                            const std::function<std::string(int)>& cell);
+
+/// Describes cells of the plane that are not joined by edges.
 /// \param edges  edges of the tessellation
 std::string describe_pieces(const Tessellation& tessellation, std::span<const Edge> edges,
                             const Numbering& numbering);
