@@ -264,6 +264,10 @@ specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadB
   }
 }
 
+bool is_outline_known(const Section& root, const AskedSpecimen& specimen) {
+  return root.section("specimen").ok() && (specimen.blocks.count > 0 || specimen.blocks.tessellation);
+}
+
 void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings) {
   const std::vector<std::string> sides = specimen.sides();
   std::vector<std::string> names = sides;

@@ -23,6 +23,10 @@ specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadB
                              std::span<const ReadBearing> bearings,
                              const specimen::BlockSizes* sizes = nullptr);
 
+/// Tells whether the outline of a specimen is that of the deck, and does not stand in for an error in its
+/// table or in a file of blocks.
+bool is_outline_known(const Section& root, const AskedSpecimen& specimen);
+
 /// Records an error for each bearing on a side that the specimen does not have.
 void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings);
 

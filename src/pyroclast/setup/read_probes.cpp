@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/setup/make_body.hpp"
 #include "pyroclast/setup/read_name.hpp"
 
 namespace pyroclast {
@@ -20,7 +21,7 @@ constexpr double kOnOutline = 1e-9;
 std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen) {
   std::vector<ProbePosition> probes;
   // A specimen that stands in for an error refuses no probe.
-  const bool known = root.section("specimen").ok() && root.section_or_none("blocks").ok();
+  const bool known = is_outline_known(root, specimen);
   const auto within = [&](int axis) {
     return known ? Range::between(specimen.low()[axis], specimen.high()[axis]) : Range::any();
   };

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pyroclast/setup/make_body.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -61,7 +63,7 @@ bool ends_there(const AskedSpecimen& specimen, int side, const PlaneOfSymmetry& 
 std::vector<PlaneOfSymmetry> read_symmetry(const Section& root, const AskedSpecimen& specimen,
                                            const std::vector<Bearing>& bearings) {
   const Section s = root.section("specimen");
-  const bool is_known = s.ok() && root.section_or_none("blocks").ok();  // else another outline stands in
+  const bool is_known = is_outline_known(root, specimen);
   const auto sides = specimen.sides();
   std::vector<PlaneOfSymmetry> planes;
   for (const std::string& name : s.optional_texts(
