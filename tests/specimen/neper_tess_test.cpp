@@ -120,6 +120,17 @@ TEST(NeperTess, ReadsAndScalesToTheSpecimen) {
   }
 }
 
+TEST(NeperTess, CellsWithoutVerticesAreLeftOutAndNumbered) {
+  std::string text = replaced(two_cells, "**cell\n  2", "**cell\n  4");
+  text = replaced(text, "**face\n 2\n   1 4 1",
+                  "**face\n 4\n   1 0\n     0\n    0 0 0 1\n     0 -1 0 0 0\n   2 4 1");
+  text = replaced(text, "   2 4 2 5 4 3", "   3 0\n     0\n    0 0 0 1\n     0 -1 0 0 0\n   4 4 2 5 4 3");
+  const TessFile file(text);
+  const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
+  EXPECT_EQ(read.tessellation.cells.size(), 2U);
+  EXPECT_EQ(read.empty, (std::vector<int>{1, 3}));
+}
+
 TEST(NeperTess, AVertexThatRegularisationRepeatsOrDropsIsNoTrouble) {
   // Neper's regularisation may leave a deleted edge as a repeated vertex of a face, and vertices that no face
   // uses.

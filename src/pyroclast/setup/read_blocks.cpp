@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,6 +40,18 @@ std::optional<specimen::NeperTess> read_tessellation(const Section& blocks, cons
     blocks.error("file", error.what());
   }
   return std::nullopt;
+}
+
+/// Warns of cells of a Neper file that have no vertices.
+/// \param empty  their numbers in the file
+void warn_of_empty_cells(const Section& blocks, std::span<const int> empty) {
+  constexpr std::size_t kNamed = 5;
+  if (empty.empty()) return;
+  blocks.warn("file", fmt::format("{} of its cells ha{} no vertices and {} left out: cell{} {}{} (from 1)",
+                                  empty.size(), empty.size() == 1 ? "s" : "ve",
+                                  empty.size() == 1 ? "is" : "are", empty.size() == 1 ? "" : "s",
+                                  fmt::join(empty.first(std::min(kNamed, empty.size())), ", "),
+                                  empty.size() > kNamed ? ", ..." : ""));
 }
 
 /// Reads the groups of a Neper file as phases.
@@ -290,6 +303,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
         "phases of the groups that the file puts its cells into (`*group`), in the ascending "
         "order of their numbers; then nothing else gives blocks their phases");
     if (auto tess = read_tessellation(s, file, outline, space)) {
+      warn_of_empty_cells(s, tess->empty);
       read_groups(s, *tess, names, is_covered, b);
       b.tessellation = std::move(tess->tessellation);
     }

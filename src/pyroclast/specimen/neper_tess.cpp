@@ -420,7 +420,10 @@ Read cells_of(const File& file, const Plane& plane, const Bounds& domain, const 
       }
       cell.push_back(n);
     }
-    if (cell.empty()) continue;
+    if (cell.empty()) {
+      read.tess.empty.push_back(static_cast<int>(f) + 1);
+      continue;
+    }
     polygon.clear();
     for (const int v : cell) polygon.push_back(result.vertices[v]);
     if (area(polygon) < 0.0) {

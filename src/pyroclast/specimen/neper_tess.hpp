@@ -14,6 +14,7 @@ struct NeperTess {
   Tessellation tessellation;
   std::vector<int> group;  ///< group of each cell in the file (*group); empty where it has none
   int group_line = 0;      ///< line of the file with *group
+  std::vector<int> empty;  ///< numbers of the cells without vertices, from 1, which are left out
 };
 
 /// Size of a tessellation: one of the two members.
