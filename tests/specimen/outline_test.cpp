@@ -26,6 +26,24 @@ TEST(Outline, ASquareIsMeasuredExactly) {
   EXPECT_NEAR(norm(inside.point.normal - Vec<2>{{0, -1}}), 0.0, 1e-12);
 }
 
+TEST(Outline, ALastPointAtTheFirstClosesTheLine) {
+  const std::vector<Vec<2>> open{{{1, 1}}, {{3, 1}}, {{3, 3}}, {{1, 3}}};
+  for (const double off : {0.0, 1e-9}) {
+    std::vector<Vec<2>> closed = open;
+    closed.push_back({{1 + off, 1}});
+    const auto [square, centre] = outline_around(closed);
+    EXPECT_EQ(square->corners(), outline_around(open).first->corners());
+    EXPECT_EQ(centre, (Vec<2>{{2, 2}}));
+  }
+}
+
+TEST(Outline, APlaceWithinIsKnownThoughTheCentroidLiesOutside) {
+  const auto horseshoe =
+      outline_around({{{0, 0}}, {{6, 0}}, {{6, 6}}, {{5, 6}}, {{5, 1}}, {{1, 1}}, {{1, 6}}, {{0, 6}}}).first;
+  EXPECT_GT(horseshoe->nearest({}).distance, 0.0);
+  EXPECT_LT(horseshoe->nearest(horseshoe->place_within()).distance, -0.3);
+}
+
 TEST(Outline, PointsOfASurfaceStandBesideItsCorners) {
   const auto [square, centre] = outline_around({{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}});
   const auto points = square->points(1.0);
@@ -76,7 +94,11 @@ TEST(Outline, OneThatIsNoneIsRefused) {
   EXPECT_TRUE(says(message([] {
                      outline_around({{{0, 0}}, {{1, 0}}, {{1, 0}}, {{0, 1}}});
                    }),
-                   "at one place"));
+                   "corner 2 of an outline of a grain \\(from 0\\) repeats the one before, at \\(1, 0\\) m"));
+  EXPECT_TRUE(says(message([] {
+                     outline_around({{{0, 0}}, {{1, 0}}, {{0, 1}}, {{0, 0}}, {{1, 0}}, {{0, 1}}});
+                   }),
+                   "runs around more than once"));
   EXPECT_TRUE(says(message([] { outline_around({{{0, 0}}, {{1, 0}}, {{2, 0}}}); }), "no area"));
 }
 

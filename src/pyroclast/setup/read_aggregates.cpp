@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -199,10 +200,12 @@ void set_gradation_of_stones(specimen::AggregateParameters& a) {
 /// Columns of a table of stones: three, and the number of the phase, which may be missing.
 using StoneColumns = std::array<AskedColumn, 4>;
 
+/// Function that returns the place of a row in its file.
+using PlaceOfRow = std::function<std::string(std::size_t row)>;
+
 /// Reads stones that are known, from a table as a run writes it.
-/// \param add  function of the values by column and the first row of a stone with its place, which returns
-/// the
-///             stone without its phase, and the row behind the stone
+/// \param add  function of the values by column, the first row of a stone, and a function that returns the
+///             place of a row; returns the stone without its phase, and the row behind the stone
 template <class Add>
 void read_known_stones(const Section& s, const std::filesystem::path& folder, const StoneColumns& asked,
                        specimen::AggregateParameters& a, Add add) {
@@ -218,10 +221,13 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
     std::vector<std::vector<double>> values;  // by column
     for (std::size_t i = 0; i < read->columns.size(); ++i)
       values.push_back(read->table.values(read->columns[i], asked[i].unit));
+    const PlaceOfRow place_of = [&table = read->table](std::size_t row) {
+      return fmt::format("{}:{}", table.path().string(), table.line(row));
+    };
     for (std::size_t row = 0; row < read->table.rows();) {
-      const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
+      const std::string place = place_of(row);
       const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
-      auto [stone, end] = add(values, row, place);
+      auto [stone, end] = add(values, row, place_of);
       if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
         throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` names 0 to {}", place, phase,
                                 phases.size() - 1));
@@ -248,9 +254,9 @@ void read_stones(const Section& s, const std::filesystem::path& folder, specimen
   const StoneColumns asked{
       {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
   read_known_stones(
-      own, folder, asked, a, [](const Columns& values, std::size_t row, const std::string& place) {
+      own, folder, asked, a, [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
         if (!(values[2][row] > 0.0))
-          throw Error(fmt::format("{}: the diameter must be greater than 0", place));
+          throw Error(fmt::format("{}: the diameter must be greater than 0", place_of(row)));
         return StoneAndEnd{{{{values[0][row], values[1][row]}}, values[2][row], {}, {}}, row + 1};
       });
 }
@@ -261,22 +267,26 @@ void read_outlines(const Section& s, const std::filesystem::path& folder, specim
       s.section("outlines",
                 "outlines of all grains, in the place of a grading: `specimen/outlines.csv` of a "
                 "run, or a table of the number of the grain, x, y of a point of its outline, and "
-                "the number of a phase or none; points of a grain follow each other");
+                "the number of a phase or none; points of a grain follow each other, and the last may repeat "
+                "the first");
   const StoneColumns asked{{{"grain", unit::dimensionless},
                             {"x", unit::length},
                             {"y", unit::length},
                             {"phase", unit::dimensionless}}};
   read_known_stones(own, folder, asked, a,
-                    [](const Columns& values, std::size_t row, const std::string& place) {
+                    [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
                       std::vector<Vec<2>> points;
                       std::size_t end = row;
                       for (; end < values[0].size() && values[0][end] == values[0][row]; ++end)
                         points.push_back({{values[1][end], values[2][end]}});
+                      if (const auto repeated = specimen::repeated_corner(points))
+                        throw Error(fmt::format("{}: the point repeats the one before: leave the row out",
+                                                place_of(row + *repeated)));
                       try {
                         const auto [outline, centre] = specimen::outline_around(points);
                         return StoneAndEnd{{centre, outline->width(), {}, {}, outline}, end};
                       } catch (const Error& error) {
-                        throw Error(fmt::format("{}: {}", place, error.what()));
+                        throw Error(fmt::format("{}: {}", place_of(row), error.what()));
                       }
                     });
 }

@@ -3,30 +3,177 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/polygon.hpp"
 
 namespace pyroclast::specimen {
+namespace {
+
+const Outline* as_outline(const Grain<2>& grain) {
+  return dynamic_cast<const Outline*>(grain.shape.get());
+}
+
+/// Calls f(from, to) for each side of a grain's outline, where it lies, while it returns false. Tells whether
+/// it returned true.
+template <class F>
+bool any_side(const Grain<2>& grain, F f) {
+  const Outline* const outline = as_outline(grain);
+  if (!outline) return false;
+  Vec<2> from = grain.centre + outline->corners().back();
+  for (const Vec<2>& corner : outline->corners()) {
+    const Vec<2> to = grain.centre + corner;
+    if (f(from, to)) return true;
+    from = to;
+  }
+  return false;
+}
+
+/// Tells whether a segment lies deeper in a grain with an outline than `depth` (m) somewhere. Between two
+/// places where it meets the outline, three places stand for all.
+bool runs_through(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double depth) {
+  constexpr double kSlack = 1e-9;  // share of a side by which the segment may miss the side
+  if (!(distance_from_segment(grain.centre, from, to) < reach(grain) - depth)) return false;
+  const Vec<2> along = to - from;
+  std::vector<double> shares{0.0, 1.0};
+  any_side(grain, [&](const Vec<2>& begin, const Vec<2>& end) {
+    const double sine = cross(along, end - begin);
+    if (sine == 0.0) return false;
+    const double share = cross(begin - from, end - begin) / sine, of_side = cross(begin - from, along) / sine;
+    if (share > 0.0 && share < 1.0 && of_side > -kSlack && of_side < 1.0 + kSlack) shares.push_back(share);
+    return false;
+  });
+  std::ranges::sort(shares);
+  for (std::size_t i = 1; i < shares.size(); ++i)
+    for (const double part : {0.25, 0.5, 0.75})
+      if (distance(grain, from + std::lerp(shares[i - 1], shares[i], part) * along) < -depth) return true;
+  return false;
+}
+
+/// Side of an outline, m.
+struct OutlineSide {
+  Vec<2> from, to;
+};
+
+/// Returns the sides of a grain that may reach another one, from the distances of their ends; none at all
+/// where a corner is closer to the other grain than `gap` (m).
+std::optional<std::vector<OutlineSide>> sides_towards(const Grain<2>& grain, const Grain<2>& other,
+                                                      double gap) {
+  const double around = reach(other);
+  const auto away = [&](const Vec<2>& corner) {
+    const Vec<2> there = corner - other.centre;
+    const double from_centre = norm(there);
+    return from_centre < around + gap ? other.shape->nearest(there).distance : from_centre - around;
+  };
+  std::vector<OutlineSide> sides;
+  std::optional<double> before;
+  const bool is_closer = any_side(grain, [&](const Vec<2>& from, const Vec<2>& to) {
+    if (!before) before = away(from);
+    const double after = away(to);
+    if (*before + after <= norm(to - from)) sides.push_back({from, to});
+    before = after;
+    return after < gap;
+  });
+  if (is_closer) return std::nullopt;
+  return sides;
+}
+
+/// Tells whether two grains with outlines are closer to each other than `gap` (m). A grain within another
+/// one, or on it, is closer.
+bool are_closer_outlines(const Grain<2>& a, const Grain<2>& b, double gap) {
+  const Vec<2> between = b.centre - a.centre;
+  const double inner_a = a.shape->inner_radius(), inner_b = b.shape->inner_radius(),
+               inner = inner_a + inner_b + gap;
+  if (inner_a > 0.0 && inner_b > 0.0 && inner > 0.0 && dot(between, between) < inner * inner) return true;
+  const auto of_b = sides_towards(b, a, gap);
+  if (!of_b) return true;
+  const auto of_a = sides_towards(a, b, gap);
+  if (!of_a) return true;
+  // with all corners apart, sides are closer only where they run through each other
+  if (gap > 0.0)
+    return std::ranges::any_of(*of_a, [&](const OutlineSide& side) {
+      return std::ranges::any_of(*of_b, [&](const OutlineSide& other) {
+        return cross_each_other(side.from, side.to, other.from, other.to);
+      });
+    });
+  const auto run_through = [gap](const std::vector<OutlineSide>& sides, const Grain<2>& other) {
+    return std::ranges::any_of(
+        sides, [&](const OutlineSide& side) { return runs_through(other, side.from, side.to, -gap); });
+  };
+  return distance(b, place_within(a)) < gap || distance(a, place_within(b)) < gap || run_through(*of_a, b) ||
+         run_through(*of_b, a);
+}
+
+/// Returns the least move along a normal of a side that parts the convex hulls of two outlines, whose corners
+/// run counter-clockwise. A segment is an outline of two corners.
+Approach<2> least_move(std::span<const Vec<2>> a, std::span<const Vec<2>> b) {
+  Approach<2> least{-std::numeric_limits<double>::infinity(), {}};
+  const auto most = [](std::span<const Vec<2>> points, const Vec<2>& direction) {
+    double result = -std::numeric_limits<double>::infinity();
+    for (const Vec<2>& point : points) result = std::max(result, dot(direction, point));
+    return result;
+  };
+  const auto try_normals = [&](std::span<const Vec<2>> sides, double sign) {
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const Vec<2> along = sides[(i + 1) % sides.size()] - sides[i];
+      const Vec<2> normal = Vec<2>{{along[1], -along[0]}} * (sign / norm(along));
+      const double gap = -most(b, -normal) - most(a, normal);
+      if (gap > least.gap) least = {gap, normal};
+    }
+  };
+  try_normals(a, 1.0);
+  try_normals(b, -1.0);
+  return least;
+}
+
+/// Returns the nearest approach of two lines of straight pieces as their corners tell it.
+/// \param from_a  function of a place that returns the approach of `a` and the place
+template <class FromA, class FromB>
+Approach<2> approach_of_corners(std::span<const Vec<2>> a, FromA from_a, std::span<const Vec<2>> b,
+                                FromB from_b) {
+  Approach<2> least{std::numeric_limits<double>::infinity(), {}};
+  for (const Vec<2>& corner : b)
+    if (const Approach<2> near = from_a(corner); near.gap < least.gap) least = near;
+  for (const Vec<2>& corner : a)
+    if (const Approach<2> near = from_b(corner); near.gap < least.gap) least = {near.gap, -near.direction};
+  return least;
+}
+
+/// Returns the function of a place that returns the approach of a grain with an outline and the place.
+auto approach_from(const Grain<2>& grain) {
+  return [&grain](const Vec<2>& place) -> Approach<2> {
+    const auto nearest = grain.shape->nearest(place - grain.centre);
+    return {nearest.distance, nearest.point.normal};
+  };
+}
+
+Approach<2> approach_of_outlines(const Grain<2>& a, const Grain<2>& b) {
+  const std::vector<Vec<2>> of_a = corners_of(a), of_b = corners_of(b);
+  const Approach<2> least = approach_of_corners(of_a, approach_from(a), of_b, approach_from(b));
+  const bool overlap = are_closer_outlines(a, b, -kTouching * std::min(a.diameter, b.diameter));
+  // the deepest corner would push to and fro where two long grains cross
+  return overlap ? least_move(of_a, of_b) : least;
+}
+
+}  // namespace
+
 double distance(const Grain<2>& grain, const Vec<2>& place) {
   const Vec<2> there = place - grain.centre;
   return grain.shape ? grain.shape->nearest(there).distance : norm(there) - 0.5 * grain.diameter;
 }
 
+Vec<2> place_within(const Grain<2>& grain) {
+  const Outline* const outline = as_outline(grain);
+  return outline ? grain.centre + outline->place_within() : grain.centre;
+}
+
 std::vector<Vec<2>> corners_of(const Grain<2>& grain) {
-  const auto* outline = dynamic_cast<const Outline*>(grain.shape.get());
+  const Outline* const outline = as_outline(grain);
   if (!outline) return {};
   std::vector<Vec<2>> corners = outline->corners();
   for (Vec<2>& corner : corners) corner += grain.centre;
   return corners;
-}
-
-std::vector<Vec<2>> outline_points(const Grain<2>& grain) {
-  constexpr double kFine = 1.0 / 64.0;  // share of the outline's length
-  std::vector<Vec<2>> points = corners_of(grain);
-  if (grain.shape)
-    for (const auto& point : grain.shape->points(kFine * grain.shape->size()))
-      points.push_back(grain.centre + point.at);
-  return points;
 }
 
 bool holds(const Grain<2>& grain, const Vec<2>& place) {
@@ -47,47 +194,49 @@ Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b) {
     const Approach<Dim> other = approach(b, a);
     return {other.gap, -other.direction};
   }
+  if constexpr (Dim == 2)
+    if (b.shape) return approach_of_outlines(a, b);
   const auto from_a = a.shape->nearest(between);
-  if (!b.shape) return {from_a.distance - 0.5 * b.diameter, from_a.point.normal};
-  Approach<Dim> least{from_a.distance, from_a.point.normal};
-  // the least distance of two polygons that do not cross is that of a corner of one from the other
-  if constexpr (Dim == 2) {
-    least.gap = std::numeric_limits<double>::infinity();
-    for (const Vec<2>& corner : corners_of(b)) {
-      const auto nearest = a.shape->nearest(corner - a.centre);
-      if (nearest.distance < least.gap) least = {nearest.distance, nearest.point.normal};
-    }
-    for (const Vec<2>& corner : corners_of(a)) {
-      const auto nearest = b.shape->nearest(corner - b.centre);
-      if (nearest.distance < least.gap) least = {nearest.distance, -nearest.point.normal};
-    }
-  }
-  return least;
+  return {from_a.distance - 0.5 * b.diameter, from_a.point.normal};
 }
 
 template Approach<2> approach(const Grain<2>&, const Grain<2>&);
 template Approach<3> approach(const Grain<3>&, const Grain<3>&);
+
+Approach<2> approach(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to) {
+  const std::vector<Vec<2>> corners = corners_of(grain), ends{from, to};
+  const auto from_segment = [&](const Vec<2>& place) -> Approach<2> {
+    const Vec<2> along = to - from;
+    const double share = std::clamp(dot(place - from, along) / dot(along, along), 0.0, 1.0);
+    const Vec<2> away = place - (from + share * along);
+    const double distance = norm(away);
+    return {distance, distance > 0.0 ? away * (1.0 / distance) : Vec<2>{}};
+  };
+  const Approach<2> least = approach_of_corners(corners, approach_from(grain), ends, from_segment);
+  return runs_through(grain, from, to, 0.0) ? least_move(corners, ends) : least;
+}
 
 template <int Dim>
 bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap) {
   const Vec<Dim> between = b.centre - a.centre;
   const double closest = reach(a) + gap + reach(b);
   if (!(dot(between, between) < closest * closest)) return false;
-  return (!a.shape && !b.shape) || approach(a, b).gap < gap;
+  if (!a.shape && !b.shape) return true;
+  if constexpr (Dim == 2)
+    if (a.shape && b.shape) return are_closer_outlines(a, b, gap);
+  return approach(a, b).gap < gap;
 }
 
 template bool are_closer(const Grain<2>&, const Grain<2>&, double);
 template bool are_closer(const Grain<3>&, const Grain<3>&, double);
 
 bool are_closer(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double gap) {
-  if (!grain.shape) return distance_from_segment(grain.centre, from, to) < 0.5 * grain.diameter + gap;
-  const auto corners = corners_of(grain);
-  const auto is_near = [&](const Vec<2>& corner) { return distance_from_segment(corner, from, to) < gap; };
-  if (std::ranges::any_of(corners, is_near)) return true;
-  const int pieces = 2 + static_cast<int>(4.0 * norm(to - from) / grain.diameter);
-  for (int i = 0; i <= pieces; ++i)
-    if (distance(grain, from + (static_cast<double>(i) / pieces) * (to - from)) < gap) return true;
-  return false;
+  if (!(distance_from_segment(grain.centre, from, to) < reach(grain) + gap)) return false;
+  if (!grain.shape) return true;
+  if (!(gap > 0.0)) return runs_through(grain, from, to, -gap);
+  return holds(grain, from) || any_side(grain, [&](const Vec<2>& begin, const Vec<2>& end) {
+           return distance_of_segments(from, to, begin, end) < gap;
+         });
 }
 
 }  // namespace pyroclast::specimen

@@ -46,18 +46,25 @@ double extent_of(std::span<const Grain<Dim>> grains) {
 /// Returns the distance of a place from the surface of a grain, m: negative within.
 double distance(const Grain<2>& grain, const Vec<2>& place);
 
+/// Returns a place well within a grain.
+Vec<2> place_within(const Grain<2>& grain);
+
 /// Tells whether a place lies in a grain or on its surface.
 bool holds(const Grain<2>& grain, const Vec<2>& place);
 
-/// Tells whether two grains are closer to each other than `gap` (m), or overlap. Exact for circles, balls and
-/// outlines.
+/// Largest overlap of grains that touch each other or the surface of the body, as a share of the diameter: a
+/// file of nine digits tells no more.
+inline constexpr double kTouching = 1e-6;
+
+/// Tells whether two grains are closer to each other than `gap` (m), or overlap; with a gap of 0 or less
+/// whether they overlap by more than its length. Exact for circles, balls and the sides of outlines.
 template <int Dim>
 bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap);
 
 /// Nearest approach of two grains.
 template <int Dim>
 struct Approach {
-  double gap;          ///< m; negative where they overlap
+  double gap;          ///< m; negative where they overlap: then a length of the move that parts them
   Vec<Dim> direction;  ///< unit vector in which the second one leaves the first soonest
 };
 
@@ -65,14 +72,14 @@ struct Approach {
 template <int Dim>
 Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b);
 
+/// Returns the nearest approach of a grain with an outline and a segment.
+Approach<2> approach(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to);
+
 /// Returns the corners of a grain's outline where it lies, m; empty for a circle.
 std::vector<Vec<2>> corners_of(const Grain<2>& grain);
 
-/// Tells whether a segment comes closer to a grain than `gap` (m), or runs through the grain.
+/// Tells whether a segment comes closer to a grain than `gap` (m), or runs through the grain; with a gap of 0
+/// or less whether the segment lies deeper in the grain than its length.
 bool are_closer(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double gap);
-
-/// Returns points of the grain's surface close enough together to tell where the grain lies, m; empty for
-/// round grains.
-std::vector<Vec<2>> outline_points(const Grain<2>& grain);
 
 }  // namespace pyroclast::specimen

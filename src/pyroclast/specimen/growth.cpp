@@ -109,11 +109,17 @@ class Growth {
   /// Adds the push of the room's surface to a move. Returns its length, m.
   double push_from_surface(const Grain<Dim>& grain, double target, Vec<Dim>& move) const {
     if (lies_within(grain, room_, target)) return 0.0;
+    if constexpr (Dim == 2)
+      if (grain.shape && room_.distance && room_.distance(place_within(grain)) < 0.0) {
+        const Vec<2> push = push_from_lines(grain, target);
+        move += push;
+        return norm(push);
+      }
     std::vector<Vec<Dim>> points{grain.centre};
     double least = target + 0.5 * grain.diameter;
     if constexpr (Dim == 2)
       if (grain.shape) {
-        points = outline_points(grain);
+        points = corners_of(grain);
         least = target;
       }
     Vec<Dim> push{};
@@ -140,6 +146,15 @@ class Growth {
     }
     move += push;
     return norm(push);
+  }
+
+  /// Returns the push of the line of the room's surface that is nearest to a grain with an outline, m.
+  Vec<2> push_from_lines(const Grain<2>& grain, double target) const {
+    Approach<2> nearest{target, {}};
+    for (const auto& [from, to] : room_.lines)
+      if (are_closer(grain, from, to, target))
+        if (const Approach<2> near = approach(grain, from, to); near.gap < nearest.gap) nearest = near;
+    return (nearest.gap - target) * nearest.direction;
   }
 
   bool fits() const {

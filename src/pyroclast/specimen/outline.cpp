@@ -18,6 +18,12 @@ namespace {
 constexpr int kPieces = 72;
 /// Turn of a line above which it has a corner, radians.
 constexpr double kCorner = std::numbers::pi / 9.0;
+/// Radius of the ball around the centroid over that of the ball around the outline below which the outline
+/// bends around its centroid.
+constexpr double kThin = 0.05;
+/// Distances, as a share of the size, up to which a corner is the one before, and the last corner closes the
+/// line at the first: files round both.
+constexpr double kSamePlace = 1e-12, kClosing = 1e-6;
 /// Harmonics of a drawn outline: from 3 up to this one.
 constexpr int kHarmonics = 12;
 /// Share of the mean angle between two corners of a drawn polygon by which each is off its even place.
@@ -102,7 +108,19 @@ std::vector<Vec<2>> hull_of(std::vector<Vec<2>> points) {
   return hull;
 }
 
+double larger_side(std::span<const Vec<2>> corners) {
+  const Box box = box_of(corners);
+  return std::max(box.width(), box.height());
+}
+
 }  // namespace
+
+std::optional<std::size_t> repeated_corner(std::span<const Vec<2>> corners) {
+  const double same = kSamePlace * larger_side(corners);
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    if (norm(corners[i] - corners[i - 1]) <= same) return i;
+  return std::nullopt;
+}
 
 template <int Dim>
 NearestPoint<Dim> Ball<Dim>::nearest(const Vec<Dim>& place) const {
@@ -157,6 +175,10 @@ template class Ball<2>;
 Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   const std::size_t n = corners_.size();
   if (n < 3) throw Error(fmt::format("an outline of a grain has {} corners; allowed are three or more", n));
+  if (const auto repeated = repeated_corner(corners_))
+    throw Error(fmt::format(
+        "corner {} of an outline of a grain (from 0) repeats the one before, at ({:.6g}, {:.6g}) m",
+        *repeated, corners_[*repeated][0], corners_[*repeated][1]));
   area_ = area(corners_);
   if (area_ < 0.0) {
     std::ranges::reverse(corners_);
@@ -169,7 +191,6 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   double length = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double piece = norm(corners_[next(i)] - corners_[i]);
-    if (!(piece > 0.0)) throw Error("an outline of a grain has two corners at one place");
     starts_.push_back(length);
     length += piece;
   }
@@ -177,14 +198,45 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   if (!(area_ > 1e-6 * length * length)) throw Error("an outline of a grain has no area");
   const Vec<2> middle = centroid(corners_);
   for (Vec<2>& corner : corners_) corner -= middle;
+  double turn = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     bounding_radius_ = std::max(bounding_radius_, norm(corners_[i]));
     const Vec<2> before = corners_[i] - corners_[i == 0 ? n - 1 : i - 1],
                  after = corners_[next(i)] - corners_[i];
-    if (std::abs(std::atan2(cross(before, after), dot(before, after))) > kCorner)
-      corners_along_.push_back(starts_[i]);
+    const double turn_here = std::atan2(cross(before, after), dot(before, after));
+    turn += turn_here;
+    if (std::abs(turn_here) > kCorner) corners_along_.push_back(starts_[i]);
   }
+  if (turn > 3.0 * std::numbers::pi)
+    throw Error("an outline of a grain runs around more than once: are two grains under one number?");
   inner_radius_ = std::max(0.0, -nearest({}).distance);
+  if (inner_radius_ < kThin * bounding_radius_) place_within_ = middle_of_chord();
+}
+
+/// Returns the middle of a chord that lies deep within, of several at even heights.
+Vec<2> Outline::middle_of_chord() const {
+  constexpr int kHeights = 8;
+  const Box box = box_of(corners_);
+  Vec<2> deepest{};
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kHeights; ++k) {
+    const double y = std::lerp(box.low[1], box.high[1], (k + 0.5) / kHeights);
+    std::vector<double> ends;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const Vec<2>&from = corners_[i], &to = corners_[next(i)];
+      if ((from[1] > y) != (to[1] > y))
+        ends.push_back(from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]));
+    }
+    std::ranges::sort(ends);
+    for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
+      const Vec<2> place{{0.5 * (ends[i] + ends[i + 1]), y}};
+      if (const double distance = nearest(place).distance; distance < least) {
+        least = distance;
+        deepest = place;
+      }
+    }
+  }
+  return deepest;
 }
 
 /// Returns the place of the line that is nearest to a point.
@@ -278,6 +330,8 @@ double Outline::width() const {
 }
 
 std::pair<std::shared_ptr<const Outline>, Vec<2>> outline_around(std::vector<Vec<2>> points) {
+  if (points.size() > 1 && norm(points.back() - points.front()) <= kClosing * larger_side(points))
+    points.pop_back();
   auto outline = std::make_shared<const Outline>(points);
   return {std::move(outline), centroid(points)};
 }

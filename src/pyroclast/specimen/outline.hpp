@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -35,7 +38,8 @@ class Ball final : public Surface<Dim> {
 class Outline final : public Surface<2> {
  public:
   /// Makes an outline; moves it so that its centroid is the origin. Throws Error where it has fewer than
-  /// three corners, crosses itself or has no area.
+  /// three corners, two of them at one place in turn, crosses itself, runs around more than once, or has no
+  /// area.
   /// \param corners  corners in either sense, m
   explicit Outline(std::vector<Vec<2>> corners);
 
@@ -51,6 +55,8 @@ class Outline final : public Surface<2> {
 
   /// Returns the corners, counter-clockwise, m.
   const std::vector<Vec<2>>& corners() const { return corners_; }
+  /// Returns a place well within, m: the origin, or the middle of a chord where the outline bends around it.
+  const Vec<2>& place_within() const { return place_within_; }
   /// Returns the least distance between two parallel lines that hold the outline, m: the sieve that it
   /// passes.
   double width() const;
@@ -67,14 +73,20 @@ class Outline final : public Surface<2> {
   Vec<2> normal_of(std::size_t piece) const;
   SurfacePoint<2> at(double along) const;
   double along_of(const Vec<2>& point) const;
+  Vec<2> middle_of_chord() const;
 
   std::vector<Vec<2>> corners_;
   std::vector<double> starts_;         ///< length of the line up to each corner, then up to its end, m
   std::vector<double> corners_along_;  ///< places of true corners on the line, m
   double area_ = 0.0, bounding_radius_ = 0.0, inner_radius_ = 0.0;
+  Vec<2> place_within_{};
 };
 
-/// Returns the outline around its centroid of points that lie anywhere, and the centroid, m.
+/// Returns the first corner that lies where the one before lies, but for rounding; none where there is none.
+std::optional<std::size_t> repeated_corner(std::span<const Vec<2>> corners);
+
+/// Returns the outline around its centroid of points that lie anywhere, and the centroid, m. The last point
+/// may repeat the first.
 std::pair<std::shared_ptr<const Outline>, Vec<2>> outline_around(std::vector<Vec<2>> points);
 
 /// Draws the outline of a grain whose width is 1. A circle draws nothing and returns none.

@@ -1,6 +1,7 @@
 #include "pyroclast/specimen/placement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/growth.hpp"
+#include "pyroclast/specimen/polygon.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -78,15 +80,23 @@ template <int Dim>
 
 template <int Dim>
 bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance) {
-  const auto is_within = [&](const Vec<Dim>& point, double least) {
+  const auto is_in_box = [&](const Vec<Dim>& point, double least) {
     for (int d = 0; d < Dim; ++d)
       if (point[d] - least < room.low[d] || point[d] + least > room.high[d]) return false;
-    return !room.distance || room.distance(point) <= -least;
+    return true;
   };
-  if (!grain.shape) return is_within(grain.centre, 0.5 * grain.diameter + distance);
-  if constexpr (Dim == 2)
-    return std::ranges::all_of(outline_points(grain),
-                               [&](const Vec<2>& point) { return is_within(point, distance); });
+  if (!grain.shape) {
+    const double least = 0.5 * grain.diameter + distance;
+    return is_in_box(grain.centre, least) && (!room.distance || room.distance(grain.centre) <= -least);
+  }
+  if constexpr (Dim == 2) {
+    if (!std::ranges::all_of(corners_of(grain), [&](const Vec<2>& c) { return is_in_box(c, distance); }))
+      return false;
+    return !room.distance || (room.distance(place_within(grain)) < 0.0 &&
+                              std::ranges::none_of(room.lines, [&](const std::array<Vec<2>, 2>& line) {
+                                return are_closer(grain, line[0], line[1], distance);
+                              }));
+  }
   return false;
 }
 
@@ -147,8 +157,14 @@ std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
   const auto fits = [&](const Fibre& fibre) {
     for (const Vec<2>& end : {fibre.from, fibre.to})
       if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
-    return std::ranges::none_of(
-        standing, [&](const Aggregate& a) { return are_closer(a, fibre.from, fibre.to, p.minimum_gap); });
+    const auto meets = [&](const Piece& piece) {
+      return distance_of_segments(fibre.from, fibre.to, piece.from, piece.to) < p.minimum_gap ||
+             cross_each_other(fibre.from, fibre.to, piece.from, piece.to);
+    };
+    return std::ranges::none_of(region.pieces_before_cuts(), meets) &&
+           std::ranges::none_of(standing, [&](const Aggregate& a) {
+             return are_closer(a, fibre.from, fibre.to, p.minimum_gap);
+           });
   };
   std::vector<Fibre> fibres;
   for (int i = 0; i < p.count; ++i) {

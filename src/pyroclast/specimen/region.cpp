@@ -56,12 +56,6 @@ class Grid {
   std::map<std::pair<long long, long long>, Vec<2>> known_;
 };
 
-double distance_of_segments(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
-  if (cross_each_other(a, b, c, d)) return 0.0;
-  return std::min({distance_from_segment(a, c, d), distance_from_segment(b, c, d),
-                   distance_from_segment(c, a, b), distance_from_segment(d, a, b)});
-}
-
 /// Returns a loop in the sense asked for; its pieces keep their sides.
 Loop turned(std::vector<Vec<2>> corners, std::vector<int> side, bool counter_clockwise) {
   if ((area(corners) > 0.0) != counter_clockwise) {
@@ -459,7 +453,13 @@ double Region::distance(const Vec<2>& point) const {
 }
 
 double Region::distance_before_cuts(const Vec<2>& point) const {
-  return signed_distance(before_cuts_.empty() ? pieces_ : before_cuts_, point);
+  return signed_distance(pieces_before_cuts(), point);
+}
+
+double distance_of_segments(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
+  if (cross_each_other(a, b, c, d)) return 0.0;
+  return std::min({distance_from_segment(a, c, d), distance_from_segment(b, c, d),
+                   distance_from_segment(c, a, b), distance_from_segment(d, a, b)});
 }
 
 }  // namespace pyroclast::specimen

@@ -141,6 +141,10 @@ class Region {
   double distance(const Vec<2>& point) const;
   /// Returns the distance as if no notch had been cut: aggregates may lie there, for a saw goes through them.
   double distance_before_cuts(const Vec<2>& point) const;
+  /// Returns the pieces of the outline as if no notch had been cut.
+  const std::vector<Piece>& pieces_before_cuts() const {
+    return before_cuts_.empty() ? pieces_ : before_cuts_;
+  }
 
  private:
   void list_pieces();
@@ -176,5 +180,8 @@ double distance_from_segment(const Vec<Dim>& point, const Vec<Dim>& from, const 
   const double share = squared > 0.0 ? std::clamp(dot(point - from, along) / squared, 0.0, 1.0) : 0.0;
   return norm(point - (from + along * share));
 }
+
+/// Returns the distance of the segment from a to b from that from c to d, m; 0 where they cross.
+double distance_of_segments(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d);
 
 }  // namespace pyroclast::specimen

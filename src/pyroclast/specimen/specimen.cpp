@@ -26,6 +26,8 @@
 namespace pyroclast::specimen {
 namespace {
 
+/// Way out of a message about a notch in a grain.
+constexpr std::string_view kOnlyCircles = ": notches cut through circles alone, so an outline must end there";
 /// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
 
@@ -95,17 +97,31 @@ void require_valid(const SpecimenParameters& p) {
 
 namespace {
 
-/// Largest overlap of stones that touch each other or the outline, as a share of the diameter: a file of nine
-/// digits tells no more.
-constexpr double kTouching = 1e-6;
+/// Returns the end of a message that names the side or notch on which a grain with an outline lies; empty
+/// where it lies on none.
+std::string side_under(const Aggregate& grain, const Region& region, double tolerance) {
+  if (!grain.shape) return {};
+  const auto told = [&](const Side& side, const Vec<2>& from, const Vec<2>& to) {
+    if (!are_closer(grain, from, to, -tolerance)) return std::string();
+    return fmt::format(", but on \"{}\"{}", side.name, side.is_cut ? kOnlyCircles : "");
+  };
+  for (const auto& [from, to, side] : region.pieces())
+    if (std::string text = told(region.sides()[side], from, to); !text.empty()) return text;
+  for (const Notch& notch : region.notches())
+    if (notch.width == 0.0)
+      if (std::string text = told({notch.name, false, true}, notch.mouth, notch.tip); !text.empty())
+        return text;
+  return {};
+}
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
+  const Room<2> of_circles = room_in(p.region), of_outlines = room_of_blocks(p.region);
   GrainGrid<2> grid(p.region.box().low, p.region.box().high, 2.0 * asked.d_min);
   for (const Aggregate& circle : specimen.aggregates) grid.insert(circle);
   std::vector<Aggregate> circles;
   for (const Stone& stone : asked.stones) {
-    const double radius = 0.5 * stone.diameter, tolerance = kTouching * stone.diameter;
+    const double tolerance = kTouching * stone.diameter;
     const auto fail = [&](std::string_view what) {
       throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({:.6g}, {:.6g}) mm {}", asked.place,
                               stone.place, 1e3 * stone.diameter, 1e3 * stone.centre[0], 1e3 * stone.centre[1],
@@ -113,13 +129,8 @@ void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, i
     };
     const Aggregate circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
                            stone.shape};
-    const bool is_within =
-        stone.shape ? std::ranges::all_of(outline_points(circle),
-                                          [&](const Vec<2>& point) {
-                                            return p.region.distance_before_cuts(point) <= tolerance;
-                                          })
-                    : p.region.distance_before_cuts(stone.centre) <= tolerance - radius;
-    if (!is_within) fail("does not lie in the specimen, all of it");
+    if (!lies_within(circle, stone.shape ? of_outlines : of_circles, -tolerance))
+      fail("does not lie in the specimen, all of it" + side_under(circle, p.region, tolerance));
     if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
     grid.insert(circle);
     circles.push_back(circle);
@@ -135,8 +146,9 @@ void add_aggregates(const SpecimenParameters& p, const AggregateParameters& aske
   specimen.fraction_asked += asked.fraction;
   if (!asked.stones.empty()) return add_stones(p, asked, kind, specimen);
   if (asked.fraction == 0.0) return;
-  draw_and_place(room_in(p.region), asked, place_in(specimen.phases, asked.phase), kind, random,
-                 specimen.aggregates);
+  const bool are_round = asked.shape.kind == GrainShape::circle;
+  draw_and_place(are_round ? room_in(p.region) : room_of_blocks(p.region), asked,
+                 place_in(specimen.phases, asked.phase), kind, random, specimen.aggregates);
 }
 
 void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random& random,
