@@ -1,10 +1,16 @@
 #include "pyroclast/specimen/grain_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "examples.hpp"
 #include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -87,6 +93,62 @@ TEST(GrainFit, BlocksFollowGrainsBesideNotchesAndInRings) {
                  .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
   const Specimen ring = make_specimen(p);
   EXPECT_NEAR(ring.fraction_superposed, ring.fraction_placed, 0.02);
+}
+
+/// Returns the part of an ellipse in [0, 0.12] x [0, 0.08] m, as points of its outline off by rounding.
+std::vector<Vec<2>> cut_ellipse(const Vec<2>& centre, double a, double b) {
+  std::vector<Vec<2>> points;
+  const Vec<2> high{{0.12, 0.08}};
+  constexpr int kPoints = 400;
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPoints;
+    Vec<2> point = centre + Vec<2>{{a * std::cos(angle), b * std::sin(angle)}};
+    for (int axis = 0; axis < 2; ++axis) point[axis] = std::clamp(point[axis], 0.0, high[axis]);
+    for (double& x : point.c) x = static_cast<float>(x);
+    if (points.empty() || norm(point - points.back()) > 1e-5) points.push_back(point);
+  }
+  return points;
+}
+
+/// Returns a specimen of 120 mm x 80 mm with one stone, which blocks follow.
+Specimen with_stone(std::vector<Vec<2>> points, int blocks) {
+  SpecimenParameters p;
+  p.region = Region::rectangle(0.12, 0.08);
+  p.seed = 1;
+  p.superposition = Superposition::follow;
+  p.blocks.count = blocks;
+  p.blocks.shortest_edge = 0.3;
+  const auto [outline, centre] = outline_around(std::move(points));
+  p.aggregates.stones = {{centre, outline->width(), "aggregate", "", outline}};
+  p.aggregates.fraction = outline->extent() / p.region.area();
+  p.aggregates.d_min = p.aggregates.d_max = outline->width();
+  return make_specimen(p);
+}
+
+// A saw and the edge of an image cut stones. A sliver of mortar between the stone and the outline would draw
+// away the blocks around it.
+TEST(GrainFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
+  struct Cut {
+    Vec<2> centre;
+    double a, b;
+  };
+  for (const auto& [centre, a, b] :
+       {Cut{{{0.0, 0.04}}, 0.02, 0.02}, Cut{{{0.0, 0.0}}, 0.025, 0.02}, Cut{{{0.06, 0.04}}, 0.015, 0.05},
+        Cut{{{0.0, 0.04}}, 0.02, 0.3}, Cut{{{0.118, 0.08}}, 0.006, 0.006}}) {
+    for (const int blocks : {150, 600}) {
+      const Specimen specimen = with_stone(cut_ellipse(centre, a, b), blocks);
+      const GrainFit fit = fits_of(specimen).front();
+      EXPECT_NEAR(fit.area_of_blocks / fit.area, 1.0, fit.blocks > 1 ? 0.01 : 0.05);
+      double largest = 0.0;
+      std::vector<Vec<2>> polygon;
+      for (std::size_t cell = 0; cell < specimen.tessellation.cells.size(); ++cell) {
+        corners(specimen.tessellation, cell, polygon);
+        largest = std::max(largest, area(polygon));
+      }
+      EXPECT_LT(largest,
+                8.0 * specimen.region.area() / blocks);  // blocks of free seeds are up to 6 times the mean
+    }
+  }
 }
 
 }  // namespace

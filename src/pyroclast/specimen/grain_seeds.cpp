@@ -29,6 +29,8 @@ constexpr double kRound = 1.15;
 constexpr double kApartBetween = 0.45;
 /// Radii within a grain between which it has a seed in the middle: a free seed would seldom find the place.
 constexpr double kFewestAround = 1.3, kMiddle = 2.0;
+/// Distance of a grain's surface from the outline of the body up to which the outline cuts the grain.
+constexpr double kCut = 1e-3;
 /// Power of a point of the surface, in squared spacings: with it a seed at the offset has a radius of 0.5.
 constexpr double kPower = 0.25 - kFromSurface * kFromSurface;
 
@@ -77,7 +79,8 @@ GrainSeeds::Followed GrainSeeds::followed(const Aggregate& grain, const Way& way
                             shape->size() / kFewestTangents);
   const double larger =
       std::sqrt(area_of_tangents(shape->points(result.along, {}, spacing_over(result))) / shape->extent());
-  result.shape = shape->scaled(way.size / std::clamp(larger, 0.9, 1.25));
+  result.drawn = way.size / std::clamp(larger, 0.9, 1.25);
+  result.shape = shape->scaled(result.drawn);
   const double inner = result.shape->inner_radius(), outer = result.shape->bounding_radius();
   if (result.is_one_cell && (way.is_of_one_seed || outer < kRound * inner))
     result.power = inner * outer + kPower * spacing * spacing;
@@ -104,6 +107,10 @@ void GrainSeeds::follow(int number) {
   for (const auto& [at, normal] : grain.shape->points(grain.along, taken, spacing_over(grain))) {
     const Foot foot{grain.centre + at, normal};
     grain.feet.push_back(foot.at);
+    if (region_.distance_before_cuts(grain.centre + at * (1.0 / grain.drawn)) > -kCut * grain.spacing) {
+      add_within(number, foot);
+      continue;
+    }
     const auto [half, other] = gap_from(number, foot);
     if (grain.power > 0.0) {
       // the edge to the one seed is the tangent, wherever on its normal the other seed stands

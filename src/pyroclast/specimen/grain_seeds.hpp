@@ -14,7 +14,8 @@ namespace pyroclast::specimen {
 /// Seeds stand in pairs on both sides of a surface, so the edge between the two cells is a tangent. Each
 /// grain is first drawn smaller, by the factor by which the polygon of its tangents is larger than the grain.
 /// A small grain is one cell. Where two grains are so near to each other that two rows of seeds do not fit
-/// between them, they share one row in the middle of the gap.
+/// between them, they share one row in the middle of the gap. Where the outline of the body cuts a grain, the
+/// grain's cells end at the outline, and no seeds stand beyond its surface.
 ///
 /// All seeds near a surface have the same power there: r² = h² + constant, with the radius r of the seed and
 /// its distance h from the surface. So the edge between two of them is where the surface is, whatever h.
@@ -60,6 +61,7 @@ class GrainSeeds {
     /// Square of the radius of the one seed, m²; 0: each place of the surface has its own.
     double power = 0.0;
     double along = 0.0;             ///< distance from foot to foot where blocks are as large as there, m
+    double drawn = 1.0;             ///< size of the shape over that of the grain
     std::vector<Vec<2>> feet = {};  ///< places on the surface that have their seeds, m
   };
   /// Seed between grains that a surface asks for.
