@@ -210,6 +210,14 @@ class Deck:
             return Quantity(float(match[1]), match[2])
         return node
 
+    def __iter__(self) -> Iterator[str]:
+        """The keys and tables at the top of the deck, in its order: `dict(deck)` has each with its value."""
+        return iter(tomllib.loads(self.text))
+
+    def keys(self) -> list[str]:
+        """The keys and tables at the top of the deck, in its order."""
+        return list(self)
+
     def __contains__(self, path: str) -> bool:
         try:
             self[path]

@@ -32,6 +32,16 @@ class Decks(Case):
         with self.assertRaises(KeyError):
             starter["stages[7].kind"]
 
+    def test_a_deck_lists_its_keys(self):
+        made = deck()
+        keys = list(tomllib.loads(made.text))
+        self.assertEqual(list(made), keys)
+        self.assertEqual([key for key in made], keys)
+        self.assertEqual(sorted(made), sorted(keys))
+        self.assertEqual({key: dict(value) for key, value in dict(made).items() if key in ("specimen", "blocks")},
+                         {key: dict(made[key]) for key in ("specimen", "blocks")})
+        self.assertEqual({**made}["title"], made["title"])
+
     def test_values_are_set_with_units_and_bare_numbers_refused_as_in_decks(self):
         made = deck()
         made["contacts.mortar_mortar.f_t"] = 3 * MPa
