@@ -371,6 +371,24 @@ class Changing(Case):
         np.testing.assert_array_equal(view[run.slot], run.fields.displacement)
         pyroclast.Run.resume(out, threads=1).finish()
 
+    def test_a_folder_that_exists_or_is_held_is_told_in_words_of_a_script(self):
+        out = self.folder() / "run"
+        with pyroclast.Run(deck(), out=out, threads=1) as run:
+            with self.assertRaisesRegex(pyroclast.Error, "another run of this process .*; close that run"):
+                pyroclast.Run(deck(), out=out, threads=1)
+            with self.assertRaisesRegex(pyroclast.Error, "another run of this process"):
+                run.copy(out=out, overwrite=True)
+            run.until(strain=1e-4)
+            run.checkpoint()
+        for call in (lambda: pyroclast.Run(deck(), out=out, threads=1), lambda: pyroclast.Run(deck(), threads=1).copy(out=out),
+                     lambda: pyroclast.Run.fork(out, out=self.folder() / "none", from_stage=9),
+                     lambda: pyroclast.Run.fork(out, out=out, from_stage=0)):
+            with self.assertRaises(pyroclast.Error) as caught:
+                call()
+            self.assertNotIn("--", str(caught.exception))
+        with self.assertRaisesRegex(pyroclast.Error, "exists already; .* overwrite=True"):
+            pyroclast.Run(deck(), out=out, threads=1)
+
     def test_checkpoints_resume_and_fork(self):
         folder = self.folder()
         whole = pyroclast.Run(deck(), out=folder / "whole", threads=1).finish()

@@ -142,7 +142,8 @@ class Held {
 
 std::optional<RunOutput> output(const std::optional<std::string>& folder, bool overwrite) {
   if (!folder) return std::nullopt;
-  return RunOutput{*folder, overwrite, "a script, by the package for Python"};
+  return RunOutput{*folder, overwrite, "a script, by the package for Python",
+                   "choose another folder by out, or say overwrite=True"};
 }
 
 RunChoices choices(const std::optional<std::uint64_t>& seed, int threads, const std::string& instructions,

@@ -92,12 +92,16 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
       close(descriptor_);
       std::string holder;
       std::ifstream(file) >> holder;
+      if (cause != EWOULDBLOCK)
+        throw Error(fmt::format("{}: cannot be locked ({})", file.string(), std::strerror(cause)));
       throw Error(
-          cause == EWOULDBLOCK
-              ? fmt::format("{}: another process{} writes into this folder; wait for its end, or choose "
+          holder == std::to_string(getpid())
+              ? fmt::format("{}: another run of this process writes into this folder; close that run "
+                            "first, or choose another folder",
+                            folder_.string())
+              : fmt::format("{}: another process{} writes into this folder; wait for its end, or choose "
                             "another folder",
-                            folder_.string(), holder.empty() ? "" : fmt::format(" ({})", holder))
-              : fmt::format("{}: cannot be locked ({})", file.string(), std::strerror(cause)));
+                            folder_.string(), holder.empty() ? "" : fmt::format(" ({})", holder)));
     }
   } while (!stands_for(file, descriptor_));
   try {

@@ -161,13 +161,11 @@ std::vector<fs::path> remove_own_files(const fs::path& folder) {
 
 }  // namespace
 
-void RunFolder::check(const fs::path& path, bool overwrite) {
+void RunFolder::check(const fs::path& path, bool overwrite, std::string_view remedy) {
   const bool holds_files = std::ranges::any_of(
       fs::directory_iterator(path), [](const auto& entry) { return entry.path().filename() != "lock"; });
   if (!holds_files) return;
-  if (!overwrite)
-    throw Error(fmt::format("{}: exists already; choose another folder with --out, or --overwrite it",
-                            path.string()));
+  if (!overwrite) throw Error(fmt::format("{}: exists already; {}", path.string(), remedy));
   if (!holds_a_run(path))
     throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten",
                             path.string(), kManifest));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/results/inputs.hpp"
@@ -47,13 +48,18 @@ struct Manifest {
   std::optional<Parent> parent;
 };
 
+/// What to do about a folder that exists, by options of the program.
+inline constexpr std::string_view kOtherFolder = "choose another folder with --out, or --overwrite it";
+
 /// Folder that holds everything of one run. A folder that is not empty is refused, unless overwriting was
 /// asked for. Even then it must have the manifest of a run, and only files that a run writes are removed from
 /// it.
 class RunFolder {
  public:
   /// Throws Error when the folder, which this process has locked, may not be written.
-  static void check(const std::filesystem::path& path, bool overwrite);
+  /// \param remedy  what to do about a folder that exists, in words that the user can follow
+  static void check(const std::filesystem::path& path, bool overwrite,
+                    std::string_view remedy = kOtherFolder);
   /// Throws Error where a folder into which a run writes, or a file to which it appends, is a link.
   static void require_no_links(const std::filesystem::path& path);
   /// Throws Error when the path is not the folder of a run.

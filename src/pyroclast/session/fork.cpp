@@ -54,13 +54,13 @@ std::int64_t stage_of(const std::string& stated, const Setup& setup) {
   const auto [end, error] = std::from_chars(stated.data(), stated.data() + stated.size(), number);
   if (error == std::errc{} && end == stated.data() + stated.size()) {
     if (number >= 0 && number < count) return number;
-    throw Error(fmt::format("--from-stage {}: the run has stages 0 to {}", stated, count - 1));
+    throw Error(fmt::format("stage {}: the run has stages 0 to {}", stated, count - 1));
   }
   const auto& names = setup.stage_names;
   const auto found = std::ranges::count(names, stated);
   if (found == 1) return std::ranges::find(names, stated) - names.begin();
-  throw Error(fmt::format("--from-stage {}: {} of the stages have this name; they are, from 0 on: {}", stated,
-                          found, fmt::join(names, ", ")));
+  throw Error(fmt::format("stage {}: {} of the stages have this name; they are, from 0 on: {}", stated, found,
+                          fmt::join(names, ", ")));
 }
 
 /// Throws Error for a run that a script changed: its checkpoints do not hold what the script does.
@@ -82,17 +82,17 @@ void require_later(const std::string& change, std::int64_t stage) {
     std::int64_t of = 0;
     const auto [end, error] = std::from_chars(key.data() + kStages.size(), key.data() + key.size(), of);
     if (error == std::errc{} && *end == ']' && of > stage) return;
-    throw Error(fmt::format("--set {}: the parent has done this stage; only stages[{}] and later may change",
+    throw Error(fmt::format("{}: the parent has done this stage; only stages[{}] and later may change",
                             change, stage + 1));
   }
   if (key.starts_with("coupling"))
     throw Error(
-        fmt::format("--set {}: [coupling] acts in earlier stages too; say stages[{}].{} for that stage alone",
+        fmt::format("{}: [coupling] acts in earlier stages too; say stages[{}].{} for that stage alone",
                     change, stage + 1, key));
-  throw Error(fmt::format(
-      "--set {}: acts before the end of stage {}; in a fork only stages[{}] and later, their coupling "
-      "(stages[{}].coupling.KEY) and output may change",
-      change, stage, stage + 1, stage + 1));
+  throw Error(
+      fmt::format("{}: acts before the end of stage {}; in a fork only stages[{}] and later, their coupling "
+                  "(stages[{}].coupling.KEY) and output may change",
+                  change, stage, stage + 1, stage + 1));
 }
 
 void copy_frames(const fs::path& from, const fs::path& to, int count) {

@@ -79,7 +79,7 @@ Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesyste
 /// Locks the folder of an output. Throws Error where the folder may not be written.
 std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
   auto held = std::make_unique<FolderLock>(output.folder);
-  RunFolder::check(output.folder, output.overwrite);
+  RunFolder::check(output.folder, output.overwrite, output.remedy);
   return held;
 }
 

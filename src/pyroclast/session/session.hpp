@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/results/checkpoints.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/results_writer.hpp"
+#include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/session/open.hpp"
 #include "pyroclast/simulation/run.hpp"
 
@@ -21,6 +23,7 @@ struct RunOutput {
   std::filesystem::path folder;
   bool overwrite = false;
   std::string command = {};
+  std::string_view remedy = kOtherFolder;  ///< what to do about a folder that exists
 };
 
 /// Run from which another one is forked.
