@@ -134,7 +134,7 @@ def _cracks_of_solid(run: Run, blocks: BlockMesh) -> np.ndarray:
 def png_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> bytes:
     """The figure as a PNG."""
     picture = io.BytesIO()
-    with matplotlib.rc_context(style.STYLE):
+    with matplotlib.rc_context(style.STYLE), style.letters_told_once():
         figure_of(run, draw_section).savefig(picture, format="png")
     return picture.getvalue()
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
+import warnings
 from collections.abc import Callable, Container, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -18,6 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
 from .writing import whole
@@ -38,6 +41,7 @@ _LOWEST = 0.42  # height of a panel over that of the highest
 _LEGEND_GAP = 4.0  # points between a legend and curves below it
 _MOST_POINTS = 20_000  # of a line in a figure: more than its width has dots
 _TITLE_WIDTH = 100  # characters that fit a page of two columns
+_MOST_LETTERS = 20  # that a warning names
 _MOST_OF_A_TEXT = 200  # characters of a user's text
 
 STYLE = {
@@ -407,6 +411,29 @@ def _laid_out_once(figure: Figure) -> Iterator[None]:
         del engine.execute
 
 
+_NO_GLYPH = re.compile(r"Glyph (\d+) .*missing from")
+_told: list[str] = []  # characters that a warning named
+
+
+@contextmanager
+def letters_told_once() -> Iterator[None]:
+    """Warns once in a process, in one line, of letters that the font lacks: Matplotlib warns of each at each drawing.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield
+    lacking = ""
+    for warning in caught:
+        if (match := _NO_GLYPH.match(str(warning.message))) is None:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+        elif (letter := chr(int(match[1]))) not in lacking:
+            lacking += letter
+    if lacking and not _told:
+        _told.append(lacking)
+        warnings.warn(f"the font {FontProperties().get_name()} has no {lacking[:_MOST_LETTERS]}: figures show boxes in "
+                      "their place; name another font by font.family in a matplotlibrc", stacklevel=3)
+
+
 @matplotlib.rc_context(STYLE)
 def save(figure: Figure, path: Path) -> Path:
     """Writes the figure, its format by the file's ending; makes the folder. Returns the path.
@@ -416,7 +443,6 @@ def save(figure: Figure, path: Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     ending = path.suffix.lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    settle(thin(figure))
-    with whole(path) as aside, _laid_out_once(figure):
+    with whole(path) as aside, letters_told_once(), _laid_out_once(settle(thin(figure))):
         figure.savefig(aside, format=ending[1:], metadata=undated.get(ending))
     return path

@@ -299,7 +299,8 @@ class Watch:
     def png(self) -> bytes:
         """The picture."""
         into = io.BytesIO()
-        self.draw().savefig(into, format="png")
+        with style.letters_told_once():
+            self.draw().savefig(into, format="png")
         return into.getvalue()
 
     def save(self) -> Path:

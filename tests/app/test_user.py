@@ -841,6 +841,16 @@ class Running(UserTest):
         self.assertIn("figures/fracture.png", done.stdout)
         self.assert_that_overwriting_clears("out")
 
+    def test_what_figures_lack_is_told_once_in_a_line(self):
+        deck = self.write(re.sub('^title = .*', 'title = "混凝土 压缩"', small_deck(), flags=re.MULTILINE))
+        words = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CONFIG_HOME")}
+        done = self.pyroclast("run", deck, "--out", "out", env=words | {"HOME": "/proc/none"})  # not even root makes it
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = [line for line in done.stderr.splitlines() if re.search("matplotlib|glyph|font", line, re.IGNORECASE)]
+        self.assertEqual([any(word in line for line in told) for word in ("MPLCONFIGDIR", "混凝土压缩")], [True, True])
+        self.assertEqual(len(told), 2, told)
+        self.assertTrue((self.folder / "out/report.html").exists())
+
     def test_fields_open_in_vtk_with_blocks_materials_stresses_and_contacts(self):
         import h5py  # pylint: disable=import-outside-toplevel
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -69,6 +70,8 @@ import runpy, signal
 if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 try:
+    from pyroclast.libraries import hear_matplotlib
+    hear_matplotlib()
     runpy.run_module('@', run_name='__main__', alter_sys=True)
 except ImportError as error:
     if "'_core'" in str(error) or error.name == 'pyroclast._core':
@@ -93,6 +96,9 @@ Strings environment() {
   for (char** variable = environ; *variable != nullptr; ++variable)
     if (!std::string(*variable).starts_with("PYTHONPATH=")) variables.emplace_back(*variable);
   variables.push_back("PYTHONPATH=" + package_folder().string());
+  // one process tells that Matplotlib has no folder: see hear_matplotlib
+  static bool is_first = true;
+  if (!std::exchange(is_first, false)) variables.emplace_back("PYROCLAST_MATPLOTLIB_TOLD=1");
   return Strings(std::move(variables));
 }
 
