@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, label_image, mesh_cells
 from .errors import Error
 from .libraries import library
-from .units import Quantity
+from .units import Quantity, length
 
 if TYPE_CHECKING:
     import meshio
@@ -156,36 +156,39 @@ class Specimen(_Blocks[_core.Specimen]):
 
         image: (rows, columns) of labels, the first row on top: the rectangle from [0, 0] to columns and rows times
             `pixel`. Or the name of a file that holds it: .npy, or .png and .tif of one page whose grey values, or
-            numbers of colours of a palette, are the labels.
+            numbers of colours of a palette, are the labels; it is turned as its tag Orientation says. Labels are whole
+            numbers, or texts.
         pixel: the side of one, with its unit ("0.2 mm").
-        phases: the name of each label's phase; None: there is nothing, so that blocks there are left out, and pieces
-            that do not hang together with the largest.
+        phases: the name of each label's phase. A key may be several labels, as a range, a tuple or a frozenset, or
+            `...` for all labels that have no key: `{0: "mortar", ...: "aggregate"}` names the stones of a watershed.
+            None: there is nothing, so that blocks there are left out, and pieces that do not hang together with the
+            largest.
         blocks: their number in the rectangle.
         seed, shortest_edge, relaxation, radius_spread: as a deck's keys of these names.
+
+        Labels that share a phase are stones, each with a number of its own in `stone`, by which a deck's
+        `between_stones` knows them. The label of a phase of one label is none.
 
         `agreement` tells which share of the image is of the phase of its block. Blocks must be smaller than what they
         shall show, and larger than a pixel; a smaller one is of the pixel in its middle. Warns of a phase that pixels
         are of and no block, which keeps its place in `phases`, and of an image that is not 10 mm to 10 m wide and high.
 
         Raises Error for labels without a name, telling how many pixels have each label and where the first is, for
-        pixels that are masked or NaN, for an image without anything, and for a file that is no such image.
+        numbers that are not whole, for pixels that are masked or NaN, for an image without anything, and for a file
+        that is no such image.
         """
         pixels, source = label_image.pixels_of(image)
-        side = _length("pixel", pixel, "0.2 mm")
+        side = length("pixel", pixel, "0.2 mm")
         names = list(dict.fromkeys(name for name in phases.values() if name is not None))
-        shown = np.full(pixels.shape, -2)
-        for label, name in phases.items():
-            shown[pixels == label] = -1 if name is None else names.index(name)
-        if (shown == -2).any():
-            row, column = np.argwhere(shown == -2)[0]
-            raise Error(f"{source}pixel [{row}, {column}] has the label {pixels[row, column].item()!r}, for which "
-                        f"there is no phase; {np.count_nonzero(shown == -2)} of {shown.size} pixels have none. The "
-                        f"image has "
-                        f"{label_image.counted(pixels)}; phases has {', '.join(map(repr, phases)) or 'none'}")
-        rows, columns = shown.shape
+        labels, place = label_image.numbered(pixels)
+        keys = label_image.keys_of(labels, place, phases, source)
+        places: dict[str | None, int] = {None: -1} | {name: i for i, name in enumerate(names)}
+        number = np.array([places[phases[key]] for key in keys])  # phase of each label
+        rows, columns = place.shape
         made = _core.Specimen.rectangle(columns * side, rows * side, blocks, shortest_edge, relaxation, radius_spread,
                                         seed)
-        votes = _votes(made, shown, side, len(names))
+        seen = _pixels_of_blocks(made, place, side)
+        votes = np.array([np.bincount(number[some] + 1, minlength=len(names) + 1) for some in seen])
         phase = votes.argmax(axis=1) - 1
         cells = made.cells
         if None in phases.values():
@@ -193,14 +196,15 @@ class Specimen(_Blocks[_core.Specimen]):
         kept = np.flatnonzero(phase >= 0)
         if not len(kept):
             raise Error(f"{source}there is nothing in the image that is as large as a block; it has "
-                        f"{label_image.counted(pixels)}")
+                        f"{label_image.counted(labels, place)}")
         alike = float(np.take_along_axis(votes, phase[:, None] + 1, axis=1).sum() / votes.sum())
         used, numbers = np.unique(np.concatenate([cells[i] for i in kept]), return_inverse=True)
         ends = np.cumsum([len(cells[i]) for i in kept])[:-1]
+        stone = _stones([seen[i] for i in kept], phase[kept], number, label_image.are_of_stones(keys, phases))
         whole = _from_cells(made.vertices[used], np.split(numbers, ends), phase[kept], dict(enumerate(names)), "m",
-                            None)
-        for number, name in enumerate(names):
-            if (count := np.count_nonzero(shown == number)) and not (phase[kept] == number).any():
+                            None, stone=stone)
+        for i, name in enumerate(names):
+            if (count := np.count_nonzero(number[place] == i)) and not (phase[kept] == i).any():
                 warnings.warn(f"{source}phase {name!r} is of {count} pixel{'' if count == 1 else 's'} and of no block: "
                               f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
         _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
@@ -365,7 +369,7 @@ def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpeci
 def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                 labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None, unit: str | Quantity,
                 join: str | Quantity | None, block_size: ArrayLike = (), stone: ArrayLike = ()) -> _core.Specimen:
-    metres = _length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
+    metres = length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
     at = np.asarray(vertices, float)
     if at.ndim != 2 or at.shape[1] != 2:
         raise Error(f"vertices must be (n, 2), not {at.shape}"
@@ -416,21 +420,8 @@ def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | N
     return names, np.array([place[label if phases is None else phases[label]] for label in values], np.int32)
 
 
-def _length(name: str, value: str | Quantity, example: str) -> float:
-    """In m, positive."""
-    if not isinstance(value, (str, Quantity)):
-        raise Error(f'{name}: a unit of length is needed, e.g. "{example}"; got {value!r}')
-    try:
-        metres = _core.convert(str(value), "m")
-    except Error as error:
-        raise Error(f"{name}: {error}") from None
-    if not metres > 0.0:
-        raise Error(f"{name} is {value}; it must be greater than 0")
-    return metres
-
-
 def _join(join: str | Quantity | None) -> float:
-    return 0.0 if join is None else _length("join", join, "1 um")
+    return 0.0 if join is None else length("join", join, "1 um")
 
 
 def _stated(unit: str | Quantity | None, what: str) -> str | Quantity:
@@ -452,13 +443,11 @@ def _warn_of_size(made: _core.Specimen, why: str) -> None:
                       f"{_USUAL[0]:g} and {_USUAL[1]:g} m: {why}", stacklevel=3)
 
 
-def _votes(made: _core.Specimen, shown: NDArray[Any], side: float, phases: int) -> NDArray[np.int64]:
-    """(blocks, 1 + phases): pixels of nothing and of each phase whose middle lies in each block; of a block without any
-    that in its middle.
-    """
-    at, rows = made.vertices / side, shown.shape[0]
-    votes = np.zeros((len(made.phase), 1 + phases), np.int64)
-    for i, cell in enumerate(made.cells):
+def _pixels_of_blocks(made: _core.Specimen, image: NDArray[Any], side: float) -> list[NDArray[Any]]:
+    """Returns for each block the pixels whose middle lies in it; of a block without any that in its middle."""
+    at, rows = made.vertices / side, image.shape[0]
+    seen = []
+    for cell in made.cells:
         corners = at[cell]
         low, high = np.floor(corners.min(axis=0)).astype(int), np.ceil(corners.max(axis=0)).astype(int)
         x, y = (np.arange(low[k], high[k]) + 0.5 for k in (0, 1))
@@ -466,13 +455,31 @@ def _votes(made: _core.Specimen, shown: NDArray[Any], side: float, phases: int) 
         # left of every edge
         inside = (edge[:, 0, None, None] * (y[:, None] - corners[:, 1, None, None])
                   >= edge[:, 1, None, None] * (x[None, :] - corners[:, 0, None, None])).all(axis=0)
-        part = shown[rows - high[1]:rows - low[1], low[0]:high[0]][::-1]
+        part = image[rows - high[1]:rows - low[1], low[0]:high[0]][::-1]
         found = part[inside]
         if not len(found):
             column, up = corners.mean(axis=0).astype(int)
-            found = shown[rows - 1 - up, column:column + 1]
-        votes[i] = np.bincount(found + 1, minlength=1 + phases)
-    return votes
+            found = image[rows - 1 - up, column:column + 1]
+        seen.append(found)
+    return seen
+
+
+def _stones(seen: list[NDArray[Any]], phase: NDArray[Any], number: NDArray[Any], of_stones: NDArray[Any]) -> ArrayLike:
+    """Returns the stone of each block: the label that most of its pixels of its phase have, counted from 0 among the
+    labels of stones, -1: none. Without such labels there are no stones.
+
+    seen: of each block the places of its pixels' labels
+    number: of each label its phase
+    of_stones: of each label whether it is a stone
+    """
+    if not of_stones.any():
+        return ()
+    stone_of = np.where(of_stones, np.cumsum(of_stones) - 1, -1)
+    stones = []
+    for some, own in zip(seen, phase):
+        labels, counts = np.unique(some[number[some] == own], return_counts=True)
+        stones.append(stone_of[labels[counts.argmax()]] if len(labels) else -1)
+    return np.array(stones)
 
 
 def _one_piece(cells: list[NDArray[np.int32]], phase: NDArray[Any], votes: NDArray[np.int64]) -> NDArray[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import _core
+from .errors import Error
 
 
 class Quantity:
@@ -64,6 +65,20 @@ class Quantity:
 def in_si(value: Quantity | str | float, unit: str) -> float:
     """A value in an SI unit, of temperature in degC: a number is taken to be in it already."""
     return float(value) if isinstance(value, (int, float)) else _core.convert(str(value), unit)
+
+
+def length(name: str, value: object, example: str, *, is_size: bool = True) -> float:
+    """Returns a length in m; that of a size is positive. Raises Error, which names it, for a number without a unit."""
+    if not isinstance(value, (str, Quantity)):
+        in_metres = f'; if it is in m, say "{value!r} m"' if isinstance(value, (int, float)) else ""
+        raise Error(f'{name}: a unit of length is needed, e.g. "{example}"; got {value!r}{in_metres}')
+    try:
+        metres = _core.convert(str(value), "m")
+    except Error as error:
+        raise Error(f"{name}: {error}") from None
+    if is_size and not metres > 0.0:
+        raise Error(f"{name} is {value}; it must be greater than 0")
+    return metres
 
 
 m, cm, mm, um = (Quantity(1.0, name) for name in ("m", "cm", "mm", "um"))

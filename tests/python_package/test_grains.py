@@ -11,8 +11,9 @@ import unittest
 import numpy as np
 
 import pyroclast
-from pyroclast import grains
+from pyroclast import grains, m, mm
 
+MM = ("0 mm", "0 mm", "100 mm", "100 mm")  # corners of a box
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 
 
@@ -34,7 +35,7 @@ class Outlines(unittest.TestCase):
         def two_circles(places):
             return np.minimum(np.hypot(*(places - [0.02, 0.03]).T) - 0.01, np.hypot(*(places - [0.02, 0.005]).T) - 0.004)
 
-        small, large = sorted(grains.grains_of_distance(two_circles, (0, 0), (0.05, 0.06), 0.2e-3), key=lambda g: g.area)
+        small, large = sorted(grains.grains_of_distance(two_circles, MM[:2], ("50 mm", "60 mm"), "0.2 mm"), key=lambda g: g.area)
         for grain, radius in ((small, 0.004), (large, 0.01)):
             self.assertAlmostEqual(grain.area / (np.pi * radius**2), 1.0, delta=2e-3)
             self.assertAlmostEqual(grain.perimeter / (2.0 * np.pi * radius), 1.0, delta=2e-3)
@@ -42,7 +43,7 @@ class Outlines(unittest.TestCase):
     def test_image(self):
         angle = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)
         exact = grains.Grain(harmonic_stone(angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
-        stone, = grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), 0.3e-3)
+        stone, = grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm")
         self.assertAlmostEqual(stone.area / exact.area, 1.0, delta=0.01)
         self.assertAlmostEqual(stone.perimeter / exact.perimeter, 1.0, delta=0.01)
         apart = np.linalg.norm(stone.outline[:, None] - (exact.outline + [0.02, 0.025]), axis=2).min(axis=1)
@@ -50,23 +51,172 @@ class Outlines(unittest.TestCase):
 
     def test_holes_are_filled(self):
         annulus, = grains.grains_of_distance(
-            lambda p: np.abs(np.linalg.norm(p - 0.05, axis=1) - 0.02) - 0.01, (0, 0), (0.1, 0.1), 0.5e-3)
+            lambda p: np.abs(np.linalg.norm(p - 0.05, axis=1) - 0.02) - 0.01, MM[:2], MM[2:], "0.5 mm")
         self.assertAlmostEqual(annulus.area / (np.pi * 0.03**2), 1.0, delta=2e-3)
-        stone, = grains.grains_of_labels(image_of_annulus(0), 1e-3)
+        stone, = grains.grains_of_labels(image_of_annulus(0), "1 mm")
         self.assertAlmostEqual(stone.area / (np.pi * 0.03**2), 1.0, delta=0.01)
 
     def test_refused(self):
         for message, call in (
                 ("a grain of label 1 encloses the label 2 at row 35, column 50",
-                 lambda: grains.grains_of_labels(image_of_annulus(2), 1e-3)),
-                ("reaches out of the box", lambda: grains.grains_of_distance(lambda p: p[:, 0] - 0.5, (0, 0), (1, 1), 0.1)),
-                ("returned an array of", lambda: grains.grains_of_distance(lambda p: p, (0, 0), (1, 1), 0.1)),
-                ("must be finite", lambda: grains.grains_of_distance(lambda p: p[:, 0] * np.nan, (0, 0), (1, 1), 0.1)),
-                ("no grid", lambda: grains.grains_of_distance(lambda p: p[:, 0], (0, 0), (0, 1), 0.1)),
-                ("there are no grains", lambda: grains.grains_of_labels(np.zeros((5, 5), int), 1e-3)),
-                ("it must be positive", lambda: grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), 0.0))):
+                 lambda: grains.grains_of_labels(image_of_annulus(2), "1 mm")),
+                ("reaches out of the box", lambda: in_box(lambda p: p[:, 0] - 0.05)),
+                ("returned an array of", lambda: in_box(lambda p: p)),
+                ("must be finite", lambda: in_box(lambda p: p[:, 0] * np.nan)),
+                ("no grid", lambda: grains.grains_of_distance(lambda p: p[:, 0], MM[:2], ("0 mm", "9 mm"), "1 mm")),
+                ("all pixels are of the matrix", lambda: grains.grains_of_labels(np.zeros((5, 5), int), "1 mm")),
+                ("greater than 0", lambda: grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0 mm"))):
             with self.subTest(message), self.assertRaisesRegex(pyroclast.Error, message):
                 call()
+
+    def test_a_mask_is_no_distance_and_a_distance_is_negative_in_grains(self):
+        def inside(places):
+            return 0.02 - np.linalg.norm(places - 0.05, axis=1)
+
+        self.assertEqual(len(in_box(lambda p: -inside(p))), 1)
+        for told, distance in (("reaches out of the box.*positive within grains.*its negative", inside),
+                               ("False and True alone, as a mask has.*distance_transform_edt", lambda p: inside(p) > 0.0),
+                               ("0.0 and 1.0 alone", lambda p: (inside(p) > 0.0).astype(float)),
+                               ("-1.0 and 1.0 alone", lambda p: np.where(inside(p) > 0.0, -1.0, 1.0)),
+                               ("negative nowhere", lambda p: np.clip(100.0 * inside(p), 0.0, 1.0)),
+                               ("negative nowhere", lambda p: np.abs(inside(p)) + 1e-6),
+                               ("ndarray, not a function of places.*grains_of_labels", np.zeros((9, 9), bool))):
+            with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
+                in_box(distance)
+
+    def test_lengths_have_units(self):
+        image = image_of_harmonic_stone(0.3e-3)
+        areas = [grains.grains_of_labels(image, pixel)[0].area for pixel in ("0.3 mm", 0.3 * mm, "300 um", 3e-4 * m)]
+        self.assertAlmostEqual(max(areas) / min(areas), 1.0)
+
+        def circle(places):
+            return np.linalg.norm(places - 0.05, axis=1) - 0.01
+
+        same = [grains.grains_of_distance(circle, *box)[0].area for box in (
+            (MM[:2], MM[2:], "1 mm"), (np.zeros(2) * mm, [0.1 * m, "10 cm"], 1 * mm), ([0 * mm, "0 m"], MM[2:], 0.001 * m))]
+        self.assertAlmostEqual(max(same) / min(same), 1.0)
+        for told, call in (('pixel: a unit of length is needed.*got 1.0; .*"1.0 m"', lambda: grains.grains_of_labels(image, 1.0)),
+                           ("pixel: .*dimension|pixel: .*length", lambda: grains.grains_of_labels(image, "1 s")),
+                           (r"low\[0\]: a unit", lambda: grains.grains_of_distance(circle, (0, 0), MM[2:], "1 mm")),
+                           (r"high\[1\]: a unit", lambda: grains.grains_of_distance(circle, MM[:2], ("1 m", 1), "1 mm")),
+                           ("spacing: a unit", lambda: grains.grains_of_distance(circle, MM[:2], MM[2:], 1e-3))):
+            with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
+                call()
+
+
+class Labels(unittest.TestCase):
+    """Stones of an image that are not one smooth part within it."""
+
+    def areas(self, image, **more):
+        """Areas of the grains in pixels, whose sum is the number of pixels of stones."""
+        found = grains.grains_of_labels(image, "1 mm", **more)
+        areas = np.array([1e6 * grain.area for grain in found])
+        self.assertAlmostEqual(areas.sum() / np.count_nonzero(image), 1.0, delta=1e-5)
+        return found, areas
+
+    def test_a_neck_of_one_pixel_parts_stones_and_one_of_two_does_not(self):
+        image = discs((40, 30, 20), (40, 90, 20))
+        image[40, 30:90] = 1
+        found, areas = self.areas(image)
+        np.testing.assert_allclose(areas, 1245, rtol=0.01)
+        np.testing.assert_allclose(sorted(1e3 * middle_of(grain)[0] for grain in found), [30.5, 90.5], atol=0.5)
+        image[41, 30:90] = 1
+        whole, = self.areas(image)[0]
+        self.assertAlmostEqual(np.ptp(whole.outline[:, 0]), 0.099, delta=2e-3)
+
+    def test_whatever_smoothing_cuts_the_areas_stay(self):
+        chain = discs((20, 20, 9), (20, 60, 9), (60, 60, 12), (60, 100, 5))
+        chain[20, 20:60] = chain[20:60, 60] = chain[60, 60:100] = 1
+        self.assertEqual(len(self.areas(chain)[0]), 4)
+        hairy = discs((40, 60, 15))
+        hairy[40, 10:60] = hairy[5:40, 60] = 1
+        stone, = self.areas(hairy)[0]
+        self.assertLess(np.ptp(stone.outline[:, 0]), 0.04)  # a hair is no part of the outline
+        unequal = discs((40, 30, 20), (40, 60, 4))
+        unequal[40, 30:60] = 1
+        self.assertGreater(min(self.areas(unequal)[1]), 45.0)
+
+    def test_a_mouth_of_one_pixel_closes_and_may_hold_no_other_stone(self):
+        image = discs((40, 60, 30)) - discs((40, 60, 20))
+        image[40, 75:] = 0
+        stone, = grains.grains_of_labels(image, "1 mm")
+        self.assertAlmostEqual(stone.area / (1e-6 * discs((40, 60, 30)).sum()), 1.0, delta=0.01)
+        image[35:45, 55:65] = 2
+        with self.assertRaisesRegex(pyroclast.Error, "a grain of label 1 encloses the label 2 at row 35, column 55"):
+            grains.grains_of_labels(image, "1 mm")
+
+    def test_parts_that_are_too_small_are_told(self):
+        image = discs((40, 60, 15))
+        image[5, 7] = image[70, 10] = image[70, 11] = 1
+        with self.assertWarnsRegex(UserWarning, "2 parts are too small.*row 5, column 7, .*: 3 pixels together"):
+            self.assertEqual(len(grains.grains_of_labels(image, "1 mm")), 1)
+
+    def test_a_stone_that_the_edge_cuts_ends_there(self):
+        for name, image, low, high in (
+                ("left", discs((40, 0, 20)), (0, 20), (20, 59)), ("corner", discs((0, 0, 20)), (0, 60), (20, 80)),
+                ("edge", band(columns=15), (0, 0), (15, 80)), ("right", band(columns=15)[:, ::-1], (105, 0), (120, 80)),
+                ("both", discs((40, 60, 45)), (16, 0), (105, 80)), ("bottom", discs((79, 60, 9)), (52, 0), (69, 9))):
+            with self.subTest(name):
+                stone, = self.areas(image)[0]
+                np.testing.assert_allclose(1e3 * stone.outline.min(axis=0), low, atol=0.5)
+                np.testing.assert_allclose(1e3 * stone.outline.max(axis=0), high, atol=0.5)
+                self.assertGreaterEqual(stone.outline.min(), 0.0)
+                self.assertTrue(np.all(stone.outline <= [0.12, 0.08]))
+
+    def test_what_fills_the_image_is_the_matrix(self):
+        for image in (np.ones((9, 9), int), 1 - discs((40, 60, 20))):
+            with self.assertRaisesRegex(pyroclast.Error, "as a matrix does; if it is the matrix, say matrix=1"):
+                grains.grains_of_labels(image, "1 mm")
+        self.assertEqual(len(grains.grains_of_labels(1 - discs((40, 60, 20)), "1 mm", matrix=1)), 1)
+
+    def test_labels_are_whole_numbers(self):
+        image = discs((40, 60, 20))
+        for pixels, told in ((0.5 * image, "is 0.5, but labels must be whole numbers"),
+                             (image / 255.0, "must be whole numbers.*1245 of 9600"),
+                             (np.where(image, "stone", "mortar"), "the labels are texts, such as 'mortar'")):
+            with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
+                grains.grains_of_labels(pixels, "1 mm")
+        self.assertEqual(len(grains.grains_of_labels(image.astype(bool), "1 mm")), 1)
+
+    def test_stones_of_a_watershed_share_their_lines_and_a_phase(self):
+        image = watershed()
+        found, areas = self.areas(image, phases={...: 0})
+        np.testing.assert_allclose(areas, np.bincount(image.ravel())[1:], rtol=0.01)
+        self.assertEqual({grain.phase for grain in found}, {0})
+        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm", phases={(1, 2): 1, range(3, 5): 0})],
+                         [1, 1, 0, 0])
+        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm", phases={3: None, ...: 2})], [2, 2, 2])
+        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm")], [0, 1, 2, 3])
+        for phases, told in (({1: 0}, "the label 2, for which there is no phase"), ({...: "stone"}, "the phase 'stone'; it must"),
+                             ({1: -1, ...: 0}, "the phase -1"), ({range(1, 3): 0, ...: 0, 2: 1}, "names the label 2 twice")):
+            with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
+                grains.grains_of_labels(image, "1 mm", phases=phases)
+
+
+def in_box(distance):
+    return grains.grains_of_distance(distance, MM[:2], MM[2:], "1 mm")
+
+
+def middle_of(grain):
+    return 0.5 * (grain.outline.min(axis=0) + grain.outline.max(axis=0))
+
+
+def discs(*places):
+    """(80, 120): discs of label 1, each of a row, a column and a radius."""
+    row, column = np.mgrid[:80, :120]
+    return np.any([np.hypot(row - a, column - b) < radius for a, b, radius in places], axis=0).astype(int)
+
+
+def band(columns):
+    image = np.zeros((80, 120), int)
+    image[:, :columns] = 1
+    return image
+
+
+def watershed():
+    """(80, 120): four stones, 1 to 4, that touch, and meet in the middle."""
+    row, column = np.mgrid[-40:40, -60:60] + 0.5
+    return np.where(np.hypot(row, column) < 30.0, 1 + 2 * (row > 0.0) + (column > 0.0), 0).astype(int)
 
 
 def image_of_annulus(inside):
@@ -100,7 +250,7 @@ class ByDeck(unittest.TestCase):
         return done.returncode, done.stdout + done.stderr, self.folder / out / "specimen"
 
     def test_a_stone_of_an_image_is_followed(self):
-        grains.write_grains(self.folder / "grains.csv", grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), 0.3e-3))
+        grains.write_grains(self.folder / "grains.csv", grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm"))
         code, told, tables = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "grains.csv"\n'))
         self.assertEqual(code, 0, told)
         facts = json.loads((tables / "specimen.json").read_text())
@@ -109,6 +259,23 @@ class ByDeck(unittest.TestCase):
         with open(tables / "grain_fit.csv", newline="") as file:
             fit, = csv.DictReader(file)
         self.assertAlmostEqual(float(fit["interface_m"]) / float(fit["perimeter_m"]), 1.0, delta=0.05)
+
+    def test_stones_that_the_edge_cuts_or_that_touch_are_followed(self):
+        cut = np.zeros((60, 30), int)  # as the specimen of the deck: 5 mm a pixel
+        for number, (row, column) in enumerate(((30, 0), (0, 29), (59, 15)), 1):
+            cut[np.hypot(*(np.mgrid[:60, :30] - np.array([row, column])[:, None, None])) < 9.0] = number
+        touching = np.zeros((60, 30), int)
+        touching[20:40, 5:25] = np.where(np.arange(20) < 10, 1, 2)
+        for name, image in (("cut", cut), ("touching", touching)):
+            with self.subTest(name):
+                grains.write_grains(self.folder / "grains.csv", grains.grains_of_labels(image, "5 mm", phases={...: 0}))
+                code, told, tables = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "grains.csv"\n'), name)
+                self.assertEqual(code, 0, told)
+                with open(tables / "grain_fit.csv", newline="") as file:
+                    fits = list(csv.DictReader(file))
+                self.assertEqual(len(fits), image.max())
+                for fit in fits:
+                    self.assertAlmostEqual(float(fit["area_of_blocks_m2"]) / float(fit["area_m2"]), 1.0, delta=0.02)
 
     def test_outlines_of_a_run_make_the_same_specimen(self):
         shaped = ('[aggregates]\nfraction = 0.3\nd_min = "6 mm"\nd_max = "20 mm"\nfuller_exponent = 0.5\n'

@@ -3,12 +3,13 @@
 import json
 import shutil
 import subprocess
+import warnings
 
 import meshio
 import numpy as np
 
 import pyroclast
-from pyroclast import m, mm
+from pyroclast import label_image, m, mm
 from small import PROGRAM, Case, deck, plate
 
 SQUARES = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [4, 5, 9, 8], [6, 7, 11, 10], [8, 9, 13, 12], [9, 10, 14, 13],
@@ -523,6 +524,83 @@ class Images(Case):
                            ("slice.jpg", "read from .npy, .png, .tif")):
             with self.assertRaisesRegex(pyroclast.Error, told):
                 pyroclast.Specimen.from_image(folder / name, 1 * mm, names, blocks=100)
+
+    def test_a_picture_is_turned_as_its_tag_orientation_says(self):
+        from PIL import Image
+        folder = self.folder()
+        image = np.arange(6, dtype=np.uint8).reshape(2, 3)
+        turned = {1: image, 2: image[:, ::-1], 3: image[::-1, ::-1], 4: image[::-1], 5: image.T, 6: np.rot90(image, -1),
+                  7: image[::-1, ::-1].T, 8: np.rot90(image)}  # TIFF 6.0, page 36
+        for orientation, right in turned.items():
+            exif = Image.Exif()
+            exif[274] = orientation
+            saved = {"raw.tif": {"tiffinfo": {274: orientation}}, "slice.png": {"exif": exif},
+                     "packed.tif": {"tiffinfo": {274: orientation}, "compression": "tiff_lzw"}}
+            for name, how in saved.items():
+                for pixels in (image, image.astype(np.int32)):
+                    Image.fromarray(pixels).save(folder / name, **how)
+                    with self.subTest(orientation=orientation, name=name, type=pixels.dtype):
+                        np.testing.assert_array_equal(label_image.pixels_of(folder / name)[0], right)
+        Image.fromarray(self.image().astype(np.uint8)).save(folder / "side.tif", tiffinfo={274: 6})
+        made = pyroclast.Specimen.from_image(folder / "side.tif", 1 * mm, {0: "mortar", 1: "stone"}, blocks=400)
+        self.assertGreater(made.agreement, 0.96)
+
+    def test_a_picture_that_does_not_keep_labels_is_refused_whatever_its_name(self):
+        from PIL import Image
+        picture = self.folder() / "slice.png"
+        Image.fromarray(self.image().astype(np.uint8)).save(picture, format="JPEG")
+        with self.assertRaisesRegex(pyroclast.Error, "slice.png: it holds JPEG"):
+            pyroclast.Specimen.from_image(picture, 1 * mm, {0: "a", 1: "b"}, blocks=50)
+
+    def watershed(self) -> np.ndarray:
+        """Four stones, 1 to 4, that touch in the middle of 40 x 40 pixels of 0."""
+        y, x = np.mgrid[-20:20, -20:20] + 0.5
+        return np.where(np.hypot(x, y) < 14.0, 1 + 2 * (y > 0.0) + (x > 0.0), 0).astype(int)
+
+    def test_many_labels_are_one_phase_and_each_is_a_stone(self):
+        image = self.watershed()
+        for phases in ({0: "mortar", ...: "stone"}, {0: "mortar", range(1, 5): "stone"}, {(1, 2, 3, 4): "stone", ...: "mortar"},
+                       {0: "mortar", 1: "stone", 2: "stone", 3: "stone", 4: "stone"}):
+            with self.subTest(phases=phases):
+                made = pyroclast.Specimen.from_image(image, "1 mm", phases, blocks=300)
+                middle = np.array([made.vertices[cell].mean(axis=0) for cell in made.cells]) * 1e3
+                label = image[39 - middle[:, 1].astype(int), middle[:, 0].astype(int)]
+                is_stone = np.array([made.phases[i] == "stone" for i in made.phase])
+                alike = (made.stone - made.stone[is_stone].min() + 1 == label)[is_stone]
+                self.assertGreater(alike.mean(), 0.9)
+                self.assertEqual(len(set(made.stone[is_stone])), 4)
+        self.assertIsNone(pyroclast.Specimen.from_image(np.minimum(image, 1), "1 mm", {0: "mortar", 1: "stone"},
+                                                        blocks=100).stone)
+
+    def test_cracks_may_run_between_the_stones_of_a_watershed(self):
+        made = pyroclast.Specimen.from_image(self.watershed(), "2.5 mm", {0: "mortar", ...: "aggregate"}, blocks=120)
+        whole, parted = deck(), deck()
+        parted["contacts.aggregate_mortar.between_stones"] = ["aggregate"]
+        counts = []
+        for one in (whole, parted):
+            one["specimen"] = made
+            counts.append((pyroclast.Run(one, threads=1).contacts()["interface"] == "aggregate_mortar").sum())
+        self.assertGreater(counts[1], counts[0] + 5)
+
+    def test_labels_are_whole_numbers_or_texts_and_have_one_name(self):
+        image = self.image()
+        texts = np.where(image, "stone", "matrix")
+        names = {0: "a", 1: "b"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # NumPy warns of numbers that are compared with texts
+            made = pyroclast.Specimen.from_image(texts, "1 mm", {"matrix": "a", "stone": "b"}, blocks=50)
+            whole = pyroclast.Specimen.from_image(image.astype(np.float32), "1 mm", names, blocks=50)
+            np.testing.assert_array_equal(made.phase, whole.phase)
+            for pixels, phases, told in (
+                    (texts, names, "the label 'matrix', for which there is no phase"),
+                    (image, {"0": "a", "1": "b"}, "the label 0, for which there is no phase.*phases has '0', '1'"),
+                    (0.5 * image, {0: "a", 0.5: "b"}, r"pixel \[\d+, \d+\] is 0.5, but labels must be whole numbers"),
+                    (np.where(image, np.inf, 0.0), names, "is inf, but labels must be whole"),
+                    (image + 0j, names, "of the type complex128"),
+                    (image, {range(2): "a", 1: "b"}, r"names the label 1 twice: by 1 and by range\(0, 2\)"),
+                    (image, {(0, 2): "a"}, r"label 1, .*phases has \(0, 2\)")):
+                with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
+                    pyroclast.Specimen.from_image(pixels, "1 mm", phases, blocks=50)
 
     def test_masked_pixels_and_nan_are_told(self):
         image = self.image().astype(float)
