@@ -598,6 +598,7 @@ class Images(Case):
                     (np.where(image, np.inf, 0.0), names, "is inf, but labels must be whole"),
                     (image + 0j, names, "of the type complex128"),
                     (image, {range(2): "a", 1: "b"}, r"names the label 1 twice: by 1 and by range\(0, 2\)"),
+                    (image, {0: "a", ...: 1}, r"phases: ... has the phase 1; it must be a name"),
                     (image, {(0, 2): "a"}, r"label 1, .*phases has \(0, 2\)")):
                 with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
                     pyroclast.Specimen.from_image(pixels, "1 mm", phases, blocks=50)
