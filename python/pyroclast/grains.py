@@ -303,7 +303,7 @@ def _grain_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: f
         return _signed_area(outline(moved)) - part.pixels
 
     # a grain among others has no room for more than its pixels
-    moved = optimize.brentq(excess, -most, most, xtol=1e-6) if excess(most) > 0.0 else 0.0
+    moved = optimize.brentq(excess, -most, most, xtol=1e-6) if excess(-most) < 0.0 < excess(most) else 0.0
     return Grain(side * outline(moved), part.phase)
 
 
