@@ -70,7 +70,7 @@ def in_si(value: Quantity | str | float, unit: str) -> float:
 def length(name: str, value: object, example: str, *, is_size: bool = True) -> float:
     """Returns a length in m; that of a size is positive. Raises Error, which names it, for a number without a unit."""
     if not isinstance(value, (str, Quantity)):
-        in_metres = f'; if it is in m, say "{value!r} m"' if isinstance(value, (int, float)) else ""
+        in_metres = f'; if it is in m, say "{value} m"' if isinstance(value, (int, float)) else ""
         raise Error(f'{name}: a unit of length is needed, e.g. "{example}"; got {value!r}{in_metres}')
     try:
         metres = _core.convert(str(value), "m")
