@@ -31,7 +31,6 @@ const Written kWritten[] = {{"1.5 W/m·K", unit::conductivity, "W/(m K)"},
                             {"20 C", unit::temperature, "degC"},
                             {"5 degC", unit::temperature_difference, "K"},
                             {"5 C/min", unit::heating_rate, "K/min"},
-                            {"3 ‰", unit::dimensionless, "mm/m"},
                             {"150 pcf", unit::density, "lb/ft3"},
                             {"10 hrs", unit::time, "h"},
                             {"12 kn", unit::force, "kN"},
@@ -54,6 +53,17 @@ TEST(Spellings, AUnitThatIsRefusedIsToldAsItIsSpelled) {
 TEST(Spellings, EachIsAUnitOfItsKind) {
   for (const auto& [text, unit, meant] : kWritten)
     EXPECT_NO_THROW(parse_quantity("1 " + std::string(meant), unit));
+}
+
+// Promise: shares are read as people write them.
+TEST(Spellings, SharesAreReadAsTheyAreWritten) {
+  for (const char* text :
+       {"300 ‰", "300 permille", "300 per mille", "30 %", "30 wt%", "30 Vol.-%", "30 mass-%", "30 per cent",
+        "3e5 microstrain", "3e5 µε", "3e5 \u03BCε", "3e5 με", "0.3"})
+    EXPECT_DOUBLE_EQ(parse_quantity(text, unit::dimensionless), 0.3) << text;
+  for (const char* text : {"3 mstrain", "3 ‰x", "3 kpermille", "3 10^-3", "3 ε"})
+    EXPECT_THROW(parse_quantity(text, unit::dimensionless), QuantityError) << text;
+  EXPECT_THROW(parse_quantity("3 ‰", unit::stress), QuantityError);
 }
 
 TEST(Spellings, WhatIsNearNothingIsNotGuessed) {

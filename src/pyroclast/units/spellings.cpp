@@ -20,9 +20,9 @@ struct Spelling {
 
 const std::vector<Spelling>& spellings() {
   static const std::vector<Spelling> all{
-      {unit::dimensionless, "%", {"pct", "per cent", "Prozent"}},
-      {unit::dimensionless, "mm/m", {"‰", "per mille", "permille", "promille"}},
-      {unit::dimensionless, "um/m", {"microstrain", "ustrain", "µε", "με", "uε"}},
+      {unit::dimensionless, "%"},
+      {unit::dimensionless, "mm/m"},
+      {unit::dimensionless, "um/m"},
       {unit::length, "m", {"metre"}},
       {unit::length, "cm"},
       {unit::length, "mm"},
@@ -97,6 +97,65 @@ const std::vector<Spelling>& spellings() {
   return all;
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return text;
+}
+
+/// Unit of a share, with the texts that mean it and nothing else.
+struct ShareUnit {
+  std::string_view unit;
+  std::vector<std::string_view> texts;
+};
+
+/// Returns shares as people write them: with small letters, one micro sign, and no blanks, points and
+/// brackets.
+const std::vector<ShareUnit>& shares() {
+  static const std::vector<ShareUnit> all{
+      {"%", {"percent", "pct",     "prozent",   "wt%",       "w%",      "w/w%",    "weight%", "gew%",
+             "vol%",    "v%",      "v/v%",      "volume%",   "mass%",   "masse%",  "ma%",     "m%",
+             "m/m%",    "mol%",    "at%",       "%wt",       "%vol",    "%mass",   "%w/w",    "%v/v",
+             "%m/m",    "%bymass", "%byweight", "%byvolume", "%strain", "%passing"}},
+      {"mm/m",
+       {"‰", "permille", "permil", "promille", "o/oo", "0/00", "°/oo", "%o", "10^-3", "10**-3", "10-3", "e-3",
+        "e-03", "1e-3", "1e-03"}},
+      {"um/m",
+       {"microstrain", "microstrains", "ustrain", "µstrain", "ustrains", "µstrains", "µε", "uε", "µe", "ue",
+        "10^-6", "10**-6", "10-6", "e-6", "e-06", "1e-6", "1e-06"}}};
+  return all;
+}
+
+/// Returns the text of a share in the form of `shares`.
+std::string plain_share(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kMarks{{{"μ", "µ"},
+                                                                                         {"ϵ", "ε"},
+                                                                                         {"ɛ", "ε"},
+                                                                                         {"⁻", "^-"},
+                                                                                         {"−", "-"},
+                                                                                         {"³", "3"},
+                                                                                         {"⁶", "6"},
+                                                                                         {"×", ""},
+                                                                                         {"·", ""},
+                                                                                         {"\u00A0", ""},
+                                                                                         {"\u202F", ""},
+                                                                                         {"\u2009", ""},
+                                                                                         {" ", ""},
+                                                                                         {"\t", ""},
+                                                                                         {".", ""},
+                                                                                         {"(", ""},
+                                                                                         {")", ""},
+                                                                                         {"-%", "%"}}};
+  std::string plain;
+  while (!text.empty()) {
+    const auto mark =
+        std::ranges::find_if(kMarks, [&](const auto& known) { return text.starts_with(known.first); });
+    plain += mark == kMarks.end() ? text.substr(0, 1) : mark->second;
+    text.remove_prefix(mark == kMarks.end() ? 1 : mark->first.size());
+  }
+  plain = lower(std::move(plain));
+  return plain.starts_with("x10") || plain.starts_with("*10") ? plain.substr(1) : plain;
+}
+
 /// Returns a text without the marks that people set or leave out as they like.
 std::string compact(std::string_view text) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> marks{
@@ -114,11 +173,6 @@ std::string compact(std::string_view text) {
   return result;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> unit_spellings() {
@@ -127,6 +181,10 @@ std::vector<std::string> unit_spellings() {
     all.emplace_back(spelling.unit);
     all.insert(all.end(), spelling.others.begin(), spelling.others.end());
   }
+  constexpr std::string_view kDigits = "0123456789";  // a number and "1e-3" are two numbers
+  for (const ShareUnit& share : shares())
+    for (const std::string_view text : share.texts)
+      if (kDigits.find(text.front()) == kDigits.npos) all.emplace_back(text);
   return all;
 }
 
@@ -135,6 +193,15 @@ std::vector<std::string_view> usual_units(const Unit& unit) {
   for (const Spelling& spelling : spellings())
     if (spelling.of == unit) units.push_back(spelling.unit);
   return units;
+}
+
+std::string_view share_unit(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  if (text.size() > kLongest) return "";
+  const std::string plain = plain_share(text);
+  for (const ShareUnit& share : shares())
+    if (std::ranges::find(share.texts, plain) != share.texts.end()) return share.unit;
+  return "";
 }
 
 std::string_view meant_spelling(std::string_view given, const Unit& unit) {

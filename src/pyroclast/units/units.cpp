@@ -267,7 +267,8 @@ class UnitSystem {
   /// Returns a unit; null if the text is not one.
   UnitHandle parse(std::string_view unit) const {
     const ClassicLocale locale;
-    UnitText text(unit);
+    const std::string_view share = share_unit(unit);
+    UnitText text(share.empty() ? unit : share);
     const auto rewritten = text.rewritten();
     const auto& names = text.names();
     if (!rewritten || !std::all_of(names.begin(), names.end(), [&](const auto& n) { return is_known(n); }))

@@ -30,12 +30,12 @@ class QuantityError : public Error {
 ///
 /// The number is written with a decimal point, whatever the locale. The unit is a product of powers of names
 /// that UDUNITS-2 knows, or "deg" for an angle. It has at most 100 characters, and exponents of at most two
-/// digits. A dimensionless quantity needs no unit. "/" divides by the one unit that follows, and by a unit
-/// that stands directly behind the exponent of that unit: "W/m2/K", "W/(m2 K)" and "W/m²K" are a heat
-/// transfer coefficient, "W/m2 K" is not. Some texts are refused although UDUNITS-2 would take them, because
-/// nobody means them: numbers inside a unit ("18 400 GPa/m"), dates and logarithms ("s since 2000", "lg(re 1
-/// mW)"), a unit for its reciprocal ("4 s" for a frequency), radians for a plain number. The function may be
-/// called from several threads.
+/// digits. A dimensionless quantity needs no unit; "‰", "microstrain", "Vol.-%" and the like are units of it.
+/// "/" divides by the one unit that follows, and by a unit that stands directly behind the exponent of that
+/// unit: "W/m2/K", "W/(m2 K)" and "W/m²K" are a heat transfer coefficient, "W/m2 K" is not. Some texts are
+/// refused although UDUNITS-2 would take them, because nobody means them: numbers inside a unit ("18 400
+/// GPa/m"), dates and logarithms ("s since 2000", "lg(re 1 mW)"), a unit for its reciprocal ("4 s" for a
+/// frequency), radians for a plain number. The function may be called from several threads.
 ///
 /// The value is the double nearest to the written quantity wherever the factor of the unit is a decimal or
 /// the reciprocal of one: "10 us" is 1e-5, "68 degF" 20 °C.
