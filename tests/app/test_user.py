@@ -476,7 +476,7 @@ class ReferencesOfTheDeck(UserTest):
                 (f'file = "gone.csv"\n{stress}', "file", "cannot be read"),
                 ('file = "gone.csv"\nof = "strength"', "of", 'draw "stress" over strain'),
                 (f'file = "gone.csv"\n{stress}\nover = "time"', "over", 'over it, but over "strain"'),
-                (f'file = "columns.csv"\n{stress}', "file", 'columns.csv:1: column "force" has no unit'),
+                (f'file = "columns.csv"\n{stress}', "file", 'columns.csv:1: column "force" is the force by its name'),
                 (f'file = "four.csv"\n{stress}', "file", '{ file = "four.csv", columns = ["a", "b"]'),
                 (f'file = "word.csv"\n{stress}', "file", 'word.csv:4: "high"'),
                 (f'file = "three.csv"\n{stress}', "file", 'three.csv:2: "0,0,0" has 3 cells'),

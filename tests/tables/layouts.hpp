@@ -175,7 +175,7 @@ inline Record read(std::string_view text, const ColumnChoice& choice = {}) {
   const auto columns = table.choose(choice, asked);
   const auto times = table.values(columns[0], unit::time);
   const auto temperatures = table.values(columns[1], unit::temperature);
-  require_ascending(table, columns[0], times, "time");
+  require_ascending(table, columns[0], times, "time", unit::time);
   Record record;
   for (std::size_t i = 0; i < times.size(); ++i) record.emplace_back(times[i], temperatures[i]);
   return record;

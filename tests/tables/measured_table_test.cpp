@@ -159,7 +159,10 @@ TEST(MeasuredTable, RefusesColumnsWithoutUnit) {
 TEST(MeasuredTable, ShowsBothReadingsOfACommaOfThreeDigits) {
   const std::string text = refusal("time [s];T [degC]\n0;20\n60;1,234\n");
   expect_in("furnace.csv:3: \"1,234\" may be 1.234 (decimal comma) or 1234 (comma between thousands)", text);
-  expect_in("sed", text);
+  expect_in("such as by `sed", text);
+  const std::string quoted = refusal("time [s],T [degC]\n0,20\n600,220\n\"1,200\",420\n");
+  expect_in("furnace.csv:4: \"1,200\" may be 1.200 (decimal comma) or 1200", quoted);
+  expect_out("sed", quoted);  // it would turn the commas between the columns too
   const std::string both = refusal("time [s];T [degC]\n0;20,5\n60;21.5\n");
   expect_in("furnace.csv:3: \"21.5\" in line 3 has a point and \"20,5\" in line 2 a comma", both);
   expect_in("each of which may be the decimal sign", refusal("time [s];T [degC]\n0;20,5\n60;1.234\n"));
@@ -200,14 +203,92 @@ TEST(MeasuredTable, RefusesDates) {
   expect_in("is a date", refusal("time [s];T [degC]\n01.02.2024 12:00:00;20\n01.02.2024 12:30:00;800\n"));
 }
 
+/// Record whose times are these, with temperatures that say their places.
+std::string record_of(const std::string& header, const std::vector<std::string>& times) {
+  std::string text = header + ";T [degC]\n";
+  for (std::size_t i = 0; i < times.size(); ++i) text += fmt::format("{};{}\n", times[i], 20 + i);
+  return text;
+}
+
+// Promise: times that do not ascend are told with their lines, and with a remedy that keeps the record whole.
 TEST(MeasuredTable, NamesTheLinesOfTimesThatDoNotAscend) {
+  struct Case {
+    std::string header;
+    std::vector<std::string> times;
+    std::string told;
+  };
+  const Case cases[] = {
+      {"time [s]",
+       {"0", "30", "30", "60"},
+       ":4: the time (column \"time\") stays the same from line 3 to line 4"},
+      {"time [s]", {"0", "30", "30", "60"}, "keep one of the lines"},
+      {"time [s]",
+       {"0", "30", "20"},
+       ":4: the time (column \"time\") falls from line 3 to line 4; it must ascend: "
+       "line 3 or line 4 stands in a wrong place"},
+      {"time [s]", {"90", "60", "30", "0"}, "it descends throughout: write the lines in the reverse order"},
+      {"time",
+       {"23:50:00", "23:55:00", "00:00:00", "00:05:00"},
+       ":4: the time (column \"time\") falls from line 3 to "
+       "line 4; it must ascend: the clock passes midnight"},
+      {"time [hh:mm]", {"10:00", "16:00", "22:00", "04:00", "11:00"}, "the clock passes midnight"},
+      {"time [h]", {"23.5", "23.9", "0.3", "0.7"}, "the clock passes midnight"},
+      {"time [s]",
+       {"86200", "86300", "0", "100"},
+       "add 24 h from line 4 on, and subtract the time of the start"},
+      {"time [s]",
+       {"0", "60", "120", "0", "60", "120"},
+       "the record begins again there: keep one of its parts, the "
+       "lines up to 4 or those from 5 on"},
+      {"time",
+       {"00:00:00", "00:01:00", "00:02:00", "00:00:30", "00:01:30", "00:02:30"},
+       "the record begins again"},
+      {"time [s]",
+       {"600", "660", "720", "0", "60", "120"},
+       "the lines from 5 on are less than all before: keep one of the two parts, or put them first"},
+      {"time [s]",
+       {"0", "60", "0", "60", "0", "60"},
+       "it falls 2 times, as where several records stand in turn"}};
+  for (const auto& [header, times, told] : cases) {
+    const std::string text = refusal(record_of(header, times));
+    expect_in(told, text);
+    expect_out("sort", text);
+  }
+}
+
+// Promise: times that count from a date are told as such.
+TEST(MeasuredTable, RefusesTimesSinceAYear) {
+  for (const auto& [header, time] : {std::pair("time [s]", "1700000000"), std::pair("time [ms]", "1.7e12"),
+                                     std::pair("time [d]", "45000.25"), std::pair("time [h]", "472222")})
+    expect_in("it counts from a date", refusal(record_of(header, {time, "1e13"})));
+  const std::string text = refusal(record_of("time [s]", {"1700000000", "1700000060"}));
   expect_in(
-      "furnace.csv:5: the time (column \"time\") stays the same from line 3 to line 5; it must ascend: "
-      "delete one",
-      refusal("time [s],T [degC]\n0,20\n30,30\n\n30,40\n60,50\n"));
-  expect_in(
-      "furnace.csv:4: the time (column \"time\") falls from line 3 to line 4; it must ascend: sort the lines",
-      refusal("time [s],T [degC]\n0,20\n30,30\n20,40\n"));
+      "furnace.csv:2: the time (column \"time\") begins at 1700000000 s, 53.9 years: it counts from a date",
+      text);
+  expect_in("subtract the time of the start from all", text);
+}
+
+// Promise: blanks and apostrophes between thousands, and Fortran's powers, are read.
+TEST(MeasuredTable, ReadsSignsBetweenThousandsAndPowersOfFortran) {
+  const Record record{{0.0, 20.0}, {1200.0, 1049.5}};
+  for (const std::string blank : {" ", "\u00A0", "\u202F", "\u2009", "'", "\u2019"})
+    for (const std::string rows :
+         {"0;20\n1_200;1_049.5\n", "0;20\n1_200;1_049,5\n", "0\t20\n1_200\t1_049.5\n",
+          "0,20\n1_200,1_049.5\n", "0;20\n\"1_200\";\"1049,5\"\n"}) {
+      std::string text = std::string("time [s]") + rows[1] + "T [degC]\n" + rows;
+      for (std::size_t at = 0; (at = text.find('_')) != text.npos;) text.replace(at, 1, blank);
+      Record read;
+      ASSERT_NO_THROW(read = layouts::read(text)) << text;
+      expect_same(read, record, text);
+    }
+  for (const std::string row : {"1.2D+03 1049.5D0", "0.12D+04 1.0495d+03", "1.2E+03 1.0495D+03"}) {
+    const std::string text = "time [s] T [degC]\n0.0D+00 2.0D+01\n" + row + "\n";
+    expect_same(layouts::read(text), record, text);
+  }
+  expect_in("no number", refusal("time [s];T [degC]\n0;20\n1 20;30\n60;40\n"));
+  expect_in("no number", refusal("time [s];T [degC]\n0;20\n1'200 300;30\n60;40\n"));
+  expect_in("1200 for 1 200, as blanks stand between columns",
+            refusal("time [s] T [degC]\n0 20\n1 200 30\n1 300 40\n"));
 }
 
 TEST(MeasuredTable, NamesCellsThatAreNoNumbers) {

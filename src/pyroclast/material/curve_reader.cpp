@@ -91,8 +91,8 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
     curve = varied(forms, read_forms(forms, unit, true));
     if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
       curve = Curve::constant(range.any_value());
-    else if (axis_ == temperature_axis() && curve->holds(kReferenceTemperature))
-      section.warn_if_unusual(key, (*curve)(kReferenceTemperature), unit, range);
+    else
+      warn_if_unusual(section, key, *curve, unit, range);
   }
   const std::string path = path_of(section, key);
   curves_.push_back({path, unit.si, curve->named(path)});
@@ -254,8 +254,11 @@ bool CurveReader::covers(const Section& section, std::string_view key, const Cur
   if (curve.holds(needed_)) return true;
   section.error(
       key, fmt::format("is given from {} to {} {}, but the run needs it from {} to {} {}; curves are not "
-                       "extrapolated",
-                       given.lower, given.upper, axis_.unit, needed_.lower, needed_.upper, axis_.unit));
+                       "extrapolated{}",
+                       given.lower, given.upper, axis_.unit, needed_.lower, needed_.upper, axis_.unit,
+                       axis_ == time_axis() && given.lower > needed_.lower
+                           ? "; times count from the start of heating, where a record has the time 0"
+                           : ""));
   return false;
 }
 
@@ -275,6 +278,19 @@ bool CurveReader::within(const Section& section, std::string_view key, const Cur
     return false;
   }
   return true;
+}
+
+/// Warns of a value beyond the usual ones: at 20 degC of a property, at all times of a course.
+void CurveReader::warn_if_unusual(const Section& section, std::string_view key, const Curve& curve,
+                                  const Unit& unit, const Range& range) const {
+  if (axis_ == temperature_axis()) {
+    if (curve.holds(kReferenceTemperature))
+      section.warn_if_unusual(key, curve(kReferenceTemperature), unit, range);
+    return;
+  }
+  const double least = curve.minimum(needed_.lower, needed_.upper);
+  const double greatest = curve.maximum(needed_.lower, needed_.upper);
+  section.warn_if_unusual(key, range.is_usual(least) ? greatest : least, unit, range);
 }
 
 std::string CurveReader::forms_name() const {

@@ -73,6 +73,8 @@ class CurveReader {
   bool covers(const Section& section, std::string_view key, const Curve& curve) const;
   bool within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
               const Range& range) const;
+  void warn_if_unusual(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
+                       const Range& range) const;
   const Unit& abscissa() const;
   /// Returns the name of the forms of a curve in the deck reference.
   std::string forms_name() const;

@@ -34,7 +34,8 @@ std::vector<JumpPathPoint> jump_path(const MeasuredTable& table, double temperat
     const std::string& name = table.columns()[i].name;
     const auto quantity = std::ranges::find(kQuantities, name, &Quantity::name);
     if (quantity == kQuantities.end()) {
-      if (i == 0 && table.columns().size() > 1 && table.is_index(i)) continue;
+      const bool is_number = !meanings_of_name(name, {&meaning::index}).empty();
+      if (table.columns().size() > 1 && (is_number || (i == 0 && table.is_index(i)))) continue;
       fail(i, "is unknown; allowed are u_n, u_s and T, each with its unit, such as \"u_n [um]\"");
     }
     if (std::ranges::find(taken, name) != taken.end()) fail(i, "stands twice");

@@ -50,16 +50,16 @@ struct NamedTable {
 };
 
 /// Reads the file of measurements that `csv` names; returns none after an error.
-/// \param asked  columns asked for; the last of them may be missing in the file, down to `least`
+/// \param others  quantities that a column may say but none of those asked for
 std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
-                                           std::span<const AskedColumn> asked, std::size_t least) {
+                                           std::span<const AskedColumn> asked, const ColumnMeanings& others) {
+  const auto least = static_cast<std::size_t>(std::ranges::count(asked, false, &AskedColumn::is_optional));
   const std::string file = s.text("csv", "[measured table](measured-tables.md) beside the deck");
   const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
   if (!s.ok() || !s.has("csv")) return std::nullopt;
   try {
     MeasuredTable table = MeasuredTable::open(folder / file, least);
-    const std::size_t stated = choice.columns.empty() ? table.columns().size() : choice.columns.size();
-    auto columns = table.choose(choice, asked.first(std::clamp(stated, least, asked.size())));
+    auto columns = table.choose(choice, asked, others);
     s.names_file("csv", folder / file);
     return NamedTable{std::move(table), std::move(columns)};
   } catch (const Error& error) {
@@ -80,10 +80,11 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
     return std::nullopt;
   };
   if (s.is_table("passing")) {
-    const std::array<AskedColumn, 2> asked{{{"size", unit::length}, {"passing", unit::dimensionless}}};
+    const std::array<AskedColumn, 2> asked{{{"size", unit::length, {{&meaning::sieve}}},
+                                            {"passing", unit::dimensionless, {{&meaning::passing}}}}};
     const auto read =
         read_named_table(s.section("passing", "a sieve analysis: sizes, and the shares that pass"), folder,
-                         asked, asked.size());
+                         asked, {&meaning::retained, &meaning::radius});
     if (!read) return std::nullopt;
     try {
       curve.sizes = read->table.values(read->columns[0], unit::length);
@@ -203,6 +204,10 @@ using StoneColumns = std::array<AskedColumn, 4>;
 /// Function that returns the place of a row in its file.
 using PlaceOfRow = std::function<std::string(std::size_t row)>;
 
+AskedColumn phase_column() {
+  return {"phase", unit::dimensionless, {{&meaning::phase}}, true};
+}
+
 /// Reads stones that are known, from a table as a run writes it.
 /// \param add  function of the values by column, the first row of a stone, and a function that returns the
 ///             place of a row; returns the stone without its phase, and the row behind the stone
@@ -210,7 +215,8 @@ template <class Add>
 void read_known_stones(const Section& s, const std::filesystem::path& folder, const StoneColumns& asked,
                        specimen::AggregateParameters& a, Add add) {
   constexpr std::size_t kWithoutPhase = 3;
-  const auto read = read_named_table(s, folder, asked, kWithoutPhase);
+  const auto read = read_named_table(
+      s, folder, asked, {&meaning::z, &meaning::diameter, &meaning::radius, &meaning::area, &meaning::grain});
   auto phases = s.optional_texts("phases",
                                  "names of the phases, by their numbers from 0; without them all stones "
                                  "are of number 0, and of `phase`");
@@ -224,7 +230,7 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
     const PlaceOfRow place_of = [&table = read->table](std::size_t row) {
       return fmt::format("{}:{}", table.path().string(), table.line(row));
     };
-    for (std::size_t row = 0; row < read->table.rows();) {
+    for (std::size_t row = 0; row < values[0].size();) {
       const std::string place = place_of(row);
       const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
       auto [stone, end] = add(values, row, place_of);
@@ -250,9 +256,11 @@ void read_stones(const Section& s, const std::filesystem::path& folder, specimen
   const Section own = s.section("stones",
                                 "places and diameters of all circles, in the place of a grading: "
                                 "`specimen/aggregates.csv` of a run, or "
-                                "a table of x, y, diameter, and the number of a phase or none");
-  const StoneColumns asked{
-      {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
+                                "a table of x, y, diameter or radius, and the number of a phase or none");
+  const StoneColumns asked{{{"x", unit::length, {{&meaning::x}}},
+                            {"y", unit::length, {{&meaning::y}}},
+                            {"diameter", unit::length, {{&meaning::diameter}, {&meaning::radius, 2.0}}},
+                            phase_column()}};
   read_known_stones(
       own, folder, asked, a, [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
         if (!(values[2][row] > 0.0))
@@ -269,10 +277,10 @@ void read_outlines(const Section& s, const std::filesystem::path& folder, specim
                 "run, or a table of the number of the grain, x, y of a point of its outline, and "
                 "the number of a phase or none; points of a grain follow each other, and the last may repeat "
                 "the first");
-  const StoneColumns asked{{{"grain", unit::dimensionless},
-                            {"x", unit::length},
-                            {"y", unit::length},
-                            {"phase", unit::dimensionless}}};
+  const StoneColumns asked{{{"grain", unit::dimensionless, {{&meaning::grain}, {&meaning::index}}},
+                            {"x", unit::length, {{&meaning::x}}},
+                            {"y", unit::length, {{&meaning::y}}},
+                            phase_column()}};
   read_known_stones(own, folder, asked, a,
                     [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
                       std::vector<Vec<2>> points;

@@ -27,7 +27,8 @@ constexpr double kJumpDistance = 2e-7;  // m
 constexpr double kEmissivity = 0.9;
 constexpr const char* kAir = "air_conductivity";
 
-constexpr Range kTemperature = Range::at_least(absolute_zero);
+/// Range of temperatures. A record of the rise in K, read as a temperature, begins near -273 degC.
+constexpr Range kTemperature = Range::at_least(absolute_zero).usually(-60.0, 1400.0);
 
 /// Reads a corner of a box. In a solid a pair stands for all z.
 /// \param end  z of the box where it has no end

@@ -163,12 +163,54 @@ std::vector<double> read_signs(const Section& s) {
   return signs;
 }
 
-std::size_t count_of(const ColumnChoice& choice, const MeasuredTable& table) {
+/// Returns the quantities that names of columns may say of one that is drawn.
+ColumnMeanings meanings_of(const Unit& unit) {
+  if (unit == unit::length) return {&meaning::displacement, &meaning::opening};
+  for (const ColumnMeaning* one :
+       {&meaning::strain, &meaning::stress, &meaning::time, &meaning::temperature, &meaning::force})
+    if (one->unit == unit) return {one};
+  return {};
+}
+
+/// Columns of a reference, whose names may be those of the deck too.
+class AskedReference {
+ public:
+  AskedReference(const DrawnQuantity& over, const DrawnQuantity& of, std::size_t count)
+      : own_{{{over.name, *over.unit, {over.name}}, {of.name, *of.unit, {of.name}}}},
+        least_(fmt::format("least {}", of.name)),
+        greatest_(fmt::format("greatest {}", of.name)) {
+    columns_.push_back(asked(own_[0], own_[0].name));
+    columns_.push_back(asked(own_[1], count == kCurveColumns ? own_[1].name : std::string_view(least_)));
+    if (count == kRangeColumns) columns_.push_back(asked(own_[1], greatest_));
+  }
+  AskedReference(const AskedReference&) = delete;
+  AskedReference& operator=(const AskedReference&) = delete;
+
+  const std::vector<AskedColumn>& columns() const { return columns_; }
+  static ColumnMeanings others() {
+    return {&meaning::strain,           &meaning::stress, &meaning::time,         &meaning::temperature,
+            &meaning::temperature_rise, &meaning::force,  &meaning::displacement, &meaning::opening};
+  }
+
+ private:
+  static AskedColumn asked(const ColumnMeaning& own, std::string_view name) {
+    AskedColumn column{name, own.unit, {{&own}}};
+    for (const ColumnMeaning* one : meanings_of(own.unit)) column.names.push_back({one});
+    return column;
+  }
+
+  std::array<ColumnMeaning, 2> own_;
+  std::string least_, greatest_;
+  std::vector<AskedColumn> columns_;
+};
+
+std::size_t count_of(const ColumnChoice& choice, const MeasuredTable& table, const Reference& reference) {
   if (!choice.columns.empty()) return choice.columns.size();
   if (!choice.units.empty()) return choice.units.size();
-  const std::size_t count = table.columns().size();
-  const bool is_range = count == kRangeColumns + (count > kCurveColumns && table.is_index(0) ? 1 : 0);
-  return is_range ? kRangeColumns : kCurveColumns;
+  const AskedReference range(reference.over, reference.of, kRangeColumns);
+  const bool has_index = table.columns().size() == kRangeColumns && table.is_index(0);
+  return !has_index && table.names_suit(range.columns(), AskedReference::others()) ? kRangeColumns
+                                                                                   : kCurveColumns;
 }
 
 void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuantity& of,
@@ -192,22 +234,21 @@ void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuanti
 /// \param key  key that names the file
 void read_table(const Section& s, std::string_view key, const MeasuredTable& table,
                 const ColumnChoice& choice, std::vector<double> signs, Reference& reference) {
-  std::vector<AskedColumn> asked{{reference.over.name, *reference.over.unit}};
-  const std::string least = fmt::format("least {}", reference.of.name);
-  const std::string greatest = fmt::format("greatest {}", reference.of.name);
-  const std::size_t count = count_of(choice, table);
-  asked.push_back({count == kCurveColumns ? std::string_view(reference.of.name) : least, *reference.of.unit});
-  if (count == kRangeColumns) asked.push_back({greatest, *reference.of.unit});
+  const std::size_t count = count_of(choice, table, reference);
+  const AskedReference asked(reference.over, reference.of, count);
   if (signs.empty()) signs.assign(count, 1.0);
   if (signs.size() != count)
     s.error("sign", fmt::format("must be a list of {} numbers, one for each column, each 1 or -1", count));
   if (!s.ok()) return;
-  const std::vector<ChosenColumn> columns = table.choose(choice, asked);
-  if (table.rows() < kLeastRows)
+  const std::vector<ChosenColumn> columns = table.choose(choice, asked.columns(), AskedReference::others());
+  const std::vector<double> over = table.values(columns[0], *reference.over.unit);
+  if (over.size() < kLeastRows)
     throw Error(fmt::format("{}: has {} rows of numbers; {} or more are needed", table.path().string(),
-                            table.rows(), kLeastRows));
-  const bool has_negative_strain = reference.over.name == "strain" && signs[0] > 0.0 &&
-                                   std::ranges::min(table.values(columns[0], asked[0].unit)) < 0.0;
+                            over.size(), kLeastRows));
+  if (*reference.over.unit == unit::time)
+    require_ascending(table, columns[0], over, reference.over.name, unit::time, true);
+  const bool has_negative_strain =
+      reference.over.name == "strain" && signs[0] > 0.0 && std::ranges::min(over) < 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const DrawnQuantity& of = i == 0 ? reference.over : reference.of;
     std::vector<double> values = table.values(columns[i], *of.unit);
@@ -218,6 +259,8 @@ void read_table(const Section& s, std::string_view key, const MeasuredTable& tab
     (i == 0 ? reference.x : i == 1 ? reference.low : reference.high) = std::move(values);
   }
   if (count == kCurveColumns) reference.high = reference.low;
+  for (std::size_t i = 0; i < reference.low.size(); ++i)
+    if (reference.low[i] > reference.high[i]) std::swap(reference.low[i], reference.high[i]);
 }
 
 using Builtin = std::array<const char*, 3>;  ///< name, of and over of a builtin reference
@@ -310,15 +353,11 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
 /// Finds the first curve that figures draw whose quantities fit the units of a table's columns. Throws Error
 /// where there is none.
 Drawn told_by_units(const MeasuredTable& table, const std::vector<Drawn>& drawn) {
-  const std::size_t first = table.columns().size() > kCurveColumns && table.is_index(0) ? 1 : 0;
-  const std::size_t count = table.columns().size() - first;
   for (const Drawn& one : drawn)
-    for (const DrawnQuantity& over : one.over) {
-      bool fits = count == kCurveColumns || count == kRangeColumns;
-      for (std::size_t i = 0; fits && i < count; ++i)
-        fits = table.fits(first + i, "", i == 0 ? *over.unit : *one.of.unit);
-      if (fits) return {one.of, {over}, one.rows};
-    }
+    for (const DrawnQuantity& over : one.over)
+      for (const std::size_t count : {kCurveColumns, kRangeColumns})
+        if (table.suits(AskedReference(over, one.of, count).columns(), AskedReference::others()))
+          return {one.of, {over}, one.rows};
   throw Error(fmt::format("has no effect: no figure of this run draws the columns {} of {}; {}",
                           table.list_of_columns(), table.path().string(), list_of(drawn)));
 }

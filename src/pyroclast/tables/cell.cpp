@@ -19,19 +19,30 @@ bool are_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == text.npos;
 }
 
-std::vector<std::string_view> parts_between(std::string_view text, char sign) {
+std::vector<std::string_view> parts_between(std::string_view text, std::string_view sign) {
   std::vector<std::string_view> parts;
   while (true) {
     const std::size_t end = text.find(sign);
     parts.push_back(text.substr(0, end));
     if (end == text.npos) return parts;
-    text.remove_prefix(end + 1);
+    text.remove_prefix(end + sign.size());
   }
 }
 
-/// Returns digits, also of groups of three with a sign between them; empty where the text is something else.
-std::optional<std::string> whole_part(std::string_view text, char thousands) {
-  const auto groups = parts_between(text, thousands);
+/// Returns the sign between thousands of a whole number: a blank, narrow or not, an apostrophe, or the given
+/// sign.
+std::string_view sign_of_thousands(std::string_view text, std::string_view other) {
+  constexpr std::array<std::string_view, 8> kSigns{" ",      "\u00A0", "\u202F", "\u2009",
+                                                   "\u2007", "'",      "\u2019", "\u02BC"};
+  const auto found =
+      std::ranges::find_if(kSigns, [&](std::string_view sign) { return text.find(sign) != text.npos; });
+  return found == kSigns.end() ? other : *found;
+}
+
+/// Returns digits, also of groups of three with one sign between them; empty where the text is something
+/// else.
+std::optional<std::string> whole_part(std::string_view text, std::string_view other) {
+  const auto groups = parts_between(text, sign_of_thousands(text, other));
   if (!std::ranges::all_of(groups, are_digits)) return std::nullopt;
   if (groups.size() == 1) return std::string(text);
   if (groups[0].size() > 3 || groups[0][0] == '0') return std::nullopt;
@@ -45,11 +56,23 @@ std::optional<std::string> whole_part(std::string_view text, char thousands) {
 
 /// Tells whether a cell is day, month and year in either order, perhaps with a time behind them.
 bool is_date(std::string_view cell) {
-  for (const char sign : {'/', '-', '.'}) {
+  for (const std::string_view sign : {"/", "-", "."}) {
     const auto parts = parts_between(cell.substr(0, cell.find_first_of(" T")), sign);
     if (parts.size() == 3 && std::ranges::all_of(parts, are_digits)) return true;
   }
   return false;
+}
+
+/// Returns the place of the letter before a power of ten, `npos` without one: e, or d as Fortran writes it
+/// behind a decimal sign or before a sign.
+std::size_t place_of_power(std::string_view number) {
+  const std::size_t e = number.find_first_of("eE");
+  if (e != number.npos) return e;
+  const std::size_t d = number.find_first_of("dD");
+  if (d == number.npos) return d;
+  const std::string_view behind = number.substr(d + 1);
+  const bool is_power = number.find_first_of(".,") < d || behind.starts_with('+') || behind.starts_with('-');
+  return is_power ? d : number.npos;
 }
 
 struct ClockText {
@@ -65,7 +88,7 @@ std::optional<ClockText> clock_text(std::string_view cell) {
     clock.fraction = cell.substr(sign + 1);
     if (!are_digits(clock.fraction)) return std::nullopt;
   }
-  clock.parts = parts_between(cell.substr(0, sign), ':');
+  clock.parts = parts_between(cell.substr(0, sign), ":");
   if (clock.parts.size() < 2 || clock.parts.size() > 3 || !std::ranges::all_of(clock.parts, are_digits))
     return std::nullopt;
   if (clock.parts[0].size() > kMostHourDigits) return std::nullopt;
@@ -78,14 +101,14 @@ std::optional<ClockText> clock_text(std::string_view cell) {
 
 std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign) {
   std::string number;
-  if (cell.starts_with('-') || cell.starts_with(kMinus)) number = "-";
+  if (cell.starts_with('-') || cell.starts_with(kMinus)) number += '-';
   if (cell.starts_with('-') || cell.starts_with('+'))
     cell.remove_prefix(1);
   else if (cell.starts_with(kMinus))
     cell.remove_prefix(kMinus.size());
 
   std::string_view power;
-  const std::size_t e = cell.find_first_of("eE");
+  const std::size_t e = place_of_power(cell);
   if (e != cell.npos) {
     power = cell.substr(e + 1);
     cell = cell.substr(0, e);
@@ -104,7 +127,7 @@ std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign)
   if (before.empty()) {
     number += '0';
   } else if (power.empty()) {
-    const auto whole = whole_part(before, is_point ? ',' : '.');
+    const auto whole = whole_part(before, is_point ? "," : ".");
     if (!whole) return std::nullopt;
     number += *whole;
   } else {
@@ -135,7 +158,7 @@ CellKind kind_of_cell(std::string_view cell) {
 
 std::optional<ClockForm> clock_form(std::string_view unit) {
   std::string letters;
-  for (const std::string_view part : parts_between(unit, ':')) {
+  for (const std::string_view part : parts_between(unit, ":")) {
     constexpr std::array<std::string_view, 4> kHours{"h", "hh", "H", "HH"};
     constexpr std::array<std::string_view, 5> kMinutes{"m", "mm", "M", "MM", "min"};
     constexpr std::array<std::string_view, 5> kSeconds{"s", "ss", "S", "SS", "sec"};

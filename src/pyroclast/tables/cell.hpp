@@ -13,7 +13,8 @@ enum class CellKind { empty, text, number, clock, date };
 CellKind kind_of_cell(std::string_view cell);
 
 /// Returns a number with a decimal point and without other signs, as `std::from_chars` reads it; empty where
-/// the cell is no number with the given decimal sign. The other sign may stand between thousands.
+/// the cell is no number with the given decimal sign. The other sign, blanks or apostrophes may stand between
+/// thousands. Fortran's 1.0D+02 is a number.
 std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign);
 
 /// Evidence that a number gives of the decimal sign of its file.

@@ -95,31 +95,75 @@ std::optional<Cells> cells_of(std::string_view line, char delimiter) {
   return delimiter == kBlanks ? cut_at_blanks(line) : cut(line, delimiter);
 }
 
-/// Fit of a delimiter to lines: the cells into which it cuts them.
+/// Fit of a delimiter to a line: the cells into which it cuts it, those up to the last that is not empty, and
+/// those that are values.
 struct Fit {
-  std::size_t cells = 0, values = 0;
-
-  /// Tells whether the delimiter gives more cells that are values, or as many and fewer others.
-  bool is_better_than(const Fit& other) const {
-    return values != other.values ? values > other.values : cells < other.cells;
-  }
+  std::size_t cells = 0, used = 0, values = 0;
 };
 
 Fit fit(std::string_view line, char delimiter) {
   const auto cells = cells_of(line, delimiter);
   if (!cells) return {};
-  return {cells->size(), static_cast<std::size_t>(std::ranges::count_if(*cells, is_value))};
+  Fit result{cells->size(), cells->size(), 0};
+  while (result.used > 1 && (*cells)[result.used - 1].empty()) --result.used;
+  // "10 200,5" is rather two cells between blanks than a number with a blank between thousands
+  const bool takes_blanks = delimiter == ';' || delimiter == '\t';
+  result.values = static_cast<std::size_t>(std::ranges::count_if(*cells, [&](const std::string& cell) {
+    return is_value(cell) && (takes_blanks || cell.find(' ') == cell.npos);
+  }));
+  return result;
 }
+
+/// Fit of a delimiter to all lines that hold values.
+class FitToLines {
+ public:
+  void add(const Fit& line) {
+    if (lines_ == 0) first_ = line;
+    has_equal_cells_ = has_equal_cells_ && line.cells == first_.cells;
+    has_equal_used_ = has_equal_used_ && line.used == first_.used;
+    cells_ += line.cells;
+    values_ += line.values;
+    ++lines_;
+  }
+  bool separates() const { return cells_ > lines_; }
+
+  /// Tells whether the delimiter cuts all lines alike and the other does not; else whether it gives more
+  /// cells that are values, or as many and fewer others.
+  bool is_better_than(const FitToLines& other) const {
+    if (is_even() != other.is_even()) return is_even();
+    return values_ != other.values_ ? values_ > other.values_ : cells_ < other.cells_;
+  }
+
+ private:
+  bool is_even() const { return has_equal_cells_ || has_equal_used_; }
+
+  Fit first_;
+  bool has_equal_cells_ = true, has_equal_used_ = true;
+  std::size_t lines_ = 0, cells_ = 0, values_ = 0;
+};
 
 bool is_all_values(std::string_view line, char delimiter) {
   const Fit found = fit(line, delimiter);
   return found.cells > 0 && found.values == found.cells;
 }
 
+/// Tells whether cells may be a number that blanks between thousands have cut.
+bool has_thousands(const Cells& cells) {
+  constexpr std::size_t kThousands = 3;
+  const auto is_whole = [](const std::string& cell) {
+    return cell.find_first_not_of("0123456789") == cell.npos;
+  };
+  for (std::size_t i = 1; i < cells.size(); ++i)
+    if (is_whole(cells[i - 1]) && cells[i - 1].size() <= kThousands && is_whole(cells[i]) &&
+        cells[i].size() == kThousands)
+      return true;
+  return false;
+}
+
 class GridReader {
  public:
   GridReader(const TableLines& lines, std::size_t least, const std::filesystem::path& path)
-      : lines_(lines.lines), least_(least), path_(path) {
+      : lines_(lines.lines), above_(lines.above), least_(least), path_(path) {
     if (lines_.empty()) refuse(path_, 0, "is empty; rows of numbers under a header are needed");
     delimiter_ = lines.delimiter ? *lines.delimiter : find_delimiter();
   }
@@ -127,7 +171,8 @@ class GridReader {
   TableGrid read() {
     cut_rows();
     drop_empty_ends();
-    const std::size_t header = header_rows();
+    std::size_t header = header_rows();
+    if (header == 0 && take_comment()) header = 1;
     require_equal_rows(header);
     const auto begin = std::make_move_iterator(rows_.begin()), end = std::make_move_iterator(rows_.end());
     const auto first = begin + static_cast<std::ptrdiff_t>(header);
@@ -144,18 +189,13 @@ class GridReader {
     if (fit(last, ',').cells > 1 && is_all_values(last, ',') && is_all_values(last, kNothing))
       return comma_or_nothing();
     char best = kNothing;
-    Fit best_fit;
+    FitToLines best_fit;
     for (const char delimiter : {'\t', ',', kBlanks}) {
-      Fit sum;
-      std::size_t lines = 0;
-      for (const TableLine& line : lines_) {
-        const Fit found = fit(line.text, delimiter);
-        if (found.values == 0) continue;  // a header, where names may be missing
-        sum = {sum.cells + found.cells, sum.values + found.values};
-        ++lines;
-      }
-      if (sum.cells == lines) continue;  // it separates nothing
-      if (best == kNothing || sum.is_better_than(best_fit)) best = delimiter, best_fit = sum;
+      FitToLines whole;
+      for (const TableLine& line : lines_)  // but for a header, where names may be missing
+        if (const Fit found = fit(line.text, delimiter); found.values > 0) whole.add(found);
+      if (!whole.separates()) continue;
+      if (best == kNothing || whole.is_better_than(best_fit)) best = delimiter, best_fit = whole;
     }
     return best;
   }
@@ -231,6 +271,29 @@ class GridReader {
     return count;
   }
 
+  /// Takes the comment above a table without a header for its header, where it has a name for each of its
+  /// columns, as NumPy writes it: "# x y r".
+  bool take_comment() {
+    if (!above_) return false;
+    const std::size_t columns = rows_[0].cells.size();
+    auto cells = cells_of(above_->text, delimiter_);
+    if (cells && delimiter_ == kBlanks && cells->size() != columns)
+      cells = cells_between_blanks(above_->text, columns);
+    while (cells && cells->size() > columns && cells->back().empty()) cells->pop_back();
+    const auto is_name = [](const std::string& cell) {
+      const ColumnHeader header = column_header(cell);
+      return kind_of_cell(cell) == CellKind::text && header.unknown_unit.empty() &&
+             (header.unit.empty() || unit_cell(header.unit));
+    };
+    if (!cells || columns < 2 || cells->size() != columns || !std::ranges::all_of(*cells, is_name))
+      return false;
+    if (std::ranges::all_of(*cells, [](const std::string& cell) { return unit_cell(cell).has_value(); }))
+      return false;
+    rows_.insert(rows_.begin(), {above_->number, std::move(*cells)});
+    texts_.insert(texts_.begin(), above_->text);
+    return true;
+  }
+
   bool is_header(const TableRow& row) const {
     const Cells& numbers = rows_.back().cells;
     bool has_words = false;
@@ -247,6 +310,9 @@ class GridReader {
       const TableRow& row = rows_[i];
       if (row.cells.size() == first.cells.size()) continue;
       const bool is_both = delimiter_ == ',' && row.cells.size() > first.cells.size() && i == header;
+      const bool may_cut_numbers =
+          delimiter_ == kBlanks &&
+          std::ranges::any_of(rows_, [](const TableRow& one) { return has_thousands(one.cells); });
       refuse(
           path_, row.line,
           fmt::format("{} has {} cell{}, line {} has {} (delimiter: {}){}", as_written(texts_[i]),
@@ -254,7 +320,9 @@ class GridReader {
                       in_words(delimiter_),
                       is_both ? "; a comma cannot be the delimiter and the decimal sign: write \";\" between "
                                 "cells, or numbers in quotes"
-                              : "; write as many in each line"));
+                      : may_cut_numbers
+                          ? "; write as many in each line, 1200 for 1 200, as blanks stand between columns"
+                          : "; write as many in each line"));
     }
   }
 
@@ -295,19 +363,25 @@ class GridReader {
             with_point.number, with_point.line, with_comma.number, with_comma.line));
   }
 
+  /// Commas between columns would become points by a command that turns those within numbers.
   [[noreturn]] void refuse_thousands(const Seen& number) const {
     const std::string name = path_.filename().string();
-    refuse(path_, number.line,
-           fmt::format(
-               "\"{}\" may be {} (decimal comma) or {} (comma between thousands), and no other number tells; "
-               "write one of them, such as by `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g' {} > "
-               "points_{}` for decimal commas",
-               number.number, *plain_number(number.number, DecimalSign::comma),
-               *plain_number(number.number, DecimalSign::point), shell_path(name),
-               shell_word("points_" + name)));
+    refuse(
+        path_, number.line,
+        fmt::format(
+            "\"{}\" may be {} (decimal comma) or {} (comma between thousands), and no other number tells; "
+            "write one of them{}",
+            number.number, *plain_number(number.number, DecimalSign::comma),
+            *plain_number(number.number, DecimalSign::point),
+            delimiter_ == ','
+                ? ""
+                : fmt::format(", such as by `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g' {} > points_{}` for "
+                              "decimal commas",
+                              shell_path(name), shell_word("points_" + name))));
   }
 
   const std::vector<TableLine>& lines_;
+  const std::optional<TableLine>& above_;
   std::size_t least_;
   const std::filesystem::path& path_;
   char delimiter_ = kNothing;

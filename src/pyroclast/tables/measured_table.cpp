@@ -1,15 +1,12 @@
 #include "pyroclast/tables/measured_table.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/base/nearest.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/units/units.hpp"
 
@@ -27,10 +24,6 @@ std::optional<std::vector<std::string>> row_of_units(const TableRow& row) {
     units.push_back(*unit);
   }
   return has_unit ? std::optional(units) : std::nullopt;
-}
-
-std::string in_quotes(std::string_view text) {
-  return fmt::format("\"{}\"", text);
 }
 
 /// Tells whether a cell is the number of its row, as in an index.
@@ -125,6 +118,7 @@ std::string MeasuredTable::unit_of(std::size_t column, const Unit& unit) const {
   if (!header.unit.empty()) return header.unit;
   if (unit == unit::time && holds_clock(column)) return "hh:mm:ss";
   if (!header.likely_unit.empty() && fits(column, header.likely_unit, unit)) return header.likely_unit;
+  if (!header.unknown_unit.empty()) return header.unknown_unit;
   return unit == unit::dimensionless ? "1" : "";
 }
 
@@ -147,102 +141,18 @@ bool MeasuredTable::is_index(std::size_t column) const {
   return true;
 }
 
-std::size_t MeasuredTable::find(const ColumnChoice::TableColumn& wanted) const {
-  if (wanted.number > 0) {
-    if (wanted.number > columns_.size())
-      refuse(path_, header_line_,
-             fmt::format("has no column {}; it has {}", wanted.number, list_of_columns()));
-    return wanted.number - 1;
-  }
-  std::vector<std::string> names;
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (columns_[i].name == wanted.name) found.push_back(i);
-    if (!columns_[i].name.empty()) names.push_back(columns_[i].name);
-  }
-  if (found.empty())
-    refuse(path_, header_line_,
-           fmt::format("has no column \"{}\"{}; it has {}", wanted.name,
-                       did_you_mean(wanted.name, names, "; "), list_of_columns()));
-  if (found.size() > 1)
-    refuse(path_, header_line_,
-           fmt::format("has more than one column \"{}\"; write one of their numbers, {} or {}", wanted.name,
-                       found[0] + 1, found[1] + 1));
-  return found[0];
-}
-
-std::vector<std::size_t> MeasuredTable::chosen(const ColumnChoice& choice,
-                                               std::span<const AskedColumn> asked) const {
-  std::vector<std::size_t> result;
-  if (!choice.columns.empty()) {
-    for (const auto& column : choice.columns) {
-      const std::size_t index = find(column);
-      if (std::ranges::find(result, index) != result.end())
-        refuse(path_, header_line_, fmt::format("{} is chosen twice", column_name(index)));
-      result.push_back(index);
-    }
-    return result;
-  }
-  result.resize(asked.size());
-  std::iota(result.begin(), result.end(), std::size_t{0});
-  if (columns_.size() == asked.size()) return result;
-  if (columns_.size() == asked.size() + 1 && is_index(0)) {
-    for (std::size_t& index : result) ++index;
-    bool all_fit = true;
-    for (std::size_t i = 0; i < asked.size(); ++i)
-      all_fit = all_fit && fits(result[i], choice.units.empty() ? "" : choice.units[i], asked[i].unit);
-    if (all_fit) return result;
-  }
-  std::vector<std::string> needed;
-  for (const AskedColumn& column : asked) needed.emplace_back(column.name);
-  if (columns_.size() < asked.size())
-    refuse(
-        path_, header_line_,
-        fmt::format("has {} column{} (delimiter: {}), but {} are needed: {}", columns_.size(),
-                    columns_.size() == 1 ? "" : "s", grid_.delimiter, asked.size(), fmt::join(needed, ", ")));
-  refuse(path_, header_line_,
-         fmt::format("has {} columns, of which {} are needed ({}): {}; write {}", columns_.size(),
-                     asked.size(), fmt::join(needed, ", "), list_of_columns(),
-                     line_to_write(choice, likely_columns(asked), asked)));
-}
-
-std::string MeasuredTable::chosen_unit(std::size_t column, const std::string& stated,
-                                       const AskedColumn& asked) const {
-  const std::string said = unit_of(column, asked.unit);
-  if (stated.empty() || !columns_[column].unit.empty()) {
-    if (!stated.empty() && stated != said)
-      refuse(path_, header_line_,
-             fmt::format("{} is in \"{}\" by the file and in \"{}\" by the deck; write \"\" in its place in "
-                         "`units`, or change the file",
-                         column_name(column), said, stated));
-    return said;
-  }
-  return stated;
-}
-
-std::vector<ChosenColumn> MeasuredTable::choose(const ColumnChoice& choice,
-                                                std::span<const AskedColumn> asked) const {
-  const std::vector<std::size_t> indices = chosen(choice, asked);
-  std::vector<ChosenColumn> result;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    const std::string stated = choice.units.empty() ? "" : choice.units[i];
-    result.push_back({indices[i], chosen_unit(indices[i], stated, asked[i])});
-    if (result.back().unit.empty())
-      refuse(path_, header_line_,
-             fmt::format("{} has no unit; write \"{} [{}]\" above it, or {}", column_name(indices[i]),
-                         columns_[indices[i]].name.empty() ? asked[i].name : columns_[indices[i]].name,
-                         asked[i].unit.si, line_to_write(choice, indices, asked)));
-  }
-  return result;
-}
-
 std::function<double(std::string_view)> MeasuredTable::reader(const ChosenColumn& column,
                                                               std::string_view given,
                                                               const Unit& unit) const {
   try {
     return quantity_reader(given, unit);
   } catch (const QuantityError& error) {
-    refuse(path_, header_line_, fmt::format("{}: {}", column_name(column.index), error.reason()));
+    const std::string& text = columns_[column.index].unknown_unit;
+    refuse(path_, header_line_,
+           fmt::format("{}: {}{}", column_name(column.index), error.reason(),
+                       given == text && !text.empty()
+                           ? fmt::format("; if ({}) is a remark, write it without brackets", text)
+                           : ""));
   }
 }
 
@@ -252,7 +162,7 @@ std::vector<double> MeasuredTable::values(const ChosenColumn& column, const Unit
   const ClockForm form = is_clock ? clock_form_of(column) : ClockForm::unknown;
   const auto read = reader(column, is_clock ? "s" : meant_unit(column.unit, unit), unit);
   std::vector<double> result;
-  for (std::size_t row = 0; row < rows(); ++row) {
+  for (std::size_t row = 0; row < std::min(rows(), column.rows); ++row) {
     const std::string& cell = grid_.rows[row].cells[index];
     const CellKind kind = kind_of_cell(cell);
     if (kind == CellKind::empty)
@@ -274,7 +184,8 @@ std::vector<double> MeasuredTable::values(const ChosenColumn& column, const Unit
       refuse(path_, line(row),
              fmt::format("{} is no {}", cell_place(row, index), is_clock ? "time" : "number"));
     try {
-      result.push_back(read(is_clock ? clock_seconds(cell, form) : *plain_number(cell, grid_.decimal_sign)));
+      result.push_back(column.factor *
+                       read(is_clock ? clock_seconds(cell, form) : *plain_number(cell, grid_.decimal_sign)));
     } catch (const QuantityError& error) {
       refuse(path_, line(row), fmt::format("{}: {}", column_name(index), error.what()));
     }
@@ -282,59 +193,95 @@ std::vector<double> MeasuredTable::values(const ChosenColumn& column, const Unit
   return result;
 }
 
-std::string MeasuredTable::list_of_columns() const {
-  std::vector<std::string> list;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const ColumnHeader& column = columns_[i];
-    list.push_back(fmt::format("{}{}{}", i + 1,
-                               column.name.empty() ? "" : fmt::format(" \"{}\"", column.name),
-                               column.unit.empty() ? "" : fmt::format(" [{}]", column.unit)));
-  }
-  return fmt::format("{}", fmt::join(list, ", "));
+namespace {
+
+constexpr double kDay = 86400.0;  // s
+constexpr double kHour = 3600.0;  // s
+constexpr double kEpoch = 1e8;    // s; no record begins three years after its start
+
+bool ascends(std::span<const double> values) {
+  return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
 }
 
-std::vector<std::size_t> MeasuredTable::likely_columns(std::span<const AskedColumn> asked) const {
-  std::vector<std::size_t> result;
-  const auto is_free = [&](std::size_t i) { return std::ranges::find(result, i) == result.end(); };
-  for (const AskedColumn& column : asked) {
-    std::size_t best = columns_.size();
-    for (std::size_t i = 0; i < columns_.size() && best == columns_.size(); ++i)
-      if (is_free(i) && fits(i, "", column.unit)) best = i;
-    for (std::size_t i = 0; i < columns_.size() && best == columns_.size(); ++i)
-      if (is_free(i)) best = i;
-    result.push_back(best);
-  }
-  return result;
+/// Tells whether the values ascend without the one at a place.
+bool ascends_without(std::span<const double> values, std::size_t place) {
+  std::vector<double> others(values.begin(), values.end());
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
+  return ascends(others);
 }
 
-std::string MeasuredTable::line_to_write(const ColumnChoice& choice, const std::vector<std::size_t>& columns,
-                                         std::span<const AskedColumn> asked) const {
-  std::vector<std::string> names, units;
-  bool all_say_units = true;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    const std::string& name = columns_[columns[i]].name;
-    const auto same = std::ranges::count(columns_, name, &ColumnHeader::name);
-    names.push_back(name.empty() || same > 1 ? fmt::format("{}", columns[i] + 1) : in_quotes(name));
-    const std::string unit = unit_of(columns[i], asked[i].unit);
-    all_say_units = all_say_units && !unit.empty();
-    units.push_back(in_quotes(unit.empty() ? asked[i].unit.si : unit));
-  }
-  std::string line =
-      fmt::format("{{ {} = \"{}\", columns = [{}]", choice.key, choice.file, fmt::join(names, ", "));
-  if (!all_say_units) line += fmt::format(", units = [{}]", fmt::join(units, ", "));
-  return line + " }";
+/// Tells whether times, s, fall because their clock begins anew after a period: with the period added they go
+/// on within two of their longest steps.
+bool passes_end(std::span<const double> times, std::size_t at, double period) {
+  constexpr double kShareOfStep = 1.0 / 48.0;  // half an hour of a day
+  double longest = period * kShareOfStep;
+  for (std::size_t i = 1; i < at; ++i) longest = std::max(longest, times[i] - times[i - 1]);
+  const double step = times[at] + period - times[at - 1];
+  return times[0] >= 0.0 && times[at - 1] < period + kHour && step >= 0.0 && step <= 2.0 * longest;
 }
+
+/// Says that a clock begins anew where times fall; empty where it does not look so.
+std::string told_of_clock(std::span<const double> times, std::size_t at, int line, bool is_clock) {
+  for (const double period : {kDay, kDay / 2.0, kHour}) {
+    if ((period < kDay && !is_clock) || !passes_end(times, at, period)) continue;
+    const std::string what =
+        period == kDay ? "passes midnight" : fmt::format("begins anew after {:g} h", period / kHour);
+    return fmt::format(
+        "the clock {} there; write times since the start of heating: add {:g} h from line {} on, and "
+        "subtract the "
+        "time of the start from all",
+        what, period / kHour, line);
+  }
+  return "";
+}
+
+/// Says what to do where values fall at a place. A remedy never mixes lines of two records.
+std::string way_to_ascend(const MeasuredTable& table, std::span<const double> values, std::size_t at,
+                          const Unit& unit, bool is_clock) {
+  std::size_t falls = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] < values[i - 1]) ++falls;
+  const int line = table.line(at);
+  if (unit == unit::time)
+    if (std::string told = told_of_clock(values, at, line, is_clock); !told.empty()) return told;
+  if (falls + 1 == values.size() && falls > 1)
+    return "it descends throughout: write the lines in the reverse order";
+  if (ascends_without(values, at) || ascends_without(values, at - 1))
+    return fmt::format("line {} or line {} stands in a wrong place or has a wrong number: move or correct it",
+                       table.line(at - 1), line);
+  if (falls == 1 && values.back() < values.front())
+    return fmt::format(
+        "the lines from {} on are less than all before: keep one of the two parts, or put them "
+        "first where both are of one record",
+        line);
+  if (falls == 1)
+    return fmt::format(
+        "the record begins again there: keep one of its parts, the lines up to {} or those from {} on",
+        table.line(at - 1), line);
+  return fmt::format(
+      "it falls {} times, as where several records stand in turn: keep the lines of one that ascends", falls);
+}
+
+}  // namespace
 
 void require_ascending(const MeasuredTable& table, const ChosenColumn& column, std::span<const double> values,
-                       std::string_view name) {
+                       std::string_view name, const Unit& unit, bool may_stay) {
+  if (unit == unit::time && values[0] > kEpoch)
+    refuse(table.path(), table.line(0),
+           fmt::format(
+               "the {} ({}) begins at {:.10g} s, {:.3g} years: it counts from a date, such as the year 1970 "
+               "or 1900; write times since the start of heating: subtract the time of the start from all",
+               name, table.column_name(column.index), values[0], values[0] / (365.25 * kDay)));
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i - 1] < values[i]) continue;
     const bool is_same = values[i - 1] == values[i];
-    refuse(
-        table.path(), table.line(i),
-        fmt::format("the {} ({}) {} from line {} to line {}; it must ascend: {}", name,
-                    table.column_name(column.index), is_same ? "stays the same" : "falls", table.line(i - 1),
-                    table.line(i), is_same ? "delete one of the lines" : "sort the lines"));
+    if (is_same && may_stay) continue;
+    refuse(table.path(), table.line(i),
+           fmt::format("the {} ({}) {} from line {} to line {}; it must ascend: {}", name,
+                       table.column_name(column.index), is_same ? "stays the same" : "falls",
+                       table.line(i - 1), table.line(i),
+                       is_same ? "keep one of the lines, or write the numbers with more digits"
+                               : way_to_ascend(table, values, i, unit, clock_form(column.unit).has_value())));
   }
 }
 

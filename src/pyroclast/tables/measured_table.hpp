@@ -3,21 +3,32 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pyroclast/base/unit.hpp"
+#include "pyroclast/tables/column_meaning.hpp"
 #include "pyroclast/tables/dialect.hpp"
 #include "pyroclast/tables/header.hpp"
 
 namespace pyroclast {
 
+/// Name of a column from which a quantity may be read.
+struct KnownName {
+  const ColumnMeaning* meaning;
+  double factor = 1.0;  ///< quantity over the column's number, 2 of a diameter from a radius
+};
+
 /// Quantity that is read from a table.
 struct AskedColumn {
   std::string_view name;  ///< name in messages, such as "time"
   const Unit& unit;
+  std::vector<KnownName> names = {};  ///< names of its column, the likeliest first; empty where any will do
+  bool is_optional = false;           ///< true where a table may lack it; such quantities come last
 };
 
 /// Columns of a file that a deck chooses, and their units.
@@ -33,10 +44,12 @@ struct ColumnChoice {
   std::string key = "csv";           ///< key by which the deck names the file
 };
 
-/// Column that was chosen, and the unit of its numbers.
+/// Column that was chosen.
 struct ChosenColumn {
   std::size_t index;
-  std::string unit;
+  std::string unit;                                            ///< unit of its numbers
+  double factor = 1.0;                                         ///< quantity over the column's number
+  std::size_t rows = std::numeric_limits<std::size_t>::max();  ///< rows up to the end of the chosen columns
 };
 
 /// Table of numbers as people, loggers, spreadsheets and programs write it: cells between commas, semicolons,
@@ -61,9 +74,19 @@ class MeasuredTable {
   int header_line() const { return header_line_; }
   const std::filesystem::path& path() const { return path_; }
 
-  /// Returns the columns of the quantities, in the order of the quantities. Without a choice the table must
-  /// have no other columns, apart from an index before them.
-  std::vector<ChosenColumn> choose(const ColumnChoice& choice, std::span<const AskedColumn> asked) const;
+  /// Returns the columns of the quantities, in the order of the quantities, without the optional ones that
+  /// the table lacks. A choice of the deck goes first, then known names, then places. Without a choice the
+  /// table must have no other columns than the quantities', apart from those that number the rows. A column
+  /// whose name says another quantity than its place is refused.
+  ///
+  /// \param others  quantities that names of columns may say beside those that are asked for
+  std::vector<ChosenColumn> choose(const ColumnChoice& choice, std::span<const AskedColumn> asked,
+                                   const ColumnMeanings& others = {}) const;
+  /// Tells whether the table has as many columns as quantities, and no name says another quantity than its
+  /// place.
+  bool names_suit(std::span<const AskedColumn> asked, const ColumnMeanings& others = {}) const;
+  /// Tells whether the table has the quantities by its names and units, and no others.
+  bool suits(std::span<const AskedColumn> asked, const ColumnMeanings& others = {}) const;
   /// Returns the unit of a column from which a quantity is read; empty where the file does not say it.
   std::string unit_of(std::size_t column, const Unit& unit) const;
   /// Tells whether a column without a unit counts the rows, from 0 or 1.
@@ -87,13 +110,39 @@ class MeasuredTable {
   std::function<double(std::string_view)> reader(const ChosenColumn& column, std::string_view given,
                                                  const Unit& unit) const;
   std::size_t find(const ColumnChoice::TableColumn& column) const;
-  std::vector<std::size_t> chosen(const ColumnChoice& choice, std::span<const AskedColumn> asked) const;
+  /// Returns the quantities that a column's name says, where the column's unit or the stated one lets it.
+  ColumnMeanings meanings(std::size_t column, const ColumnMeanings& vocabulary,
+                          const std::string& stated = "") const;
+  std::vector<std::size_t> columns_of_values(std::span<const AskedColumn> asked,
+                                             const ColumnMeanings& vocabulary) const;
+
+  /// Columns of the first quantities of those asked for, and the first that its name contradicts.
+  struct Match {
+    std::vector<std::size_t> columns;
+    std::optional<std::size_t> contradicted;
+  };
+  Match match(std::vector<std::size_t> columns, std::span<const AskedColumn> asked,
+              const ColumnMeanings& vocabulary) const;
+  bool fit(const Match& match, const ColumnChoice& choice, std::span<const AskedColumn> asked) const;
+  std::optional<Match> match_all(const ColumnChoice& choice, std::span<const AskedColumn> asked,
+                                 const ColumnMeanings& vocabulary) const;
+  bool contradicts(std::size_t column, const AskedColumn& asked, const ColumnMeanings& vocabulary,
+                   const std::string& stated) const;
+  std::vector<std::size_t> stated_columns(const ColumnChoice& choice, std::span<const AskedColumn> asked,
+                                          const ColumnMeanings& vocabulary) const;
+  std::vector<std::size_t> found_columns(const ColumnChoice& choice, std::span<const AskedColumn> asked,
+                                         const ColumnMeanings& vocabulary) const;
+  [[noreturn]] void refuse_contradiction(std::size_t column, const AskedColumn& asked,
+                                         const ColumnChoice& choice, std::span<const AskedColumn> all,
+                                         const ColumnMeanings& vocabulary) const;
   std::string chosen_unit(std::size_t column, const std::string& stated, const AskedColumn& asked) const;
+  std::size_t end_of(const std::vector<std::size_t>& columns) const;
   /// Returns the table of the deck that would name the columns, and the units where the file does not say
   /// them.
   std::string line_to_write(const ColumnChoice& choice, const std::vector<std::size_t>& columns,
                             std::span<const AskedColumn> asked) const;
-  std::vector<std::size_t> likely_columns(std::span<const AskedColumn> asked) const;
+  std::vector<std::size_t> likely_columns(std::span<const AskedColumn> asked,
+                                          const ColumnMeanings& vocabulary) const;
 
   std::filesystem::path path_;
   TableGrid grid_;
@@ -101,9 +150,11 @@ class MeasuredTable {
   int header_line_ = 0;
 };
 
-/// Throws Error that names the lines unless the values ascend strictly.
-/// \param name  name of the quantity, such as "time"
+/// Throws Error that names the lines, and says what to do, unless the values ascend strictly; also for times
+/// that count from a date.
+/// \param name      name of the quantity, such as "time"
+/// \param may_stay  true where values may be equal
 void require_ascending(const MeasuredTable& table, const ChosenColumn& column, std::span<const double> values,
-                       std::string_view name);
+                       std::string_view name, const Unit& unit, bool may_stay = false);
 
 }  // namespace pyroclast

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pyroclast/tables/header.hpp"
+
 namespace pyroclast {
 namespace {
 
@@ -45,6 +47,8 @@ ColumnChoice read_column_choice(const Section& section, const std::string& file,
   choice.units = section.optional_texts(
       "units", "units of the columns, where the file does not say them; `\"\"` where it does");
   if (choice.units.empty()) return choice;
+  for (std::string& unit : choice.units)
+    if (!unit.empty()) unit = unit_cell(unit).value_or(unit);  // "[-]" is "1" here too
   const bool fits = choice.columns.empty() ? counts.hold(choice.units.size())
                                            : choice.units.size() == choice.columns.size();
   if (!fits) {

@@ -1,5 +1,6 @@
 #include "pyroclast/tables/table_lines.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -94,7 +95,11 @@ TableLines table_lines(std::string_view bytes, const std::filesystem::path& path
     bytes.remove_prefix(end);
     bytes.remove_prefix(bytes.starts_with("\r\n") ? 2 : bytes.empty() ? 0 : 1);
     if (number == 1 && (result.delimiter = stated_delimiter(line))) continue;
-    if (!written.empty() && !is_comment(written)) result.lines.push_back({number, line});
+    if (written.empty()) continue;
+    if (!is_comment(written))
+      result.lines.push_back({number, line});
+    else if (result.lines.empty())
+      result.above = {number, written.substr(std::min(written.find_first_not_of("#%!/"), written.size()))};
   }
   return result;
 }
