@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/base/utf8.hpp"
 
@@ -19,7 +20,8 @@ constexpr std::size_t kMostOfALine = 60;  ///< most characters of a line in a me
 
 std::string way_to_utf8(const std::filesystem::path& path, std::string_view encoding) {
   const std::string name = path.filename().string();
-  return fmt::format("write `iconv -f {} -t UTF-8 {} > utf8_{}` and name that file", encoding, name, name);
+  return fmt::format("write `iconv -f {} -t UTF-8 {} > {}` and name that file", encoding, shell_path(name),
+                     shell_word("utf8_" + name));
 }
 
 int line_of(std::string_view bytes, std::size_t place) {
