@@ -248,7 +248,7 @@ void Session::drive(const std::string& drives) {
   drive.check(*simulation_, acting);
   if (run_.stage_is_under_way()) {
     if (const auto* under_way = dynamic_cast<const Drive*>(&run_.stage()))
-      drive.check_beside(*under_way, *simulation_);
+      drive.check_beside(*under_way, *simulation_, acting.supports);
     const auto load = [](const auto& one) { return one->loads(); };
     if (has_weight(*simulation_) || drive.loads() || std::ranges::any_of(run_.stages(), load))
       require_held(*simulation_, acting.supports, "drive");

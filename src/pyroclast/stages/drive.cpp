@@ -327,25 +327,64 @@ HeldMotion motion_of(const Drive::Action& action) {
   return {action.amount, action.ramp_time, action.factor.has_value()};
 }
 
-/// Throws Error where a force acts along a component of a gridpoint that is held or driven.
-void require_free(const Model& model, const Supports& supports, const std::string& set, const Vec<3>& force,
-                  const std::string& place) {
-  for (int g : model.set(set))
-    for (int c = 0; c < model.dimension(); ++c)
-      if (force[c] != 0.0 && supports.holds(g, c))
-        throw Error(fmt::format(
-            "{}: a force acts along {} on set \"{}\", which has gridpoints that are held or driven "
-            "along {} ({}): end the force by one of 0 N, or release them",
-            place, "xyz"[c], set, "xyz"[c], supports.place_of(g, c)));
+/// Component of the motion of a gridpoint.
+using HeldComponent = std::pair<int, int>;
+
+/// Returns the names of the sets that hold a component of a gridpoint.
+std::vector<std::string> holders_of(const Model& model, const Supports& supports, const HeldComponent& at) {
+  std::vector<std::string> names;
+  for (const auto& [name, members] : model.sets)
+    if (supports.holds(name, at.second) && std::ranges::find(members, at.first) != members.end())
+      names.push_back(name);
+  return names;
 }
 
-/// Tells whether supports bear all of a pressure on a set.
-bool is_borne(const Model& model, const Supports& supports, const std::string& set) {
+/// Returns a gridpoint of a set that is held or driven along a force; none where the force moves all of them.
+std::optional<HeldComponent> held_along(const Model& model, const Supports& supports, const std::string& set,
+                                        const Vec<3>& force) {
+  for (int g : model.set(set))
+    for (int c = 0; c < model.dimension(); ++c)
+      if (force[c] != 0.0 && supports.holds(g, c)) return HeldComponent{g, c};
+  return std::nullopt;
+}
+
+/// Returns a gridpoint of a set along which supports bear a pressure; none where they do not bear all of it.
+std::optional<HeldComponent> borne(const Model& model, const Supports& supports, const std::string& set) {
+  std::optional<HeldComponent> any;
   for (const Face& face : faces_in(model, model.set(set)))
     for (const int g : face.gridpoints())
-      for (int c = 0; c < model.dimension(); ++c)
-        if (std::abs(face.normal[c]) > kParallel && !supports.holds(g, c)) return false;
-  return true;
+      for (int c = 0; c < model.dimension(); ++c) {
+        if (std::abs(face.normal[c]) <= kParallel) continue;
+        if (!supports.holds(g, c)) return std::nullopt;
+        any = {g, c};
+      }
+  return any;
+}
+
+/// Returns a load that acted before supports took hold, without the parts that they bear from now on: a
+/// pressure whose faces are all held along their normals, and a force along the components along which all
+/// of its set is held.
+SetLoad without_borne(const Model& model, const Supports& supports, const std::string& set, SetLoad load) {
+  if (load.pressure != 0.0 && borne(model, supports, set)) load.pressure = 0.0;
+  for (int c = 0; c < model.dimension(); ++c)
+    if (std::ranges::all_of(model.set(set), [&](int g) { return supports.holds(g, c); })) load.force[c] = 0.0;
+  return load;
+}
+
+/// Throws Error where a part of a set that bears a force from before comes to be held along the force: the
+/// force would lose the shares of that part.
+void require_whole(const Model& model, const Supports& supports, const std::string& set,
+                   const LastingLoad& lasting) {
+  if (const auto at = held_along(model, supports, set, lasting.load.force))
+    throw Error(fmt::format(
+        "{0}: from here on a part of set \"{1}\" is held or driven along {2}, but a force along {2} acts on "
+        "all of it ({3}): end the force in this stage, by one of 0 N without ramp_time, or hold or drive the "
+        "whole set, which ends it",
+        supports.place_of(at->first, at->second), set, "xyz"[at->second], lasting.place));
+}
+
+bool is_same(const SetLoad& a, const SetLoad& b) {
+  return a.force == b.force && a.pressure == b.pressure;
 }
 
 }  // namespace
@@ -385,20 +424,27 @@ void Drive::check(const Simulation& simulation, Acting& acting) const {
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
       for (int c : action.components) acting.supports.hold(action.set, c, motion_of(action), action.place);
-  for (const auto& loaded : loads_at_end(simulation, acting)) {
-    const std::string& set = loaded.first;
-    const auto place =
-        std::ranges::find_if(keys_.actions, [&](const Action& a) { return a.set == set && !is_motion(a); });
-    acting.loads[set] = {loaded.second, place->place};
+  for (auto& [set, lasting] : acting.loads) {
+    lasting.load = without_borne(model, acting.supports, set, lasting.load);
+    if (std::ranges::none_of(keys_.actions,
+                             [&, name = set](const Action& a) { return a.set == name && !is_motion(a); }))
+      require_whole(model, acting.supports, set, lasting);
   }
-  for (const auto& [set, lasting] : acting.loads) {
-    require_free(model, acting.supports, set, lasting.load.force, lasting.place);
-    if (lasting.load.pressure != 0.0 && is_borne(model, acting.supports, set))
-      throw Error(
-          fmt::format("{}: a pressure acts on set \"{}\", all of which is held or driven along it, so that "
-                      "it moves nothing",
-                      lasting.place, set));
+  for (const Action& action : keys_.actions) {
+    if (is_motion(action) || action.amount == 0.0) continue;
+    if (action.kind == ActionKind::force)
+      require_free(model, acting.supports, action.set, action.direction, action.place);
+    else if (const auto at = borne(model, acting.supports, action.set))
+      throw Error(fmt::format(
+          "{}: a pressure acts on set \"{}\", all of which is held or driven along it, so "
+          "that it moves nothing {}",
+          action.place, action.set, describe_hold(model, acting.supports, at->first, at->second)));
   }
+  for (const double time : {0.0, keys_.duration})
+    for (const auto& [set, load] : loads_foreseen(time, acting))
+      require_free(model, acting.supports, set, load.force, place_of_load(set));
+  for (const auto& [set, load] : loads_foreseen(keys_.duration, acting))
+    acting.loads[set] = {load, place_of_load(set)};
   if (keys_.control) {
     const RecordParameters& record = simulation.record(keys_.control->record).parameters();
     for (const std::string& set : {record.set, record.other})
@@ -406,6 +452,34 @@ void Drive::check(const Simulation& simulation, Acting& acting) const {
   }
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::velocity) acting.supports.halt(action.set, action.components.front());
+}
+
+/// Describes a hold that bears a load, and the way out.
+std::string Drive::describe_hold(const Model& model, const Supports& supports, int gridpoint,
+                                 int component) const {
+  const std::string place = supports.place_of(gridpoint, component);
+  std::string ways;
+  for (const std::string& holder : holders_of(model, supports, {gridpoint, component})) {
+    if (std::ranges::any_of(keys_.actions, [&](const Action& a) {
+          return a.set == holder && a.kind != ActionKind::release &&
+                 std::ranges::find(a.components, component) != a.components.end();
+        }))
+      return fmt::format("({}): leave one of the two out", place);
+    ways += fmt::format("{}set = \"{}\", release = [\"{}\"]", ways.empty() ? "" : " and ", holder,
+                        "xyz"[component]);
+  }
+  return fmt::format("({}): let go of it in this stage, by a drive with {}", place, ways);
+}
+
+/// Throws Error where a force acts along a component of a gridpoint that is held or driven.
+void Drive::require_free(const Model& model, const Supports& supports, const std::string& set,
+                         const Vec<3>& force, const std::string& place) const {
+  if (const auto at = held_along(model, supports, set, force))
+    throw Error(
+        fmt::format("{}: a force acts along {} on set \"{}\", which has gridpoints that are held or "
+                    "driven along {} {}",
+                    place, "xyz"[at->second], set, "xyz"[at->second],
+                    describe_hold(model, supports, at->first, at->second)));
 }
 
 /// Throws Error where a load of 0, which ends a load that acts, finds none to end.
@@ -437,7 +511,7 @@ void Drive::require_consistent() const {
         if (std::ranges::find(other.components, c) != other.components.end())
           throw Error(fmt::format(
               "{}: set \"{}\" is held, driven or released along {} twice in one stage, here and at {}",
-              other.place, other.set, "xy"[c], one.place));
+              other.place, other.set, "xyz"[c], one.place));
       if (one.kind == ActionKind::pressure && other.kind == ActionKind::pressure &&
           one.is_follower != other.is_follower)
         throw Error(fmt::format(
@@ -453,13 +527,20 @@ std::vector<std::string> Drive::sets() const {
   return names;
 }
 
-void Drive::check_beside(const Drive& under_way, const Simulation& simulation) const {
+void Drive::check_beside(const Drive& under_way, const Simulation& simulation,
+                         const Supports& supports) const {
   const auto steers = [](const Action& a) {
     return a.kind != ActionKind::hold && a.kind != ActionKind::release;
   };
   const Model& model = simulation.model();
   for (const Action& other : under_way.keys_.actions) {
     if (!steers(other)) continue;
+    const SetLoad load{.force = other.kind == ActionKind::force ? other.direction : Vec<3>{},
+                       .pressure = other.kind == ActionKind::pressure ? 1.0 : 0.0};
+    if (!is_same(without_borne(model, supports, other.set, load), load))
+      throw Error(
+          fmt::format("{}: the stage under way loads set \"{}\" ({}), which this would hold: end it first",
+                      keys_.actions.front().place, other.set, other.place));
     for (const Action& own : keys_.actions) {
       if (is_motion(own) != is_motion(other)) continue;
       const auto meets = [&](int g) {
@@ -515,6 +596,12 @@ void Drive::begin(Simulation& simulation) {
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
       for (int c : action.components) simulation.hold(action.set, c, motion_of(action), action.place);
+  ChangedLoads left;
+  for (const auto& [set, load] : simulation.loads().all())
+    if (const SetLoad rest = without_borne(simulation.model(), simulation.supports(), set, load);
+        !is_same(rest, load))
+      left[set] = rest;
+  if (!left.empty()) simulation.loads().set(left);
   kept_.first_loads.clear();
   for (const Action& action : keys_.actions)
     if (!is_motion(action)) kept_.first_loads.push_back(simulation.loads().on(action.set));
@@ -591,11 +678,19 @@ const Drive::Action& Drive::longest_ramp(const std::string& set, ActionKind kind
   return *longest;
 }
 
-std::map<std::string, SetLoad> Drive::loads_at_end(const Simulation&, const Acting& acting) const {
-  return loads_at(keys_.duration, [&](const std::string& set) {
+/// Returns the loads at a time, from those that will act when the stage begins, as far as they can be
+/// foreseen.
+std::map<std::string, SetLoad> Drive::loads_foreseen(double time, const Acting& acting) const {
+  return loads_at(time, [&](const std::string& set) {
     const auto found = acting.loads.find(set);
     return found == acting.loads.end() ? SetLoad{} : found->second.load;
   });
+}
+
+/// Returns the place of the first load of the stage on a set.
+const std::string& Drive::place_of_load(const std::string& set) const {
+  return std::ranges::find_if(keys_.actions, [&](const Action& a) { return a.set == set && !is_motion(a); })
+      ->place;
 }
 
 SetLoad Drive::first_load(const std::string& set) const {

@@ -75,7 +75,8 @@ class Drive : public Stage {
   std::vector<std::string> sets() const override;
   /// Throws Error where the drive would act on a set that another drive, which is under way, keeps moving or
   /// loading.
-  void check_beside(const Drive& under_way, const Simulation& simulation) const;
+  /// \param supports  supports with those of this drive
+  void check_beside(const Drive& under_way, const Simulation& simulation, const Supports& supports) const;
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;
@@ -94,13 +95,17 @@ class Drive : public Stage {
     return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
   }
   void require_consistent() const;
+  std::string describe_hold(const Model& model, const Supports& supports, int gridpoint, int component) const;
+  void require_free(const Model& model, const Supports& supports, const std::string& set, const Vec<3>& force,
+                    const std::string& place) const;
   void require_effect(const Action& action, const Acting& acting) const;
   double share(const Action& action, double time) const;
   double part(const Action& action, double time) const;
   template <class Before>
   ChangedLoads loads_at(double time, Before before) const;
   ChangedLoads loads_at(double time) const;
-  ChangedLoads loads_at_end(const Simulation& simulation, const Acting& acting) const;
+  ChangedLoads loads_foreseen(double time, const Acting& acting) const;
+  const std::string& place_of_load(const std::string& set) const;
   const Action& longest_ramp(const std::string& set, ActionKind kind) const;
   SetLoad first_load(const std::string& set) const;
   double came(std::size_t action, const ChangedLoads& loads, double interval) const;
