@@ -92,6 +92,54 @@ TEST(Response, AFallMustLast) {
             std::string::npos);
 }
 
+/// Adds points that swing about a straight stretch, as where a wave runs to and fro.
+void swing(CompressionCurve& curve, double to_stress, double over_strain, double size) {
+  const std::size_t first = curve.count();
+  go_on(curve, to_stress, over_strain);
+  for (std::size_t i = first; i < curve.count(); ++i) curve.stress[i] += (i / 3 % 2 == 0 ? size : -size);
+}
+
+// Promise: the first wave, which shakes the curve for longer than it runs, tells no strength; where coarse
+// blocks fail one by one behind it, the run says that f_c depends on the rule.
+TEST(Response, TheFirstWaveTellsNoStrengthByAnyFall) {
+  CompressionCurve curve;  // a strain rate of 1/s, 15 GPa: the platen adds 0.75 MPa while a wave passes once
+  const double waves = 1e-4;
+  swing(curve, 15e6, 1e-3, 0.35e6);
+  EXPECT_LT(curve.stress[11], 0.9 * curve.stress[10]);  // a fall by 10 %, behind the wave
+  EXPECT_GT(curve.time[10] - curve.time[0], waves);
+  go_on(curve, 30e6, 1e-3);
+  go_on(curve, 28e6, 1e-4);
+  go_on(curve, 36e6, 1e-3);
+  go_on(curve, 20e6, 1e-3);
+  const auto report = compression_report(curve, {.waves_until = waves});
+  EXPECT_DOUBLE_EQ(number(report, "f_c_MPa"), 36.0);
+  EXPECT_DOUBLE_EQ(number(report, "f_c_by_fall_of_2_percent_MPa"), 30.0);
+  EXPECT_DOUBLE_EQ(number(report, "f_c_by_fall_of_10_percent_MPa"), 36.0);
+  ASSERT_EQ(report.warnings.size(), 1U);
+  EXPECT_NE(report.warnings[0].find("f_c depends on how a peak is told: 30.00 MPa by the first fall of 2 %, "
+                                    "36.00 MPa by one of 10 %"),
+            std::string::npos);
+}
+
+// Promise: a fall of 2 % and one of 10 % that tell the same still leave a doubt where f_c, by a lasting fall,
+// is another.
+TEST(Response, FallsThatAgreeAreComparedWithTheStrengthToo) {
+  CompressionCurve curve;
+  go_on(curve, 30e6, 2e-3);
+  go_on(curve, 26e6, 1e-4);
+  go_on(curve, 36e6, 1e-3);  // back above 30 MPa within 3e-4 of strain
+  go_on(curve, 20e6, 1e-3);
+  const auto report = compression_report(curve);
+  EXPECT_DOUBLE_EQ(number(report, "f_c_MPa"), 36.0);
+  EXPECT_DOUBLE_EQ(number(report, "f_c_by_fall_of_10_percent_MPa"), 30.0);
+  ASSERT_EQ(report.warnings.size(), 1U);
+  EXPECT_NE(
+      report.warnings[0].find("30.00 MPa by the first fall of 2 %, 36.00 MPa by one that lasts, 30.00 MPa "
+                              "by one of 10 %"),
+      std::string::npos)
+      << report.warnings[0];
+}
+
 // Promise: who ends a stage right behind the largest stress is told how far to go on.
 TEST(Response, APeakNeedsWhatComesBehindIt) {
   CompressionCurve curve;

@@ -30,8 +30,6 @@ constexpr double kLatestStrain = 0.02;
 constexpr double kExpectedStrain = 0.001;
 /// Strain limit of a stage that ends at a strain of the test, which it reaches before.
 constexpr double kNoStopStrain = 1.0;
-/// Passages of the stress wave through the specimen after which the stress is no longer that of a wave.
-constexpr double kPassages = 2.0;
 /// Mean strain rate of a controlled velocity over its dissipation_rate, about: 0.8e-3 to 1.3e-3 were measured
 /// (docs/validation/adaptive.md).
 constexpr double kStrainOfControl = 1.1e-3;

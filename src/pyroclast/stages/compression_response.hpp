@@ -14,6 +14,11 @@ namespace pyroclast {
 
 /// Rule of the peak of a stress over the strain of a stage.
 inline constexpr PeakRule kStrengthRule;
+/// Rise of the stress above f_c, behind it, that is reported, over f_c.
+inline constexpr double kRisesAgain = 0.005;
+
+/// Passages of the first stress wave through the specimen after which the stress is no longer that of a wave.
+inline constexpr double kPassages = 2.0;
 
 /// Curve of one compression, at even strains whatever the rows of the history are; compression positive.
 struct CompressionCurve {
@@ -74,7 +79,8 @@ struct CompressionResponse {
   std::size_t peak = 0;     ///< point of f_c, or of the largest stress where there is no f_c
   std::size_t largest = 0;  ///< point of the largest stress, whenever it came
   /// Largest stress before the first fall by 2 % and by 10 %, lasting or not, Pa. They show how far f_c
-  /// depends on the rule.
+  /// depends on the rule. The first wave shakes the curve for longer than it runs, by no more than the stress
+  /// that the platen adds during one passage: shallower falls do not count.
   std::optional<double> by_small_fall, by_large_fall;
   /// E: slope of the line fitted to the points from 5 % to 1/3 of f_c, Pa; of the largest stress where there
   /// is no f_c because the stress never fell. The curve begins with a toe where it is over a tenth steeper
@@ -85,7 +91,8 @@ struct CompressionResponse {
 };
 
 /// Returns the results of a compression curve.
-/// \param waves_until  time since the first point up to which the stress is that of a wave, s
+/// \param waves_until  time since the first point up to which the stress is that of a wave, s: that of
+/// kPassages
 CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0);
 
 /// Aim of a compression stage.

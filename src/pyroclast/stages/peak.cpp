@@ -10,6 +10,7 @@ void Peak::take(double driven, double size, const PeakRule& rule) {
     has_fallen_ = 0;
     return;
   }
+  if (size_ - size < rule.least) return;
   if (size < (1.0 - rule.fall) * size_) has_fallen_ = 1;
   const bool collapsed = size_ > 0.0 && size < (1.0 - rule.collapse) * size_;
   if (collapsed || (has_fallen() && driven - driven_ >= rule.lasting)) is_found_ = 1;

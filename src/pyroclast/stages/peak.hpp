@@ -13,6 +13,7 @@ struct PeakRule {
   /// Distance by which the body must be driven farther before the size comes back to the peak.
   double lasting = 3e-4;
   double collapse = 0.5;  ///< share of the peak: a fall by this share makes a peak at once
+  double least = 0.0;     ///< depth that any fall must exceed, in the size's unit
 };
 
 /// Finder of the peak of a size that a test measures while the body is driven on: the largest size before the
