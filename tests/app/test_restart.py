@@ -172,11 +172,10 @@ class Resuming(RestartTest):
         self.assertLess(history, largest)
         for room in (history // 2, largest - 1000):  # a row does not fit; a checkpoint or a frame does not
             out = f"out{room}"
-            limits = dict(preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),  # noqa: B023
-                                              resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))))  # noqa: B023
+            limits = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))}  # noqa: B023
             done = self.pyroclast("run", CASES / "starter.toml", *changes(*SMALL), "--out", out, "--no-figures", code=1,
                                   **limits)
-            self.assertIn("cannot be written", done.stderr)
+            self.assertIn("cannot be written (File too large)", done.stderr)
             if "pyroclast resume" in done.stderr:
                 self.pyroclast("resume", out, "--no-figures")
                 self.assert_same("whole", out)
@@ -231,6 +230,79 @@ class Forking(RestartTest):
         (self.folder / "more.toml").write_text("# later\n")
         said = self.pyroclast("resume", "parent", "--stages", "more.toml", "--out", "no", code=1).stderr
         self.assertIn("more.toml: has no [[stages]]", said)
+        self.assertFalse((self.folder / "no").exists())
+
+    WALL = """title = "Wall"
+[specimen]
+width = "100 mm"
+height = "100 mm"
+seed = 1
+[blocks]
+count = 60
+shortest_edge = 0.3
+[materials.mortar]
+density = "2200 kg/m3"
+conductivity = "1.5 W/(m K)"
+specific_heat = "900 J/(kg K)"
+[heat]
+field = "conduction"
+[[heat.boundaries]]
+faces = "left"
+kind = "temperature"
+temperature = "120 degC"
+[output]
+frame_interval = "1 min"
+"""
+
+    def stage(self, name: str) -> str:
+        return f'[[stages]]\nkind = "conduct"\nname = "{name}"\nduration = "1 min"\ninterval = "20 s"\n'
+
+    def forks(self) -> None:
+        """b is a, with a stage more, and c is b, with another one more."""
+        (self.folder / "a.toml").write_text(self.WALL + self.stage("first") + self.stage("second"))
+        self.pyroclast("run", "a.toml", "--out", "a", "--no-figures")
+        for parent, fork, more in (("a", "b", "third"), ("b", "c", "fourth")):
+            (self.folder / f"{more}.toml").write_text(self.stage(more))
+            self.pyroclast("resume", parent, "--stages", f"{more}.toml", "--out", fork, "--no-figures")
+
+    def test_a_fork_of_a_fork_begins_from_a_stage_that_neither_of_them_computed(self):
+        self.forks()
+        for parent, stage in (("b", 0), ("b", 1), ("c", 0), ("c", 2)):
+            with self.subTest(parent=parent, stage=stage):
+                change = changes(f"stages[{stage + 1}].duration=90 s")
+                self.pyroclast("resume", parent, "--from-stage", stage, *change, "--out", "fork", "--overwrite",
+                               "--no-figures")
+                self.pyroclast("run", f"{parent}/deck.toml", *change, "--out", "whole", "--overwrite", "--no-figures")
+                self.assert_same("fork", "whole")
+        # the last fork has its states from three folders
+        self.pyroclast("resume", "c", "--from-stage", 2, "--out", "d", "--no-figures")
+        states = json.loads((self.folder / "d/manifest.json").read_text())["parent"]["states"]
+        self.assertEqual([pathlib.Path(state["file"]).parts[-3::2] for state in states],
+                         [("a", "stage_0.state"), ("a", "stage_1.state"), ("b", "stage_2.state")])
+
+    def test_a_state_that_is_gone_is_named_with_what_to_do(self):
+        self.forks()
+        shutil.rmtree(self.folder / "b")  # c does not need it for the stages of a
+        self.pyroclast("resume", "c", "--from-stage", 1, "--out", "d", "--no-figures")
+        said = self.pyroclast("resume", "c", "--from-stage", 2, "--out", "no", "--no-figures", code=1).stderr
+        self.assertIn("c: this fork did not compute stage 2 itself; the state at its end, "
+                      f"{self.folder.resolve()}/b/checkpoints/stage_2.state, is not there", said)
+        self.assertIn("pyroclast run c/deck.toml --out NEW", said)
+        (self.folder / "a").rename(self.folder / "moved")
+        said = self.pyroclast("resume", "c", "--from-stage", "first", "--out", "no", "--no-figures", code=1).stderr
+        self.assertIn("a/checkpoints/stage_0.state, is not there: the run that holds it was moved or removed", said)
+        self.pyroclast("run", "moved/deck.toml", *changes("heat.boundaries[0].temperature=90 degC"), "--out", "a",
+                       "--no-figures")
+        said = self.pyroclast("resume", "c", "--from-stage", 0, "--out", "no", "--no-figures", code=1).stderr
+        self.assertIn("belongs to another run than the one that was forked", said)
+        self.assertFalse((self.folder / "no").exists())
+
+    def test_a_run_that_keeps_no_states_of_stages_says_so(self):
+        (self.folder / "a.toml").write_text(self.WALL + "keep_stage_checkpoints = false\n" + self.stage("first")
+                                            + self.stage("second"))
+        self.pyroclast("run", "a.toml", "--out", "a", "--no-figures")
+        said = self.pyroclast("resume", "a", "--from-stage", 0, "--out", "no", code=1).stderr
+        self.assertIn("a: keeps no states of stages ([output] keep_stage_checkpoints = false)", said)
         self.assertFalse((self.folder / "no").exists())
 
 

@@ -312,7 +312,7 @@ def _signal(process: subprocess.Popen[bytes], number: int) -> None:
 
 def is_of_full_disk(said: str) -> bool:
     """Whether a process said that it could write no more."""
-    return any(os.strerror(number) in said for number in (errno.ENOSPC, errno.EDQUOT))
+    return any(os.strerror(number) in said for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG))
 
 
 def die_with_parent(parent: int) -> Callable[[], None]:

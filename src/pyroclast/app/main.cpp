@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -367,6 +368,8 @@ int command_line(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file that must not grow further is an error of that file, with a sentence
   try {
     return command_line(argc, argv);
   } catch (const pyroclast::CodeNotAllowed& e) {

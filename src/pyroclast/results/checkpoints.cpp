@@ -116,6 +116,15 @@ fs::path stage_checkpoint(const fs::path& run_folder, std::int64_t stage) {
   return checkpoint_folder(run_folder) / fmt::format("stage_{}{}", stage, kEnding);
 }
 
+std::vector<StageState> stage_states(const fs::path& run_folder, std::int64_t count,
+                                     const std::string& inputs) {
+  std::vector<StageState> states = RunFolder::inherited_states(run_folder);
+  if (std::cmp_greater(states.size(), count)) states.resize(static_cast<std::size_t>(count));
+  for (auto stage = static_cast<std::int64_t>(states.size()); stage < count; ++stage)
+    states.push_back({stage_checkpoint(run_folder, stage), inputs});
+  return states;
+}
+
 CheckpointFile newest_checkpoint(const fs::path& run_folder) {
   std::vector<CheckpointFile> files;
   std::vector<std::pair<fs::path, std::string>> damaged;

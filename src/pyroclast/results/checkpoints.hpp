@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/clock.hpp"
 #include "pyroclast/results/checkpoint_file.hpp"
+#include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
 
@@ -22,6 +23,11 @@ std::string body_hash(const Simulation& simulation);
 std::filesystem::path checkpoint_folder(const std::filesystem::path& run_folder);
 /// Returns the checkpoint at the end of a stage, from 0.
 std::filesystem::path stage_checkpoint(const std::filesystem::path& run_folder, std::int64_t stage);
+
+/// Returns the states at the ends of the first stages of a run: those that a fork inherits stand in the
+/// folders of other runs. \param count   number of stages \param inputs  hash of the run's inputs
+std::vector<StageState> stage_states(const std::filesystem::path& run_folder, std::int64_t count,
+                                     const std::string& inputs);
 
 /// Returns the newest checkpoint of a run. Throws Error when there is none. When the newest file is damaged
 /// the Error says so, and names the newest undamaged one.

@@ -109,8 +109,10 @@ bool is_own(const fs::path& file) {
   });
 }
 
-/// Key of the departures in the manifest.
+/// Keys of the manifest.
 constexpr const char* kDepartures = "not_reproducible_from_the_deck";
+constexpr const char* kParent = "parent";
+constexpr const char* kStates = "states";
 
 /// Reads the manifest of a folder; no object where there is none.
 nlohmann::ordered_json manifest_of(const fs::path& folder) {
@@ -131,6 +133,10 @@ void write_inputs(const fs::path& folder, const Inputs& inputs) {
   for (const InputFile& input : inputs.files) write_text_file(folder / input.name, input.contents);
   if (!inputs.references.empty()) write_text_file(folder / kReferences, inputs.references);
   write_text_file(folder / "deck.toml", inputs.deck_text);
+}
+
+std::string whole_path(const fs::path& path) {
+  return fs::absolute(path).lexically_normal().string();
 }
 
 /// Tells whether a folder holds the manifest of a run, and not another program's.
@@ -211,6 +217,21 @@ void RunFolder::note_departure(const fs::path& path, const Departure& departure)
   write_text_file(path / kManifest, manifest.dump(2) + "\n");
 }
 
+std::vector<StageState> RunFolder::inherited_states(const fs::path& path) {
+  const auto manifest = manifest_of(path);
+  const auto parent = manifest.is_object() ? manifest.value(kParent, nlohmann::ordered_json()) : manifest;
+  std::vector<StageState> states;
+  if (!parent.is_object() || !parent.contains(kStates)) return states;
+  try {
+    for (const auto& one : parent[kStates])
+      states.push_back({one.at("file").get<std::string>(), one.at("inputs").get<std::string>()});
+  } catch (const nlohmann::json::exception&) {
+    throw Error(fmt::format("{}: {}.{} is no list of states of stages", (path / kManifest).string(), kParent,
+                            kStates));
+  }
+  return states;
+}
+
 void RunFolder::replace_inputs(const fs::path& path, const Inputs& inputs) {
   auto manifest = manifest_of(path);
   manifest["deck_sha256"] = sha256(inputs.deck_text);
@@ -245,10 +266,14 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
                             {"shared_object", law.shared_object.string()},
                             {"compiler", law.compiler},
                             {"header", law.header.string()}});
-  if (manifest.parent)
-    json["parent"] = {{"folder", fs::absolute(manifest.parent->folder).lexically_normal().string()},
-                      {"from_stage", manifest.parent->stage},
-                      {"changes", manifest.parent->changes}};
+  if (manifest.parent) {
+    json[kParent] = {{"folder", whole_path(manifest.parent->folder)},
+                     {"from_stage", manifest.parent->stage},
+                     {"changes", manifest.parent->changes},
+                     {kStates, nlohmann::ordered_json::array()}};
+    for (const StageState& state : manifest.parent->states)
+      json[kParent][kStates].push_back({{"file", whole_path(state.file)}, {"inputs", state.inputs}});
+  }
   write_text_file(path_ / kManifest, json.dump(2) + "\n");
   write_inputs(path_, manifest.inputs);
 }

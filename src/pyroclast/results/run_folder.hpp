@@ -19,11 +19,18 @@ struct OwnLaw {
   std::string compiler;
 };
 
+/// State at the end of a stage, in the folder of the run that computed the stage.
+struct StageState {
+  std::filesystem::path file;
+  std::string inputs;  ///< hash of that run's inputs, see CheckpointInfo
+};
+
 /// Run in another folder from which this run goes on.
 struct Parent {
   std::filesystem::path folder;
   std::int64_t stage = 0;            ///< last stage that both have in common, from 0
   std::vector<std::string> changes;  ///< changes, "key=value", and files of more stages
+  std::vector<StageState> states;    ///< states of the common stages that are over, from stage 0 on
 };
 
 /// Departure: a reason why a run is not the one that its deck describes.
@@ -69,6 +76,8 @@ class RunFolder {
   static std::vector<Departure> departures(const std::filesystem::path& path);
   /// Adds a departure to the manifest, unless it is there.
   static void note_departure(const std::filesystem::path& path, const Departure& departure);
+  /// Returns the states of stages that a fork did not compute itself, from stage 0 on.
+  static std::vector<StageState> inherited_states(const std::filesystem::path& path);
   /// Replaces the deck of a run that goes on with other stages, and the files that the deck names.
   static void replace_inputs(const std::filesystem::path& path, const Inputs& inputs);
 

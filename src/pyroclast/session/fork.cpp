@@ -24,7 +24,11 @@ namespace fs = std::filesystem;
 constexpr const char* kDeck = "deck.toml";
 
 /// Throws Error where a checkpoint is not one of this program, these inputs and this body.
-void require_same(const CheckpointFile& checkpoint, const std::string& inputs, const Simulation& simulation) {
+/// \param other_inputs  description of inputs that are not these, for the message
+void require_same(const CheckpointFile& checkpoint, const std::string& inputs, const Simulation& simulation,
+                  const char* other_inputs =
+                      "other inputs: deck.toml or a file of inputs/ was changed since "
+                      "the run began") {
   const CheckpointInfo& info = checkpoint.info();
   const auto refuse = [&](const std::string& what) {
     throw Error(fmt::format("{}: {}", checkpoint.path().string(), what));
@@ -35,8 +39,7 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
   if (info.physics_version != kPhysicsVersion)
     refuse(fmt::format("belongs to physics version {}; this program has {}", info.physics_version,
                        kPhysicsVersion));
-  if (info.inputs != inputs)
-    refuse("belongs to other inputs: deck.toml or a file of inputs/ was changed since the run began");
+  if (info.inputs != inputs) refuse(fmt::format("belongs to {}", other_inputs));
   if (info.body != body_hash(simulation))
     refuse("belongs to another body: specimen or laws of this program differ from those that the run had");
 }
@@ -70,6 +73,30 @@ void require_deck_alone(const fs::path& run) {
       throw Error(
           fmt::format("{}: only the script that made this run can make it again, for it changed the run: {}",
                       run.string(), departure.why));
+}
+
+bool is_of(const StageState& state, const fs::path& run) {
+  return state.file == stage_checkpoint(run, 0).parent_path() / state.file.filename();
+}
+
+/// Opens the state at the end of a stage, from which a run is forked.
+/// \param parent  run that is forked, as its folder has it
+CheckpointFile open_state(const StageState& state, std::int64_t stage, const fs::path& run,
+                          const Setup& parent) {
+  if (fs::exists(state.file)) return CheckpointFile(state.file);
+  const std::string again =
+      fmt::format("a run of the deck from the beginning gives the same: pyroclast run {} --out NEW",
+                  (run / kDeck).string());
+  if (!is_of(state, run))
+    throw Error(
+        fmt::format("{}: this fork did not compute stage {} itself; the state at its end, {}, is not "
+                    "there: the run that holds it was moved or removed. Put it back, or else {}",
+                    run.string(), stage, state.file.string(), again));
+  if (!parent.checkpoints.keep_stages)
+    throw Error(fmt::format("{}: keeps no states of stages ([output] keep_stage_checkpoints = false); {}",
+                            run.string(), again));
+  throw Error(fmt::format("{}: there is no state of the end of stage {}, {}: the run has not come to it; {}",
+                          run.string(), stage, state.file.string(), again));
 }
 
 }  // namespace
@@ -131,21 +158,27 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   const std::int64_t stage = of.from_stage.empty() ? static_cast<std::int64_t>(parent.setup.stages.size()) - 1
                                                    : stage_of(of.from_stage, parent.setup);
   for (const std::string& change : of.changes) require_later(change, stage);
-  const CheckpointFile checkpoint(stage_checkpoint(of.run, stage));
+  const std::vector<StageState> states =
+      stage_states(of.run, stage + 1, inputs_of(parent.deck, parent.setup).hash());
+  const CheckpointFile checkpoint = open_state(states.back(), stage, of.run, parent.setup);
 
   const Appendix more = of.more.empty() ? Appendix() : Appendix{read_file(of.more), of.more.string()};
   Opened opened = open_from(of.run, of.changes, more, choices);
   if (!of.more.empty() && opened.setup.stages.size() == parent.setup.stages.size())
     throw Error(fmt::format("{}: has no [[stages]], so that nothing follows", of.more.string()));
   std::unique_ptr<Session> session(new Session(std::move(opened), lock(output), output.folder));
-  require_same(checkpoint, inputs_of(parent.deck, parent.setup).hash(), *session->simulation_);
+  if (is_of(states.back(), of.run))
+    require_same(checkpoint, states.back().inputs, *session->simulation_);
+  else
+    require_same(checkpoint, states.back().inputs, *session->simulation_,
+                 "another run than the one that was forked: its folder was written anew since then");
   session->restore(checkpoint);
   if (session->run_.outcome() != Outcome::running)
     throw Error(fmt::format("{}: no stage can follow stage {}, which ended the run ({})", of.run.string(),
                             stage, describe(session->run_.outcome())));
   std::vector<std::string> changes = of.changes;
   if (!of.more.empty()) changes.push_back(of.more.string());
-  session->make_folder(output, Parent{of.run, stage, changes});
+  session->make_folder(output, Parent{of.run, stage, changes, states});
   copy_frames(of.run, output.folder, static_cast<int>(session->writer_.frames().rows.size()));
   session->open(checkpoint.info().number);
   session->checkpoint_is_due_ = true;

@@ -173,7 +173,11 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
   for (const Departure& departure : departures_) copied->depart(departure);
   if (!output) return copied;
   std::optional<Parent> parent;
-  if (!folder_.empty()) parent = {folder_, run_.last_begun_stage(), changes};
+  if (!folder_.empty()) {
+    const std::int64_t begun = run_.last_begun_stage();
+    const std::int64_t over = run_.stage_is_under_way() ? begun : begun + 1;
+    parent = {folder_, begun, changes, stage_states(folder_, over, inputs_.hash())};
+  }
   copied->make_folder(*output, std::move(parent));
   if (!folder_.empty())
     copy_frames(folder_, copied->folder_, static_cast<int>(copied->writer_.frames().rows.size()));
