@@ -87,6 +87,12 @@ class Concrete(unittest.TestCase):
         self.assertEqual(hot["specimen"]["width"], "100 mm")
         self.assertEqual(hot["contacts"]["mortar_mortar"]["f_t"], self.deck()["contacts"]["mortar_mortar"]["f_t"])
         self.assertNotIn("warning", self.pyroclast("check", "hot.toml").stdout)  # nothing is heated under load
+        # a calibration that failed says so in its deck, and the hot deck goes on saying it
+        missed = "# The targets are not met: f_c is 30.2, wanted 45.\n"
+        (self.folder / "best.toml").write_text("# Best point\n" + missed + (self.folder / "best.toml").read_text())
+        done = self.pyroclast("concrete", *LIMESTONE, *FULLER, "--hot", "400 degC", "--from", "best.toml", "-o", "2.toml")
+        self.assertIn("best.toml is of a calibration that failed: f_c is 30.2, wanted 45.", done.stdout)
+        self.assertTrue((self.folder / "2.toml").read_text().startswith(missed))
 
     def test_a_deck_of_another_concrete_is_refused_and_first_guesses_are_told(self):
         self.concrete(*LIMESTONE, *FULLER)

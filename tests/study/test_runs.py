@@ -695,6 +695,8 @@ class Secant(StudyTest):
         self.assertIn("stiffness = 1.43: at the end of the range", done.stderr)
         self.assertIn("best.toml", done.stdout)
         self.assertNotIn("another unit", done.stderr)
+        best = Study(self.text, program=PROGRAM).setup.folder / "best.toml"
+        self.assertRegex(best.read_text(), r"\n# The targets are not met: E is \S+, wanted 60\.\n")
 
     def test_a_target_in_another_unit_than_its_output_is_told_with_that_unit(self) -> None:
         done = self.run_for(19e9)

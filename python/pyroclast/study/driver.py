@@ -34,6 +34,8 @@ from .work import Job, made
 NOT_RUN = "not run"
 WITH_A_BEST = ("calibrate", "secant")
 """Methods that look for the point nearest to the targets."""
+NOT_MET = "# The targets are not met"
+"""Begins a line of best.toml, which `pyroclast concrete --from` hands on (app/concrete.cpp)."""
 
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
@@ -209,9 +211,13 @@ class Driver:
         if self.study.method.kind not in WITH_A_BEST or self.study.runner.kind != "pyroclast":
             return None
         file = self.store.folder / "best.toml"
-        values = self.values(self.findings()["best"]["u"])
+        findings = self.findings()
+        values = self.values(findings["best"]["u"])
         found = ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(self.study.parameters, values))
-        write_text(file, f"# Best point of the study \"{self.study.title}\": {found}.\n"
+        missed = "" if findings.get("is_met", True) else f"{NOT_MET}: " + ", ".join(
+            f"{target.output} is {y:.4g}, wanted {target.value:g}"
+            for target, y in zip(self.study.targets, findings["best"]["y"])) + ".\n"
+        write_text(file, f"# Best point of the study \"{self.study.title}\": {found}.\n{missed}"
                          "# The comments below come from the first deck.\n" + self.points.text(values))
         return file
 

@@ -16,6 +16,7 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/concrete_template.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/rocks.hpp"
@@ -411,6 +412,15 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
   return found;
 }
 
+/// Returns the line by which a study says in its best point's deck that the targets are not met, see
+/// study/driver.py; empty where there is none.
+std::string missed_targets(const std::filesystem::path& file) {
+  std::istringstream text(read_file(file));
+  for (std::string line; std::getline(text, line);)
+    if (line.starts_with("# The targets are not met")) return line;
+  return {};
+}
+
 /// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete.
 bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o) {
   ConcreteOptions alike = o;
@@ -493,7 +503,10 @@ int write_concrete(const ConcreteOptions& options) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
     files.emplace_back(beside("calibrate"), study_text(asked, o));
   }
-  if (asked.hot) files.emplace_back(is_guess ? beside("hot") : o.out, deck_text(asked, found, o, true));
+  const std::string missed = is_guess ? std::string() : missed_targets(o.from);
+  if (asked.hot)
+    files.emplace_back(is_guess ? beside("hot") : o.out,
+                       (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
   for (const auto& [file, text] : files)
     if (std::filesystem::exists(file))
       throw Error(
@@ -511,6 +524,9 @@ int write_concrete(const ConcreteOptions& options) {
           "warning         {} has the first guesses: run its calibration, and take the deck of its best "
           "point\n",
           o.from.string());
+    if (!missed.empty())
+      fmt::print("warning         {} is of a calibration that failed{}\n", o.from.string(),
+                 missed.substr(missed.find(':')));
     fmt::print("Next:\n  pyroclast run {} --seeds 3\n", shell_path(o.out));
     return 0;
   }

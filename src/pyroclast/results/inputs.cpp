@@ -8,6 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/stages/run_verdict.hpp"
 
 namespace pyroclast {
 
@@ -28,7 +29,8 @@ Inputs inputs_of(const Deck& deck, const Setup& setup) {
       for (int other = 2; std::ranges::find(inputs.files, name, &InputFile::name) != inputs.files.end();
            ++other)
         name = fmt::format("inputs/{}_{}", other, named.file.filename().string());
-      file = inputs.files.insert(inputs.files.end(), {named.file, name, read_file(named.file)});
+      file = inputs.files.insert(inputs.files.end(),
+                                 {named.file, name, read_file(named.file), verdict_on_run_of(named.file)});
     }
     if (!named.key.empty()) values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
   }

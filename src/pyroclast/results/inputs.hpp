@@ -13,6 +13,7 @@ struct InputFile {
   std::filesystem::path source;
   std::string name;  ///< name in the folder of a run: "inputs/..."
   std::string contents;
+  std::string verdict = {};  ///< verdict on the run that wrote the file, see verdict_on_run_of; may be empty
 };
 
 /// Inputs of a run, as its folder keeps them.

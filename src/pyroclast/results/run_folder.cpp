@@ -122,9 +122,11 @@ nlohmann::ordered_json manifest_of(const fs::path& folder) {
 
 nlohmann::ordered_json json_of(const std::vector<InputFile>& inputs) {
   auto json = nlohmann::ordered_json::array();
-  for (const InputFile& input : inputs)
+  for (const InputFile& input : inputs) {
     json.push_back(
         {{"name", input.name}, {"sha256", sha256(input.contents)}, {"source", input.source.string()}});
+    if (!input.verdict.empty()) json.back()["verdict"] = input.verdict;
+  }
   return json;
 }
 

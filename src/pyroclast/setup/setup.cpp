@@ -1,7 +1,9 @@
 #include "pyroclast/setup/setup.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +24,7 @@
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
 #include "pyroclast/setup/read_symmetry.hpp"
+#include "pyroclast/stages/run_verdict.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast {
@@ -206,6 +209,30 @@ void warn_of_healing(const Section& root, const Setup& setup) {
       return;
     }
     temperature = *to;
+  }
+}
+
+/// Warns at a key, given by its full path, such as "output.references[0].file".
+void warn_at(Section table, std::string_view path, std::string message) {
+  for (auto dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
+    const std::string_view name = path.substr(0, dot);
+    path.remove_prefix(dot + 1);
+    const auto bracket = name.find('[');
+    std::size_t number = 0;
+    if (bracket != std::string_view::npos)
+      std::from_chars(name.data() + bracket + 1, name.data() + name.size(), number);
+    table = bracket == std::string_view::npos ? table.section(name)
+                                              : table.optional_sections(name.substr(0, bracket)).at(number);
+  }
+  table.warn(path, std::move(message));
+}
+
+/// Warns of files that a run wrote that finds fault with its own numbers.
+void warn_of_runs(const Deck& deck) {
+  for (const DeckFile& named : deck.files()) {
+    if (named.key.empty()) continue;
+    if (const std::string verdict = verdict_on_run_of(named.file); !verdict.empty())
+      warn_at(deck.root(), named.key, fmt::format("is of a run in doubt: {}", verdict));
   }
 }
 
@@ -415,6 +442,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.unused_properties = unused_properties(root, setup);
   setup.references = read_references(output, folder, setup);
   deck.finish();
+  warn_of_runs(deck);
   setup.warnings = deck.warnings();
   return setup;
 }

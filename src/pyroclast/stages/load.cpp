@@ -28,7 +28,8 @@ std::string read_run(const Section& s, const std::filesystem::path& run, Load::K
     s.names_file("run", found.summary);
     s.needs_file(found.manifest);
     keys.strength = found.value;
-    if (!found.is_good) s.warn("run", "is not to be believed, as its summary says: see its warnings");
+    if (!found.doubts.empty())
+      s.warn("run", fmt::format("its f_c, {:.4g} MPa, is in doubt: {}", found.value * 1e-6, found.doubts));
     return fmt::format("of the run of deck {}", found.deck_sha256.substr(0, kShortHash));
   } catch (const Error& error) {
     s.error("run", error.what());

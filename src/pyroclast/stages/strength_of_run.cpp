@@ -5,6 +5,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/stages/run_verdict.hpp"
 
 namespace pyroclast {
 
@@ -27,7 +28,6 @@ StrengthOfRun strength_of_run(const std::filesystem::path& place) {
   found.manifest = found.summary.parent_path() / name.replace(at, std::string("summary").size(), "manifest");
   const auto summary = json_in(found.summary);
   found.deck_sha256 = json_in(found.manifest).value("deck_sha256", "");
-  found.is_good = summary.value("is_good", false);
   std::string why = "none of its stages measures one";
   for (const auto& stage : summary.value("stages", nlohmann::json::array())) {
     if (!stage.is_object() || !stage.contains("results")) continue;
@@ -41,6 +41,14 @@ StrengthOfRun strength_of_run(const std::filesystem::path& place) {
   }
   if (!(found.value > 0.0))
     throw Error(fmt::format("{}: the run has no f_c: {}", found.summary.string(), why));
+  RunVerdict verdict = verdict_of(summary);
+  if (!verdict.does_not_count.empty())
+    throw Error(
+        fmt::format("{}: the run's numbers do not count: {}; take a run that is quasi-static and came to its "
+                    "end, or state "
+                    "the strength yourself, with its reason: f_c = \"{:.4g} MPa\", f_c_of = \"...\"",
+                    found.summary.string(), verdict.does_not_count, found.value * 1e-6));
+  found.doubts = verdict.text();
   return found;
 }
 

@@ -9,14 +9,14 @@ namespace pyroclast {
 struct StrengthOfRun {
   double value = 0.0;       ///< f_c of the last stage that has one, Pa
   std::string deck_sha256;  ///< hash of that run's deck
-  bool is_good = true;      ///< false where that run's summary says that it is not to be believed
+  std::string doubts;  ///< reasons why it should not be taken at face value, see RunVerdict; may be empty
   std::filesystem::path summary, manifest;  ///< files of that run that were read
 };
 
 /// Reads f_c of a run from its summary, with the manifest beside it.
 /// \param place  folder of a run, or its summary
-/// \throws Error naming the file where there is none, it is no summary, or the run has no f_c, with the
-/// reason
+/// \throws Error naming the file where there is none, it is no summary, or the run has no f_c, or none that
+/// counts, with the reason
 StrengthOfRun strength_of_run(const std::filesystem::path& place);
 
 }  // namespace pyroclast
