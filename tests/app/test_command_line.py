@@ -57,6 +57,66 @@ class CommandLine(unittest.TestCase):
         self.assertIn('did you mean "curves"?', self.error("list", "curvs"))
         self.assertIn('did you mean "hot_compression"?', self.error("new", "x", "--from", "hot_compresion"))
 
+    WALL = """title = "Wall"
+[specimen]
+width = "100 mm"
+height = "100 mm"
+seed = 1
+[blocks]
+count = 60
+shortest_edge = 0.3
+[materials.mortar]
+density = "2200 kg/m3"
+conductivity = "1.5 W/(m K)"
+specific_heat = "900 J/(kg K)"
+[heat]
+field = "conduction"
+[[heat.boundaries]]
+faces = "left"
+kind = "temperature"
+temperature = "120 degC"
+[[stages]]
+kind = "conduct"
+duration = "2 min"
+interval = "1 min"
+change = "0.5 K"
+[output]
+frame_interval = "30 s"
+"""
+
+    def test_check_forecasts_rows_and_disk_of_conduction(self):
+        (self.folder / "wall.toml").write_text(self.WALL)
+
+        def foreseen(*changes: str) -> tuple[float, float, str]:
+            words = [word for change in changes for word in ("--set", change)]
+            said = self.pyroclast("check", "wall.toml", *words).stdout
+            rows, size, unit = re.search(r"results +about (\S+) rows of history\.csv.*; (\S+) (\wB) of disk", said).groups()
+            return float(rows), float(size) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[unit], said
+
+        self.pyroclast("run", "wall.toml", "-o", "wall", "--no-figures", "--quiet")
+        rows = (self.folder / "wall/history.csv").read_bytes().count(b"\n") - 1
+        files = [*(self.folder / "wall/fields").glob("*_*.hdf"), self.folder / "wall/history.csv"]
+        size = sum(file.stat().st_size for file in files)
+        forecast = foreseen()
+        self.assertLess(abs(forecast[0] / rows - 1.0), 0.5, (forecast[0], rows))
+        self.assertLess(abs(forecast[1] / size - 1.0), 0.5, (forecast[1], size))
+        more = foreseen("stages[0].change=1e-9 K")
+        self.assertGreater(more[0], 1e10)
+        self.assertGreater(more[1], 1e12)
+        self.assertRegex(more[2], r"; about (more than a hundred years|\d{2,} h)")
+        self.assertGreater(forecast[1], 2 * foreseen("output.fields=false")[1])
+        self.assertLess(foreseen("stages[0].interval=1 h", "stages[0].change=1000 K")[0], 3)
+
+    def test_a_text_in_the_place_of_a_list_is_proposed_as_a_list(self):
+        (self.folder / "wall.toml").write_text(self.WALL)
+        said = self.error("check", "wall.toml", "--set", 'specimen.symmetry="left"')
+        self.assertIn('specimen.symmetry = "left": must be a list of texts: ["left"]', said)
+        self.assertIn("must be a list of texts, each in quotation marks",
+                      self.error("check", "wall.toml", "--set", "specimen.symmetry=3"))
+        said = self.error("check", "wall.toml", "--set", "specimen.symmetry=[1]")
+        self.assertIn("must hold texts only", said)
+        self.assertNotIn("aggregate", said)
+
     def test_where_nothing_more_can_be_written_the_exit_code_tells(self):
         with open("/dev/full", "w") as full:
             done = subprocess.run([PROGRAM, "list", "cases"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)

@@ -98,6 +98,18 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
 }
 
+/// Tells how much a run writes, apart from its checkpoints and figures.
+void print_results(const Rehearsal& cost, bool has_fields) {
+  constexpr double kKilo = 1e3, kMega = 1e6, kGiga = 1e9;
+  const double bytes = std::max(kKilo, cost.history_bytes + cost.field_bytes);
+  fmt::print(
+      "results         about {:.2g} rows of history.csv{}; {} of disk\n", std::max(1.0, cost.forecast.looks),
+      has_fields ? fmt::format(", {:.2g} frames of the fields", std::max(1.0, cost.forecast.frames)) : "",
+      bytes < kMega   ? fmt::format("{:.0f} kB", bytes / kKilo)
+      : bytes < kGiga ? fmt::format("{:.0f} MB", bytes / kMega)
+                      : fmt::format("{:.3g} GB", bytes / kGiga));
+}
+
 /// Tells what is known of a deck without the code that it names. Returns the exit code.
 int say_unchecked(const Opened& opened) {
   fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
@@ -137,16 +149,19 @@ int check(const RunOptions& options) {
   print_strength(setup);
   const std::size_t stages = setup.stages.size();
   if (setup.has_fields) rehearse_mesh(model);
-  const auto [expected, seconds, evaluations] = rehearse(std::move(setup), *simulation);
+  const bool has_fields = setup.has_fields;
+  const Rehearsal cost = rehearse(std::move(setup), *simulation);
+  const Forecast& expected = cost.forecast;
   fmt::print("run             {} stages", stages);
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
-  fmt::print("; about {}\n", duration(seconds));
+  fmt::print("; about {}\n", duration(cost.seconds));
   if (expected.heating_duration > 0.0)
     fmt::print("                a minute of heat takes about {:.0f} stages of the heat solver\n",
-               60.0 * evaluations / expected.heating_duration);
+               60.0 * cost.heat_evaluations / expected.heating_duration);
   fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
              name(opened.instructions), peak_memory() * 1e-6);
+  print_results(cost, has_fields);
   return 0;
 }
 

@@ -190,6 +190,8 @@ std::string describe(const HeatSolver& conduction, const Model& model, const Int
 }
 
 std::string duration(double seconds) {
+  constexpr double kLongest = 3e9;
+  if (!(seconds < kLongest)) return "more than a hundred years";
   const auto s = static_cast<long>(std::lround(seconds));
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);

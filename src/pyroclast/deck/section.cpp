@@ -628,13 +628,15 @@ std::vector<std::string> texts_of(const Entry& entry) {
   if (!entry) return list;
   const auto* array = entry->node.as_array();
   if (!array) {
-    entry->error("must be a list of texts, such as [\"aggregate\", \"mortar\"]");
+    const auto text = entry->node.template value<std::string>();
+    entry->error(text && entry->node.is_string() ? fmt::format("must be a list of texts: [\"{}\"]", *text)
+                                                 : "must be a list of texts, each in quotation marks");
     return list;
   }
   for (const auto& element : *array) {
     const auto text = element.template value<std::string>();
     if (!text) {
-      entry->error("must hold texts only, such as [\"aggregate\", \"mortar\"]");
+      entry->error("must hold texts only, each in quotation marks");
       return {};
     }
     list.push_back(*text);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pyroclast/base/clock.hpp"
+#include "pyroclast/simulation/fields.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
@@ -17,6 +18,8 @@ constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
 constexpr double kSecondsOfTiming = 0.5;
 /// Rows of the history that take about as long as a frame, which computes and writes every contact.
 constexpr double kRowsPerFrame = 4.0;
+/// Bytes of a cell of history.csv: of runs of conduct, compress and expose 11 to 13.
+constexpr double kBytesPerCell = 12.0;
 /// Share of the largest change of a temperature at which the heat solver's steps aim, see Conduction.
 constexpr double kAimedChange = 0.8;
 
@@ -56,6 +59,17 @@ double seconds_per_evaluation(TemperatureField& field, double duration, double l
   return seconds_since(start) / static_cast<double>(field.conduction()->work().stages - before);
 }
 
+/// Returns the size of the arrays of a frame, bytes.
+double frame_bytes(const Simulation& simulation) {
+  constexpr int kInFiles = 3;  // files have all components of a vector, whatever the dimension
+  double numbers = 0.0;
+  for (const Field& field : fields_of(simulation))
+    if (field.in_files)
+      numbers +=
+          static_cast<double>(count_of(field.item, simulation.model())) * components_of(field.kind, kInFiles);
+  return numbers * sizeof(float);
+}
+
 Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
                   const Interval& temperatures) {
   Foreseen foreseen{simulation.field().mean(), temperatures.upper};
@@ -69,6 +83,7 @@ Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simul
 Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
   Rehearsal cost{forecast};
   double& seconds = cost.seconds;
+  cost.history_bytes = kBytesPerCell * static_cast<double>(run.history().columns().size()) * forecast.looks;
   if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.motion());
   const double row = seconds_of([&] { run.next(); });
   seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
@@ -77,8 +92,10 @@ Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulati
     TemperatureField& field = simulation.field();
     const HeatConditions& heat = simulation.heat();
     field.begin_exposure(temperature_range(heat, forecast.heating_duration));
-    cost.heat_evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
-                                                 hottest - field.mean(), forecast.heating_duration);
+    // each row ends a step of the heat solver
+    cost.heat_evaluations =
+        forecast.looks + expected_evaluations(heat, field.conduction()->step_limit().step,
+                                              hottest - field.mean(), forecast.heating_duration);
     seconds +=
         cost.heat_evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
   }
@@ -89,8 +106,11 @@ Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulati
 
 Rehearsal rehearse(Setup setup, Simulation& simulation) {
   const Forecast expected = forecast(setup.stages, simulation, setup.temperatures);
+  const double field_bytes = setup.has_fields ? expected.frames * frame_bytes(simulation) : 0.0;
   Run run(simulation, std::move(setup.stages));
-  return cost_of(expected, setup.temperatures.upper, simulation, run);
+  Rehearsal cost = cost_of(expected, setup.temperatures.upper, simulation, run);
+  cost.field_bytes = field_bytes;
+  return cost;
 }
 
 }  // namespace pyroclast

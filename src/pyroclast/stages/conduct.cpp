@@ -109,9 +109,11 @@ StageReport Conduct::report(const History& history, RowRange rows, Outcome outco
   return report;
 }
 
-Forecast Conduct::forecast(const Simulation&, Foreseen& foreseen) const {
+Forecast Conduct::forecast(const Simulation& simulation, Foreseen& foreseen) const {
   foreseen.temperature = foreseen.hottest;
-  return {.looks = keys_.duration / keys_.interval,
+  // the temperature that changes most crosses the range of all temperatures once
+  const Interval range = temperature_range(simulation.heat(), keys_.duration);
+  return {.looks = keys_.duration / keys_.interval + (range.upper - range.lower) / keys_.change,
           .frames = keys_.duration / keys_.frame_interval + 1.0,
           .heating_duration = keys_.duration};
 }
