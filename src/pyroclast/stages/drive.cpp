@@ -454,9 +454,10 @@ void Drive::check(const Simulation& simulation, Acting& acting) const {
     if (action.kind == ActionKind::velocity) acting.supports.halt(action.set, action.components.front());
 }
 
-/// Describes a hold that bears a load, and the way out.
-std::string Drive::describe_hold(const Model& model, const Supports& supports, int gridpoint,
-                                 int component) const {
+/// Describes a hold that bears a load, and the ways out.
+/// \param first  first way out, and a comma; may be empty
+std::string Drive::describe_hold(const Model& model, const Supports& supports, int gridpoint, int component,
+                                 const char* first) const {
   const std::string place = supports.place_of(gridpoint, component);
   std::string ways;
   for (const std::string& holder : holders_of(model, supports, {gridpoint, component})) {
@@ -464,22 +465,22 @@ std::string Drive::describe_hold(const Model& model, const Supports& supports, i
           return a.set == holder && a.kind != ActionKind::release &&
                  std::ranges::find(a.components, component) != a.components.end();
         }))
-      return fmt::format("({}): leave one of the two out", place);
+      return fmt::format("({}): {}leave one of the two out", place, first);
     ways += fmt::format("{}set = \"{}\", release = [\"{}\"]", ways.empty() ? "" : " and ", holder,
                         "xyz"[component]);
   }
-  return fmt::format("({}): let go of it in this stage, by a drive with {}", place, ways);
+  return fmt::format("({}): {}let go of it in this stage, by a drive with {}", place, first, ways);
 }
 
 /// Throws Error where a force acts along a component of a gridpoint that is held or driven.
 void Drive::require_free(const Model& model, const Supports& supports, const std::string& set,
                          const Vec<3>& force, const std::string& place) const {
   if (const auto at = held_along(model, supports, set, force))
-    throw Error(
-        fmt::format("{}: a force acts along {} on set \"{}\", which has gridpoints that are held or "
-                    "driven along {} {}",
-                    place, "xyz"[at->second], set, "xyz"[at->second],
-                    describe_hold(model, supports, at->first, at->second)));
+    throw Error(fmt::format(
+        "{}: a force acts along {} on set \"{}\", which has gridpoints that are held or "
+        "driven along {} {}",
+        place, "xyz"[at->second], set, "xyz"[at->second],
+        describe_hold(model, supports, at->first, at->second, "end the force by one of 0 N, or ")));
 }
 
 /// Throws Error where a load of 0, which ends a load that acts, finds none to end.

@@ -95,7 +95,8 @@ class Drive : public Stage {
     return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
   }
   void require_consistent() const;
-  std::string describe_hold(const Model& model, const Supports& supports, int gridpoint, int component) const;
+  std::string describe_hold(const Model& model, const Supports& supports, int gridpoint, int component,
+                            const char* first = "") const;
   void require_free(const Model& model, const Supports& supports, const std::string& set, const Vec<3>& force,
                     const std::string& place) const;
   void require_effect(const Action& action, const Acting& acting) const;
