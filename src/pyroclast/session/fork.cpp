@@ -86,7 +86,7 @@ CheckpointFile open_state(const StageState& state, std::int64_t stage, const fs:
   if (fs::exists(state.file)) return CheckpointFile(state.file);
   const std::string again =
       fmt::format("a run of the deck from the beginning gives the same: pyroclast run {} --out NEW",
-                  (run / kDeck).string());
+                  shell_path(run / kDeck));
   if (!is_of(state, run))
     throw Error(
         fmt::format("{}: this fork did not compute stage {} itself; the state at its end, {}, is not "
