@@ -18,7 +18,7 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from .errors import Error
-from .files import open_hdf, read_array
+from .files import open_hdf, read_array, within
 from .mesh import Mesh
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def _arrays(path: Path) -> list[tuple[str, tuple[int, ...], np.dtype[Any]]]:
     found = []
     with open_hdf(path) as file:
         for kind in ("PointData", "CellData"):
-            group = file.get(f"VTKHDF/{kind}")
+            group = within(file, f"VTKHDF/{kind}")
             for name in group if isinstance(group, h5py.Group) else ():
                 if _NAME.fullmatch(name) and isinstance(group.get(name, getlink=True), h5py.HardLink):
                     array = group[name]
@@ -209,7 +209,7 @@ def _arrays(path: Path) -> list[tuple[str, tuple[int, ...], np.dtype[Any]]]:
 
 def _has(path: Path, name: str) -> bool:
     with open_hdf(path) as file:
-        return bool(name in file)
+        return within(file, name) is not None
 
 
 def _variable(frames: list[Frame], field: _Field, sizes: Mapping[str, int], read: Callable[[int], Array],

@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,15 @@ _FEW = 1 << 18  # bytes for which the compiled part is not loaded
 _NUMBERS = b"0123456789+-.eE,\n"
 _MOST_SHOWN = 40  # characters of a cell in a message
 _LARGEST_WHOLE = 2.0**53
+_FOREIGN_FILTERS = 256  # numbers of filters that are not a part of HDF5, from here on
 _TIGHTEST_PACKING = 1032  # bytes from one of a file: what deflate reaches at best
+
+MESH = "mesh.h5"
+"""File with the mesh of a run, to which the frames beside it link."""
+
+_IN_MESH = frozenset(("Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
+                      "NumberOfConnectivityIds", "block", "material", "bearing", "interface", "length", "area",
+                      "material_names", "interface_names"))
 
 LARGEST = 1e30
 """A number beyond it counts as not finite: in no unit is a quantity of a run so large, and drawing would overflow."""
@@ -268,15 +277,23 @@ class Lock:
 
 @contextmanager
 def open_hdf(path: Path) -> Iterator[h5py.File]:
-    """Opens to read; raises Error when the file is missing, or is damaged where it is read."""
+    """Opens to read: the only door to such files. Raises Error when the file is missing or damaged.
+
+    The data of a run lie in its folder. A file is damaged where a dataset of it lies in another file (external storage,
+    virtual datasets), where a link leads elsewhere than a frame's links into the mesh beside it, and where a filter
+    that is not a part of HDF5 packs data, for HDF5 would load code. Readers follow no link.
+    """
     if not path.exists():
         raise Error(f"{path}: does not exist")
+    if path.name == MESH and path.is_symlink():
+        raise Error(f"{path}: is a link, and data of a run lie in its folder")
     try:
-        file = h5py.File(path, "r")
+        file = h5py.File(path, "r", driver="sec2")  # whatever HDF5_DRIVER says
     except Exception as error:  # of a damaged file the library throws many kinds, here and below
         raise Error(f"{path}: is not a readable HDF5 file") from error
     try:
         with file:
+            _require_sound(path, file.id)
             yield file
     except Error:
         raise
@@ -284,9 +301,63 @@ def open_hdf(path: Path) -> Iterator[h5py.File]:
         raise Error(f"{path}: is a damaged HDF5 file: {_reason(error)}") from error
 
 
+def _require_sound(path: Path, file: h5py.h5f.FileID) -> None:
+    """Raises Error as `open_hdf`, for what is not data of a run. A file that was looked through is not again."""
+    about = path.stat()
+    this = (about.st_dev, about.st_ino, about.st_ctime_ns, about.st_size)
+    if this not in _sound:
+        if fault := file.links.visit(partial(_fault_of_link, path, file), info=True):
+            raise Error(f"{path}: is a damaged HDF5 file: {fault}; data of a run lie in its folder")
+        _sound.add(this)
+
+
+_sound: set[tuple[int, ...]] = set()
+
+
+def _fault_of_dataset(made: h5py.h5p.PropDCID) -> str | None:
+    """Why a dataset cannot be data of a run, by how it was made; None where nothing is wrong."""
+    if made.get_layout() == h5py.h5d.VIRTUAL:
+        return "is put together from other files"
+    if made.get_external_count():
+        return "keeps its numbers in another file"
+    filters = [made.get_filter(i)[0] for i in range(made.get_nfilters())]
+    foreign = [f"is packed by filter {f}, which is not a part of HDF5" for f in filters if f >= _FOREIGN_FILTERS]
+    return foreign[0] if foreign else None
+
+
+def _fault_of_link(path: Path, file: h5py.h5f.FileID, name: bytes, link: h5py.h5l.LinkInfo) -> str | None:
+    """What is wrong with a link of a file; None where nothing is."""
+    fault = None
+    if link.type == h5py.h5l.TYPE_HARD:
+        try:
+            found = h5py.h5o.open(file, name)
+            fault = _fault_of_dataset(found.get_create_plist()) if isinstance(found, h5py.h5d.DatasetID) else None
+        except (KeyError, RuntimeError):  # nobody can read what cannot be opened
+            return None
+    elif link.type != h5py.h5l.TYPE_EXTERNAL:
+        fault = "is a link, and a run writes none there"
+    else:
+        other, place = file.links.get_val(name)
+        own = name.rpartition(b"/")[2].partition(b" [")[0]  # the object of the mesh has no unit in its name
+        if (other != MESH.encode() or place not in (b"/blocks/" + own, b"/contacts/" + own)
+                or own.decode(errors="replace") not in _IN_MESH):
+            fault = f"is a link to {_shown(place.decode(errors='replace'))} of the file " \
+                    f"{_shown(other.decode(errors='replace'))}"
+        elif path.with_name(MESH).is_symlink():
+            fault = f"leads to {MESH}, which is a link itself"
+    return fault and f"/{name.decode(errors='backslashreplace')} {fault}"
+
+
+def within(file: h5py.File, name: str) -> Any:
+    """The object of this name; None where there is none, and where a link leads to it."""
+    parts = name.split("/")
+    places = ("/".join(parts[:i]) for i in range(1, len(parts) + 1))
+    return file.get(name) if all(isinstance(file.get(p, getlink=True), h5py.HardLink) for p in places) else None
+
+
 def dataset(file: h5py.File, name: str) -> np.ndarray:
     """All of a dataset of numbers; raises Error when there is none of that name, or one is not finite."""
-    values = file.get(name)
+    values = within(file, name)
     if not isinstance(values, h5py.Dataset):
         raise Error(f"{file.filename}: has no dataset /{name}")
     # A damaged header may ask for more memory than there is.
@@ -303,7 +374,7 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
 def names_in(path: Path, group: str) -> list[str]:
     """Names in a group of an HDF5 file; raises Error as `open_hdf`, and when there is no such group."""
     with open_hdf(path) as file:
-        inner = file.get(group)
+        inner = within(file, group)
         if not isinstance(inner, h5py.Group):
             raise Error(f"{path}: has no group /{group}")
         return list(inner)

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from .errors import Error
-from .files import dataset, open_hdf
+from .files import dataset, open_hdf, within
 
 _VTK_LINE, _VTK_TRIANGLE, _VTK_QUAD, _VTK_TETRAHEDRON = 3, 5, 9, 10
 _MEET = 1e-9  # of the size of a body: centres of sides so near to each other are one
@@ -136,7 +136,7 @@ def _type_of(file: h5py.File, group: str) -> int:
 
 def _names(file: h5py.File, name: str) -> tuple[str, ...]:
     """What the values of a dataset stand for."""
-    names = file.get(f"{name}_names")
+    names = within(file, f"{name}_names")
     if not isinstance(names, h5py.Dataset) or names.dtype.kind != "S" or names.ndim != 1:
         raise Error(f"{file.filename}: has no dataset /{name}_names of texts")
     try:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import Error
-from .files import LARGEST, GrowingTable, Lock, Table, Writer, read_array, read_json
+from .files import LARGEST, MESH, GrowingTable, Lock, Table, Writer, read_array, read_json
 from .libraries import library
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
@@ -536,7 +536,7 @@ class Results:
     @cached_property
     def mesh(self) -> Mesh:
         """mesh.h5: the zones of all blocks and the contact points, where they were made."""
-        return read_mesh(self.folder / "fields" / "mesh.h5")
+        return read_mesh(self.folder / "fields" / MESH)
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
         """(N, dimension), m."""
@@ -677,4 +677,4 @@ class SpecimenFolder:
     @cached_property
     def mesh(self) -> Mesh:
         """mesh.h5: the zones of all blocks and the contact points."""
-        return read_mesh(self.folder / "fields" / "mesh.h5")
+        return read_mesh(self.folder / "fields" / MESH)

@@ -287,6 +287,28 @@ class WhatIsMissingOrBrokenIsNamed(Case):
         (self.folder / "fields" / "blocks_0003.hdf").unlink()
         self.assertEqual(self.results.fields["stress"].isel(frame=[2, 4]).load().sizes["frame"], 2)
 
+    def test_an_array_that_lies_in_another_file(self):
+        path, name = self.folder / "fields" / "blocks_0003.hdf", "VTKHDF/CellData/stress [Pa]"
+        (self.folder / "secret").write_bytes(b"secret" * 1000)
+        content = path.read_bytes()
+        with h5py.File(path) as file:
+            shape = file[name].shape
+        layout = h5py.VirtualLayout(shape, "f4")
+        layout[:] = h5py.VirtualSource("secret.h5", "a", shape)
+        for damage in (
+                lambda file: file.create_dataset(name, shape, "u1", external=[(str(self.folder / "secret"), 0, 6000)]),
+                lambda file: file.create_virtual_dataset(name, layout),
+                lambda file: file.__setitem__(name, h5py.ExternalLink("secret.h5", "/a")),
+                lambda file: file.__setitem__(name, h5py.ExternalLink("mesh.h5", "/blocks/Points")),
+                lambda file: file.__setitem__(name, h5py.SoftLink("/VTKHDF/CellData/material"))):
+            with h5py.File(path, "a") as file:
+                del file[name]
+                damage(file)
+            self.refused(lambda: Results(self.folder).fields["stress"].load(), str(path), "stress [Pa]",
+                         "data of a run lie in its folder")
+            path.write_bytes(content)
+        Results(self.folder).fields["stress"].load()
+
     def test_an_array_that_is_missing_or_does_not_fit_the_mesh(self):
         for number, values in ((2, None), (3, np.zeros((3, 6))), (0, np.zeros((3, 6))), (FRAMES - 1, np.zeros(7))):
             path = self.folder / "fields" / f"blocks_{number:04d}.hdf"

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/setup/hdf5_reader.hpp"
 #include "pyroclast/simulation/fields.hpp"
 
 namespace pyroclast {
@@ -66,15 +67,15 @@ void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
   file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
   for (const char* array : {"Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
                             "NumberOfConnectivityIds"})
-    file.external_link(fmt::format("/VTKHDF/{}", array), "mesh.h5", fmt::format("/{}/{}", grid, array));
+    file.external_link(fmt::format("/VTKHDF/{}", array), kMeshFile, fmt::format("/{}/{}", grid, array));
   file.attribute("/", "needs", std::string("mesh.h5 of the same folder, which holds the mesh of this frame"));
   const auto [shown, stored] = names_of(part);
   file.group("/VTKHDF/FieldData");
-  file.external_link(fmt::format("/VTKHDF/FieldData/{}", shown), "mesh.h5", stored);
+  file.external_link(fmt::format("/VTKHDF/FieldData/{}", shown), kMeshFile, stored);
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
   for (const CellField& field : cell_fields(part, dimension))
-    file.external_link(fmt::format("/VTKHDF/CellData/{}", field.shown), "mesh.h5",
+    file.external_link(fmt::format("/VTKHDF/CellData/{}", field.shown), kMeshFile,
                        fmt::format("/{}/{}", grid, field.name));
 }
 
@@ -131,7 +132,7 @@ void write_contacts(Hdf5File& file, const Model& model) {
 }  // namespace
 
 void write_mesh(const std::filesystem::path& folder, const Model& model) {
-  Hdf5File file(folder / "mesh.h5");
+  Hdf5File file(folder / kMeshFile);
   write_blocks(file, model);
   write_contacts(file, model);
   file.close();

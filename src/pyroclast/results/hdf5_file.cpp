@@ -9,19 +9,12 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/setup/hdf5_handle.hpp"
+#include "pyroclast/setup/hdf5_reader.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-/// HDF5 identifier that is closed at the end of its scope.
-template <herr_t (*Close)(hid_t)>
-struct Handle {
-  hid_t id;
-  ~Handle() {
-    if (id >= 0) Close(id);
-  }
-};
 
 /// List of HDF5 properties.
 class PropertyList {
@@ -66,7 +59,7 @@ void Hdf5File::fail(const std::string& what) const {
 }
 
 void Hdf5File::group(const std::string& name) {
-  const Handle<H5Gclose> group{
+  const Hdf5Handle<H5Gclose> group{
       H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, Untimed(H5P_GROUP_CREATE), H5P_DEFAULT)};
   if (group.id < 0) fail("group " + name + " cannot be written");
 }
@@ -76,10 +69,10 @@ void Hdf5File::write(const std::string& name, std::int64_t type, const void* dat
   const hsize_t width = columns > 0 ? static_cast<hsize_t>(columns) : 1;
   const hsize_t dims[2] = {count / width, width};
   const int rank = columns > 0 ? 2 : 1;
-  const Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
+  const Hdf5Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
   // Datasets are not compressed: shuffled and deflated, the frames of cases/starter.toml are 1.6 times
   // smaller and take 7 % of its processor time.
-  const Handle<H5Dclose> set{
+  const Hdf5Handle<H5Dclose> set{
       H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, Untimed(H5P_DATASET_CREATE), H5P_DEFAULT)};
   if (set.id < 0 || (count > 0 && H5Dwrite(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
     fail("dataset " + name + " cannot be written");
@@ -106,7 +99,7 @@ void Hdf5File::dataset(const std::string& name, const std::vector<std::string>& 
   for (const std::string& text : v) longest = std::max(longest, text.size());
   std::string padded;
   for (const std::string& text : v) padded += text + std::string(longest - text.size(), '\0');
-  const Handle<H5Tclose> type{H5Tcopy(H5T_C_S1)};
+  const Hdf5Handle<H5Tclose> type{H5Tcopy(H5T_C_S1)};
   H5Tset_size(type.id, longest);
   H5Tset_strpad(type.id, H5T_STR_NULLPAD);
   H5Tset_cset(type.id, H5T_CSET_UTF8);
@@ -115,29 +108,29 @@ void Hdf5File::dataset(const std::string& name, const std::vector<std::string>& 
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, std::int64_t type,
                                std::int64_t space, const void* data) {
-  const Handle<H5Aclose> attribute{H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space,
-                                                     H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+  const Hdf5Handle<H5Aclose> attribute{H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space,
+                                                         H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
   if (attribute.id < 0 || H5Awrite(attribute.id, type, data) < 0)
     fail("attribute " + name + " cannot be written");
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, const std::string& text) {
-  const Handle<H5Tclose> type{H5Tcopy(H5T_C_S1)};
+  const Hdf5Handle<H5Tclose> type{H5Tcopy(H5T_C_S1)};
   H5Tset_size(type.id, text.size());
   H5Tset_strpad(type.id, H5T_STR_NULLPAD);
-  const Handle<H5Sclose> space{H5Screate(H5S_SCALAR)};
+  const Hdf5Handle<H5Sclose> space{H5Screate(H5S_SCALAR)};
   write_attribute(object, name, type.id, space.id, text.data());
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
-  const Handle<H5Sclose> space{H5Screate(H5S_SCALAR)};
+  const Hdf5Handle<H5Sclose> space{H5Screate(H5S_SCALAR)};
   write_attribute(object, name, H5T_NATIVE_DOUBLE, space.id, &value);
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name,
                          const std::vector<std::int64_t>& values) {
   const hsize_t count = values.size();
-  const Handle<H5Sclose> space{H5Screate_simple(1, &count, nullptr)};
+  const Hdf5Handle<H5Sclose> space{H5Screate_simple(1, &count, nullptr)};
   write_attribute(object, name, H5T_NATIVE_INT64, space.id, values.data());
 }
 
@@ -147,9 +140,12 @@ void Hdf5File::external_link(const std::string& name, const std::string& file, c
 }
 
 bool Hdf5File::is_whole(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Handle<H5Fclose> file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
-  return file.id >= 0;
+  try {
+    const Hdf5Reader reader(path);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 void Hdf5File::close() {

@@ -33,7 +33,7 @@ class Hdf5File {
 
   void close();
 
-  /// Tells whether a file is there, and was written to its end.
+  /// Tells whether a file is there, was written to its end and holds its data, see Hdf5Reader.
   static bool is_whole(const std::filesystem::path& path);
 
  private:

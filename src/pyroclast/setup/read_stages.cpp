@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/setup/hdf5_reader.hpp"
 #include "pyroclast/setup/read_frame.hpp"
 #include "pyroclast/stages/exchange_stage.hpp"
 
@@ -61,7 +62,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
   if (!frame.ok()) return std::nullopt;
   const auto file = folder / name;
   frame.names_file("frame", file);
-  frame.needs_file(file.parent_path() / "mesh.h5");
+  frame.needs_file(file.parent_path() / kMeshFile);
   try {
     StressFree field = read_frame_temperatures(file, dimension);
     field.place = fmt::format("{}: coupling.stress_free.frame", frame.where("frame"));
