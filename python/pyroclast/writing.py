@@ -42,9 +42,15 @@ def make_folder(path: Path) -> Path:
 
 
 def refuse_link(path: Path) -> None:
-    """Raises OSError where `path` is a link."""
+    """Raises OSError where `path` is a link. A file that has another name (a hard link) is one: that name may lie
+    elsewhere.
+    """
     if path.is_symlink():
         raise OSError(errno.ELOOP, "is a link, and nothing is written through it; remove it", str(path))
+    if path.is_file() and path.stat().st_nlink > 1:
+        raise OSError(errno.EMLINK, "is a link, and nothing is written through it: the same file has another name, as "
+                      "where a folder is copied by links (cp -l, rsync --link-dest); copy the folder whole (cp -r), and "
+                      "use the copy", str(path))
 
 
 def shell_path(path: str | Path) -> str:

@@ -393,7 +393,11 @@ TEST_F(CodeOfADeck, AListThatOthersMayWriteIsNotTrusted) {
   sources_.permission.allow = true;
   EXPECT_FALSE(is_refused("mine.hpp"));
   fs::permissions(sources_.permission.list, fs::perms::others_write, fs::perm_options::add);
-  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"allowed-code", "not trusted", "0600"}));
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"allowed-code", "not trusted", "chmod 0600"}));
+  fs::permissions(sources_.permission.list, fs::perms::others_write, fs::perm_options::remove);
+  EXPECT_FALSE(is_refused("mine.hpp"));
+  fs::permissions(folder_ / "config", fs::perms::group_write, fs::perm_options::add);
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"config: ", "not trusted", "chmod 0700"}));
 }
 
 TEST_F(CodeOfADeck, WhatCannotBeKnownIsRefused) {

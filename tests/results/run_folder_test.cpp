@@ -59,11 +59,13 @@ TEST_F(Results, OverwritingRemovesWhatARunWritesAndNamesWhatItKeeps) {
   const RunFolder first = made(run);
   for (const char* folder : {"fields", "figures", "specimen", "checkpoints", "inputs", "paper/figures"})
     fs::create_directories(run / folder);
-  for (const char* own : {"history.csv", "fields/blocks_0012.hdf", "fields/contacts_0003.hdf.partial",
-                          "figures/cracks.svg", "specimen/specimen.json", "run.log",
-                          "checkpoints/000012.state", "checkpoints/stage_1.state", "inputs/table.csv"})
+  for (const char* own :
+       {"history.csv", "fields/blocks_0012.hdf", "fields/contacts_0003.hdf.partial", "figures/cracks.svg",
+        "figures/cracks.png.0123abcd.partial", "report.html.deadbeef.partial", "specimen/specimen.json",
+        "run.log", "checkpoints/000012.state", "checkpoints/stage_1.state", "inputs/table.csv"})
     write_text_file(run / own, "old");
-  const std::vector<fs::path> foreign{"fields/blocks_mine.hdf", "notes.txt", "paper/figures/cracks.svg"};
+  const std::vector<fs::path> foreign{"fields/blocks_mine.hdf", "figures/cracks.png.0123abc.partial",
+                                      "notes.txt", "paper/figures/cracks.svg"};
   for (const auto& file : foreign) write_text_file(run / file, "mine");
   // a link is not followed: what it leads to is another's
   fs::create_directories(folder_ / "elsewhere");
@@ -80,8 +82,45 @@ TEST_F(Results, OverwritingRemovesWhatARunWritesAndNamesWhatItKeeps) {
   std::vector<std::string> left;
   for (const auto& entry : fs::directory_iterator(run)) left.push_back(entry.path().filename().string());
   std::ranges::sort(left);
-  EXPECT_EQ(left,
-            (std::vector<std::string>{"deck.toml", "fields", "manifest.json", "more", "notes.txt", "paper"}));
+  EXPECT_EQ(left, (std::vector<std::string>{"deck.toml", "fields", "figures", "manifest.json", "more",
+                                            "notes.txt", "paper"}));
+}
+
+TEST_F(Results, WhatIsWrittenInPlaceHasOneName) {
+  const fs::path run = folder_ / "run";
+  const RunFolder first = made(run);
+  write_text_file(folder_ / "mine.txt", "mine");
+  for (const char* file : {"lock", "history.csv", "run.log", "fields/frames.csv"}) {
+    fs::create_directories((run / file).parent_path());
+    fs::create_hard_link(folder_ / "mine.txt", run / file);
+    try {
+      const FolderLock lock(run);
+      FAIL() << file;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("rsync --link-dest"), std::string::npos) << e.what();
+    }
+    EXPECT_EQ(content(folder_ / "mine.txt"), "mine") << file;
+    fs::remove(run / file);
+  }
+  EXPECT_NO_THROW(FolderLock{run});
+}
+
+TEST_F(Results, WhatShowsHowFarARunHasComeGoesAndNothingElse) {
+  const fs::path run = folder_ / "run";
+  const RunFolder first = made(run);
+  fs::create_directories(run / "figures" / "more");
+  const std::vector<fs::path> kept{"deck.toml",        "manifest.json",          "history.csv",
+                                   "figures/mine.png", "figures/morphology.png", "figures/more/cracks.png"};
+  for (const auto& file : kept)
+    if (!fs::exists(run / file)) write_text_file(run / file, "kept");
+  for (const char* drawn : {"figures/cracks.png", "figures/cracks.pdf.0123abcd.partial",
+                            "figures/fracture.csv", "report.html", "isotherm.csv", "summary.json.partial"})
+    write_text_file(run / drawn, "drawn");
+  RunFolder::remove_drawn(run);
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::recursive_directory_iterator(run))
+    if (entry.is_regular_file()) left.push_back(entry.path().lexically_relative(run));
+  EXPECT_TRUE(std::ranges::is_permutation(left, kept));
 }
 
 TEST_F(Results, AFolderIsHeldByOneAtATimeAndLeftAsItWas) {

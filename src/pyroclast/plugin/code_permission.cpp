@@ -43,15 +43,28 @@ fs::path list_file() {
   return {};
 }
 
-/// Tells whether a list has the hash. Throws Error where others than the user may write the list.
-bool is_listed(const fs::path& list, const std::string& hash) {
+/// Throws Error where the list of allowed code, or its folder, is there and others than the user may write
+/// it.
+void require_own(const fs::path& path, const char* mode) {
   struct stat is {};
-  if (list.empty() || stat(list.c_str(), &is) != 0) return false;
-  if (is.st_uid != geteuid() || (is.st_mode & (S_IWGRP | S_IWOTH)) != 0)
-    throw Error(
-        fmt::format("{}: others than you may write this file, so its permissions are not trusted; the file "
-                    "must be yours, with mode 0600",
-                    list.string()));
+  if (stat(path.c_str(), &is) != 0) return;
+  if (is.st_uid == geteuid() && (is.st_mode & (S_IWGRP | S_IWOTH)) == 0) return;
+  throw Error(
+      fmt::format("{}: others than you may write there, so the list of allowed code is not trusted; it must "
+                  "be yours alone: "
+                  "look through the list, then {}chmod {} '{}'",
+                  path.string(),
+                  is.st_uid == geteuid() ? "" : fmt::format("chown {} '{}' and ", geteuid(), path.string()),
+                  mode, path.string()));
+}
+
+/// Tells whether a list has the hash. Throws Error where others than the user may write the list or its
+/// folder.
+bool is_listed(const fs::path& list, const std::string& hash) {
+  if (list.empty()) return false;
+  require_own(list.parent_path(), "0700");
+  require_own(list, "0600");
+  if (!fs::exists(list)) return false;
   std::istringstream lines(read_file(list));
   for (std::string line; std::getline(lines, line);)
     if (line.starts_with(fmt::format("{} ", hash))) return true;
@@ -60,7 +73,8 @@ bool is_listed(const fs::path& list, const std::string& hash) {
 
 void add_to_list(const fs::path& list, const std::string& hash, const std::string& what) {
   std::error_code ignored;
-  fs::create_directories(list.parent_path(), ignored);
+  fs::create_directories(list.parent_path().parent_path(), ignored);
+  mkdir(list.parent_path().c_str(), S_IRWXU);  // not as wide as the user's mask lets other folders be
   const std::time_t now = std::time(nullptr);
   char date[sizeof "2000-01-01"];
   std::strftime(date, sizeof date, "%F", std::localtime(&now));

@@ -73,8 +73,9 @@ std::vector<fs::path> make_folders(const fs::path& path) {
 
 FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make_folders(folder_)) {
   const fs::path file = folder_ / "lock";
+  require_no_link(file);
   struct stat there {};
-  if (lstat(file.c_str(), &there) == 0 && !S_ISREG(there.st_mode) && !S_ISLNK(there.st_mode))
+  if (lstat(file.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
     throw Error(fmt::format("{}: is no regular file, and a run's lock is one", file.string()));
   do {
     if (descriptor_ >= 0) close(descriptor_);
@@ -83,9 +84,7 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
     if (descriptor_ < 0) {
       const int cause = errno;
       remove_if_empty(made_);
-      throw Error(cause == ELOOP
-                      ? is_a_link(file)
-                      : fmt::format("{}: cannot be written ({})", file.string(), std::strerror(cause)));
+      throw Error(fmt::format("{}: cannot be written ({})", file.string(), std::strerror(cause)));
     }
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int cause = errno;
@@ -105,6 +104,7 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
     }
   } while (!stands_for(file, descriptor_));
   try {
+    if (fstat(descriptor_, &there) == 0) require_one_name(file, there);
     RunFolder::require_no_links(folder_);
   } catch (const Error&) {
     fs::remove(file);

@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
@@ -23,11 +24,26 @@ std::error_code sync(const std::filesystem::path& path) {
   return {cause, std::system_category()};
 }
 
+std::string is_a_link(const std::filesystem::path& path, const char* more) {
+  return fmt::format("{}: is a link, and nothing outside of a run's folder is written through it{}",
+                     path.string(), more);
+}
+
 }  // namespace
 
-std::string is_a_link(const std::filesystem::path& path) {
-  return fmt::format("{}: is a link, and nothing outside of a run's folder is written through it; remove it",
-                     path.string());
+void require_no_link(const std::filesystem::path& path) {
+  struct stat there {};
+  if (lstat(path.c_str(), &there) != 0) return;
+  if (S_ISLNK(there.st_mode)) throw Error(is_a_link(path, "; remove it"));
+  require_one_name(path, there);
+}
+
+void require_one_name(const std::filesystem::path& path, const struct stat& there) {
+  if (S_ISREG(there.st_mode) && there.st_nlink > 1)
+    throw Error(is_a_link(
+        path,
+        ": the same file has another name, as where a folder is copied by links (cp -l, rsync --link-dest); "
+        "copy the folder whole (cp -r), and use the copy"));
 }
 
 int open_aside(const std::filesystem::path& partial) {

@@ -2,13 +2,17 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <string>
+
+#include <sys/stat.h>
 
 namespace pyroclast {
 
-/// Returns the text of an error: nothing is written through a link in the folder of a run, for it leads
+/// Throws Error where a file or folder, which may be missing, is a link: nothing is written through a link in
+/// the folder of a run. A file that has another name (a hard link) is one, for the other name may lie
 /// elsewhere.
-std::string is_a_link(const std::filesystem::path& path);
+void require_no_link(const std::filesystem::path& path);
+/// Throws Error where an opened file has another name. \param there  result of fstat
+void require_one_name(const std::filesystem::path& path, const struct stat& there);
 
 /// Opens a new file to write; a file that had its name is removed, and no link is followed. Returns the
 /// descriptor, or -1 with errno.

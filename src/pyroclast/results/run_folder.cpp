@@ -29,22 +29,18 @@ constexpr const char* kManifest = "manifest.json";
 constexpr const char* kReferences = "references.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// Files that a run, `specimen`, `figures`, `report` and `watch` write into the folder of a run, as patterns
-/// of fnmatch(3), besides the manifest and the figures. Other files outlive `--overwrite`.
+/// Files that a run and `specimen` write into the folder of a run, as patterns of fnmatch(3), besides the
+/// manifest. Files outlive `--overwrite` that neither these patterns nor those of drawn files and figures
+/// name.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,
     "history.csv",
-    "isotherm.csv",
     "properties.csv",
-    "temperature_profile.csv",
     "summary.json",
     "lock",
-    "report.html",
     "run.log",
     "inputs/*",
-    "figures/fracture.csv",
-    "figures/heating_fracture.csv",
     "checkpoints/*.state",
     "specimen/aggregates.csv",
     "specimen/gradation.csv",
@@ -63,21 +59,26 @@ constexpr auto kFolders =
 /// Files that grow line by line, and are written under their own names. Other files get theirs once they are
 /// whole.
 constexpr auto kGrowing = std::to_array<std::string_view>({"history.csv", "run.log", "fields/frames.csv"});
-/// Names of figures, in any format.
+/// Files that `figures` and `report` write besides figures. Like these they show how far a run has come.
+constexpr auto kDrawn = std::to_array<const char*>({
+    "isotherm.csv",
+    "temperature_profile.csv",
+    "report.html",
+    "figures/fracture.csv",
+    "figures/heating_fracture.csv",
+});
+/// Names of figures of a run, in any format.
 constexpr auto kFigures = std::to_array<const char*>({
     "convergence",
     "cracks",
     "cracks_inside",
     "energy",
     "fracture",
-    "gradation",
     "heating_cracks",
     "heating_energy",
     "heating_fracture",
     "isotherm",
-    "morphology",
     "plane_*",
-    "properties",
     "records",
     "stress_strain",
     "temperature",
@@ -87,26 +88,47 @@ constexpr auto kFigures = std::to_array<const char*>({
     "total_strain",
     "watch",
 });
+/// Names of figures that are the same however far a run has come.
+constexpr auto kFiguresOfInputs = std::to_array<const char*>({"gradation", "morphology", "properties"});
 constexpr auto kFigureFormats = std::to_array<const char*>({"png", "svg", "pdf"});
+
+/// Returns the name of a file, relative to its folder, without the ending of a file that was never finished.
+std::string finished(const fs::path& file) {
+  std::string name = file.generic_string();
+  if (!name.ends_with(".partial")) return name;
+  name.resize(name.size() - std::string_view(".partial").size());
+  // Python puts a dot and eight hexadecimal digits before the ending, see writing.py
+  constexpr std::size_t kDigits = 8;
+  if (const auto end = name.find_last_not_of("0123456789abcdef");
+      end != std::string::npos && name[end] == '.' && name.size() - end == kDigits + 1)
+    name.resize(end);
+  return name;
+}
+
+bool matches(const std::string& name, const std::string& pattern) {
+  return fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+}
+
+bool is_figure(const std::string& name, const auto& figures) {
+  return std::ranges::any_of(figures, [&](const char* figure) {
+    return std::ranges::any_of(kFigureFormats, [&](const char* format) {
+      return matches(name, fmt::format("figures/{}.{}", figure, format));
+    });
+  });
+}
+
+/// Tells whether a file shows how far a run has come, also one that was never finished.
+bool is_drawn(const fs::path& file) {
+  const std::string name = finished(file);
+  return std::ranges::any_of(kDrawn, [&](const char* drawn) { return matches(name, drawn); }) ||
+         is_figure(name, kFigures);
+}
 
 /// Tells whether a run writes a file of this name, relative to its folder; also one that was never finished.
 bool is_own(const fs::path& file) {
-  std::string name = file.generic_string();
-  if (name.ends_with(".partial")) {
-    name.resize(name.size() - std::string_view(".partial").size());
-    // the number of the process stands behind the name where several processes may write the file
-    if (const auto end = name.find_last_not_of("0123456789"); end + 1 < name.size() && name[end] == '.')
-      name.resize(end);
-  }
-  const auto matches = [&](const std::string& pattern) {
-    return fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
-  };
-  if (name == kManifest || std::ranges::any_of(kWritten, matches)) return true;
-  return std::ranges::any_of(kFigures, [&](const char* figure) {
-    return std::ranges::any_of(kFigureFormats, [&](const char* format) {
-      return matches(fmt::format("figures/{}.{}", figure, format));
-    });
-  });
+  const std::string name = finished(file);
+  return name == kManifest || is_drawn(file) || is_figure(name, kFiguresOfInputs) ||
+         std::ranges::any_of(kWritten, [&](const char* written) { return matches(name, written); });
 }
 
 /// Keys of the manifest.
@@ -180,10 +202,7 @@ void RunFolder::check(const fs::path& path, bool overwrite, std::string_view rem
 }
 
 void RunFolder::require_no_links(const fs::path& path) {
-  std::error_code ignored;
-  const auto require = [&](std::string_view name) {
-    if (fs::is_symlink(path / name, ignored)) throw Error(is_a_link(path / name));
-  };
+  const auto require = [&](std::string_view name) { require_no_link(path / name); };
   std::ranges::for_each(kFolders, require);
   std::ranges::for_each(kGrowing, require);
 }
@@ -194,6 +213,23 @@ void RunFolder::require(const fs::path& path) {
   if (!holds_a_run(path))
     throw Error(fmt::format("{}: holds no {} of pyroclast, so it is not the folder of a run", path.string(),
                             kManifest));
+}
+
+void RunFolder::remove_drawn(const fs::path& path) {
+  std::vector<fs::path> drawn;
+  for (const fs::path& folder : {path, path / "figures"}) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      const fs::path name = entry.path().lexically_relative(path);
+      const bool is_unfinished = name.extension() == ".partial" && is_own(name);
+      if (!entry.is_directory() && (is_drawn(name) || is_unfinished)) drawn.push_back(entry.path());
+    }
+  }
+  for (const fs::path& file : drawn) {
+    std::error_code error;
+    if (!fs::remove(file, error) && error)
+      throw Error(fmt::format("{}: cannot be removed ({})", file.string(), error.message()));
+  }
 }
 
 std::vector<Departure> RunFolder::departures(const fs::path& path) {

@@ -69,6 +69,10 @@ class RunFolder {
                     std::string_view remedy = kOtherFolder);
   /// Throws Error where a folder into which a run writes, or a file to which it appends, is a link.
   static void require_no_links(const std::filesystem::path& path);
+  /// Removes the figures of a run, its page and the tables that come with them, which show how far the run
+  /// had come; also files in these places that were never finished. Throws Error naming the file that cannot
+  /// go.
+  static void remove_drawn(const std::filesystem::path& path);
   /// Throws Error when the path is not the folder of a run.
   static void require(const std::filesystem::path& path);
 

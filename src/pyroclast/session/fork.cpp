@@ -146,6 +146,7 @@ std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path&
         "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
         folder.string(), describe(run.outcome()), shell_path(folder)));
   session->last_checkpoint_ = checkpoint.path();
+  RunFolder::remove_drawn(folder);
   session->open(checkpoint.info().number);
   return session;
 }

@@ -50,8 +50,11 @@ def write_report(study: Study, out: Path | None = None) -> Path:
 
 
 def _clear(folder: Path) -> None:
-    """Of figures, findings and pages of runs, some of which the study may have no more."""
-    for file in [*folder.glob("*.pdf"), *folder.glob("*.png"), *folder.glob("run-*.html"), folder / FINDINGS]:
+    """Of figures, findings and pages of runs, some of which the study may have no more, and of files that were never
+    finished.
+    """
+    patterns = ("*.pdf", "*.png", "run-*.html", "*.partial", FINDINGS)
+    for file in [file for pattern in patterns for file in folder.glob(pattern)]:
         file.unlink(missing_ok=True)
 
 
