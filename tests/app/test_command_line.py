@@ -13,6 +13,23 @@ import unittest
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 
+NUMBERS = (
+    ("stiffness_factor = 0.8", "stiffness_factor = 1e308", "is too large"),
+    ("strength_factor = 0.8", "strength_factor = -1e308", "is too large"),
+    ("fuller_exponent = 0.45", "fuller_exponent = 1e-320", "is too small"),
+    ("fuller_exponent = 0.45", "fuller_exponent = 2.0", "must be greater than 0 and at most 1"),
+    ("fuller_exponent = 0.45", "fuller_exponent = 1e-29", "take up a fraction of 0.0000"),
+    ('thickness = "20 mm"', 'thickness = "1e-300 mm"', "is too small"),
+    ('thickness = "20 mm"', 'thickness = "1e-20 mm"', "must be at least 2.1e-10 m beside this specimen"),
+    ('thickness = "1 m"', 'thickness = "1e308 m"', "no number of a run is beyond 1e+30 m"),
+    ('t_b = "1.6 mm"', 't_b = "1e-320 m"', "write 0, or a number of at least 1e-30 m"),
+    ('t_b_block_size = "3 mm"', 't_b_block_size = "1e308 mm"', "is too large"),
+    ('d_min = "4.75 mm"', 'd_min = "1e-300 mm"', "is too small"),
+    ('density = "2650 kg/m3"', 'density = "1e308 kg/m3"', "is too large"),
+    ('E = "70 GPa"', 'E = { value = "1e30 GPa", times = "glasgow_modulus" }', "is too large"),
+    ("beta = 0.05", "beta = 0.361", "at 20 degC it must be greater than 0 and less than 1; it is 2.55"),
+)
+
 
 class CommandLine(unittest.TestCase):
     def setUp(self):
@@ -225,6 +242,18 @@ frame_interval = "30 s"
         self.assertTrue((self.folder / "verbose/fields/mesh.h5").exists())
         # 2: the run ended without what it was for
         self.pyroclast(*small, "--out", "two", "--set", "stages[0].most_steps=10", code=2)
+
+    def test_a_number_that_cannot_be_is_refused_at_its_place_with_its_key(self):
+        deck = (CASES / "starter.toml").read_text().replace("count = 1000", "count = 100").replace(
+            "[contacts]", '[contacts]\nsecond_slope = "fixed"')
+        for old, new, said in NUMBERS:
+            with self.subTest(new):
+                self.assertIn(old, deck)
+                (self.folder / "deck.toml").write_text(deck.replace(old, new))
+                error = self.pyroclast("check", "deck.toml", code=1).stderr
+                self.assertRegex(error, r"^error: (deck\.toml:\d+:(\d+:)? .*\n)+$")
+                self.assertIn(new.split(" = ")[0].replace("fuller_exponent" if "fraction" in said else "", ""), error)
+                self.assertIn(said, error)
 
 
 if __name__ == "__main__":

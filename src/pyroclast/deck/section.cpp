@@ -97,6 +97,19 @@ std::optional<double> read_plain_number(const Entry& entry, const Unit& unit) {
   return std::nullopt;
 }
 
+/// Tells whether a number is one of a run: numbers beyond, multiplied, would leave the range of doubles.
+/// Records an error where it is not.
+bool check_magnitude(const Entry& entry, double value, const Unit& unit) {
+  constexpr double kSmallest = 1e-30, kLargest = 1e30;
+  const double size = std::abs(value);
+  if (size == 0.0 || (size >= kSmallest && size <= kLargest)) return true;
+  const std::string in = suffix(unit).empty() ? "" : fmt::format(" {}", suffix(unit));
+  entry.error(size > kLargest
+                  ? fmt::format("is too large: no number of a run is beyond {:g}{}", kLargest, in)
+                  : fmt::format("is too small: write 0, or a number of at least {:g}{}", kSmallest, in));
+  return false;
+}
+
 std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const Range& range) {
   std::optional<double> value;
   if (const auto* text = entry.node.as_string()) {
@@ -107,6 +120,7 @@ std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const 
     wrong_type(entry, unit == unit::dimensionless ? "a number"
                                                   : fmt::format("a string such as \"{}\"", unit.example));
   }
+  if (value && !check_magnitude(entry, *value, unit)) return std::nullopt;
   if (value) value = range.but_for_rounding(*value);
   if (value && !check_range(entry, *value, range, suffix(unit))) return std::nullopt;
   return value;

@@ -37,7 +37,7 @@ namespace {
   const std::string unit = property.unit == unit::dimensionless ? "" : fmt::format(" ({})", property.unit.si);
   throw PropertyError(
       fmt::format("{}: {}{} = {:g}, but it must be {}", name, property.key, unit, value, wanted),
-      property.key, wanted);
+      property.key, fmt::format("{}; it is {:g}", wanted, value));
 }
 
 void require_valid(const LawTable& law, std::span<const double> numbers, std::span<const int> choices,

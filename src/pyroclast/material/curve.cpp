@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/rounding.hpp"
+#include "pyroclast/base/shown.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/material/expression.hpp"
 
@@ -204,7 +205,7 @@ Curve Curve::function(std::string name, std::function<double(double)> function, 
 }
 
 Curve Curve::expression(const std::string& formula, Interval range, CurveAxis axis) {
-  std::string description = fmt::format("formula \"{}\"", formula);
+  std::string description = fmt::format("formula \"{}\"", shown_in_short(formula));
   require_finite_interval(description, range, axis);
   return {std::make_shared<Formula<Expression>>(Expression(formula, axis.symbol), std::vector<double>{}),
           range, std::make_shared<Label>(Label{"", std::move(description), std::move(axis)})};
@@ -213,8 +214,9 @@ Curve Curve::expression(const std::string& formula, Interval range, CurveAxis ax
 double Curve::operator()(double x) const {
   const double value = function_->value(clamped(x));
   if (!std::isfinite(value)) {
-    throw Error(
-        fmt::format("{}: no finite value at {} = {} {}", title(), label_->axis.symbol, x, label_->axis.unit));
+    const auto& [symbol, unit] = label_->axis;
+    throw Error(fmt::format("{}: no finite value{}", title(),
+                            symbol.empty() ? "" : fmt::format(" at {} = {} {}", symbol, x, unit)));
   }
   return value;
 }

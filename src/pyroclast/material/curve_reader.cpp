@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shown.hpp"
 #include "pyroclast/material/curve_file.hpp"
 #include "pyroclast/tables/read_choice.hpp"
 
@@ -226,7 +227,8 @@ std::optional<Curve> CurveReader::read_expression(const Section& forms, const Un
   return try_at(forms, "expression", [&]() -> std::optional<Curve> {
     const Curve curve = Curve::expression(formula, {range[0], range[1]}, axis_);
     return try_at(forms, "unit", [&] {
-      return converted(curve, unit_factors(given, unit), fmt::format("formula \"{}\" in {}", formula, given));
+      return converted(curve, unit_factors(given, unit),
+                       fmt::format("formula \"{}\" in {}", shown_in_short(formula), given));
     });
   });
 }

@@ -15,6 +15,7 @@
 #include <muParser.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shown.hpp"
 
 namespace pyroclast {
 namespace {
@@ -36,16 +37,16 @@ Error formula_error(const std::string& formula, const std::string& known,
       {mu::ecTOO_FEW_PARAMS, "the function has too few arguments"},
   };
   if (error.GetCode() == mu::ecEMPTY_EXPRESSION) return Error("the formula is empty");
-  std::string what = error.GetMsg();
+  std::string what = shown_in_short(error.GetMsg());
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
     what = fmt::format("\"{}\" is not known; {}, functions are e.g. exp, ln, sqrt, min, max",
-                       error.GetToken(), known);
+                       shown_in_short(error.GetToken()), known);
   } else if (const auto it = explanations.find(error.GetCode()); it != explanations.end()) {
     what = it->second;
   }
   // muParser works on a copy with a blank at the end.
   const auto position = std::min<std::size_t>(error.GetPos(), formula.size()) + 1;
-  return Error(fmt::format("formula \"{}\", character {}: {}", formula, position, what));
+  return Error(fmt::format("formula \"{}\", character {}: {}", shown_in_short(formula), position, what));
 }
 
 /// Throws Error for a formula that assigns to its variable, as muParser lets it do.
@@ -58,7 +59,7 @@ void refuse_statements(const std::string& formula) {
     if (!closes && !opens) {
       throw Error(fmt::format(
           "formula \"{}\", character {}: \"=\" assigns, which a formula cannot do; equality is \"==\"",
-          formula, i + 1));
+          shown_in_short(formula), i + 1));
     }
   }
 }
@@ -75,7 +76,7 @@ void require_one_value(const std::string& formula, int count) {
   if (count != 1)
     throw Error(fmt::format(
         "formula \"{}\" has {} values separated by commas, one is wanted; the decimal sign is a point",
-        formula, count));
+        shown_in_short(formula), count));
 }
 
 /// Parser with the variable that it reads.

@@ -157,7 +157,9 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
 void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.d_min = s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter");
   a.d_max = s.quantity("d_max", unit::length, Range::positive().usually(5e-4, 0.15), "largest diameter");
-  a.fuller_exponent = s.number("fuller_exponent", Range::positive().usually(0.2, 1.0), "of Fuller's curve");
+  a.fuller_exponent = s.number("fuller_exponent",
+                               Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.2, 1.0),
+                               "of Fuller's curve");
   const auto between = s.optional_quantities(
       "sieves", unit::length, Range::positive(),
       "bounds of the size intervals between d_min and d_max, ascending; without any there is one interval");

@@ -289,11 +289,22 @@ void check_contacts(const Section& root, const Setup& setup) {
         own.error(e.key, fmt::format("{} it must be {}", at, e.wanted));
       else
         contacts.error(key, fmt::format("{}: {}", at, e.what()));
+    } catch (const Error& e) {
+      contacts.error(key, e.what());
     }
   };
   const std::size_t bearings = setup.moving->contacts.bearings.size();
   for (std::size_t i = 0; i + bearings < concrete.contacts.size(); ++i)
     check(concrete.contacts[i], concrete.interfaces[i]);
+}
+
+/// Records an error where a bearing is too thin: beside the specimen's coordinates, doubles would not hold
+/// it.
+void check_thickness(const Section& s, double thickness, const AskedSpecimen& specimen) {
+  constexpr double kThinnest = 1e-9;  // over the size of the specimen
+  const double least = kThinnest * std::pow(specimen.extent(), 1.0 / specimen.dimension());
+  if (s.ok() && thickness < least)
+    s.error("thickness", fmt::format("must be at least {:.2g} m beside this specimen", least));
 }
 
 /// Adds the platens. Returns false where the deck has none.
@@ -307,6 +318,7 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
     return false;
   }
   const double thickness = s->quantity("thickness", unit::length, Range::positive(), "of each platen");
+  check_thickness(*s, thickness, setup.specimen);
   const auto sides = setup.specimen.sides();
   const auto lacks = [&](const char* name) { return std::ranges::find(sides, name) == sides.end(); };
   for (const char* name : {"bottom", "top", "left", "right"})
@@ -347,6 +359,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   MovingBody& moving = *setup.moving;
   const bool has_platens = read_platens(root, setup, moving.bearings);
   for (const ReadBearing& read : bearings) {
+    check_thickness(read.section, read.bearing.thickness, setup.specimen);
     const auto lies_there = [&](const Bearing& b) { return b.side == read.bearing.side; };
     if (has_platens && read.section.ok() && std::ranges::any_of(moving.bearings, lies_there))
       read.section.error(

@@ -61,10 +61,9 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
   }
   for (const Ball& ball : specimen.balls)
     specimen.fraction_placed += specimen::extent_of_round<3>(ball.diameter) / body.volume();
-  double smallest = 0.0;
-  for (const auto* const kind : kinds)
-    if (kind->fraction > 0.0) smallest = std::max(smallest, kind->d_min);
-  specimen::require_placed(specimen.fraction_placed, specimen.fraction_asked, smallest);
+  const auto with_largest = std::ranges::max_element(
+      kinds, {}, [](const auto* kind) { return kind->fraction > 0.0 ? kind->d_min : 0.0; });
+  specimen::require_placed(specimen.fraction_placed, specimen.fraction_asked, **with_largest);
 }
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.

@@ -144,12 +144,13 @@ template void draw_and_place(const Room<2>&, const AggregateParameters&, int, in
 template void draw_and_place(const Room<3>&, const AggregateParameters&, int, int, Random&,
                              std::vector<Grain<3>>&);
 
-void require_placed(double placed, double asked, double d_min) {
+void require_placed(double placed, double asked, const AggregateParameters& parameters) {
   if (std::abs(placed - asked) > 0.01)
     throw Error(fmt::format(
-        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and 0.01 is allowed between "
-        "them: the smallest aggregate, {:.4g} m, is too large for the specimen.",
-        placed, asked, d_min));
+        "{}: the aggregates take up a fraction of {:.4f}, {:.4f} was asked for and 0.01 is allowed between "
+        "them: the smallest aggregate, {:.4g} m, is too large for the specimen, or hardly any is drawn by "
+        "the grading",
+        parameters.place, placed, asked, parameters.d_min));
 }
 
 std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,

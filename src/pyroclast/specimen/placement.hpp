@@ -28,8 +28,8 @@ void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters
                     Random& random, std::vector<Grain<Dim>>& standing);
 
 /// Throws Error when the placed fraction of aggregate is off by more than 0.01 from that asked for.
-/// \param d_min  smallest diameter, which the message names, m
-void require_placed(double placed, double asked, double d_min);
+/// \param parameters  parameters that ask for aggregates, whose place and smallest diameter the message names
+void require_placed(double placed, double asked, const AggregateParameters& parameters);
 
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.

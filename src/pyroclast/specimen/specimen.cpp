@@ -261,7 +261,7 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
     else
       add_fibres(parameters, std::get<FibreParameters>(inclusions), aggregate_random, specimen);
   specimen.fraction_placed = extent_of(std::span<const Aggregate>(specimen.aggregates)) / specimen_area;
-  require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min);
+  require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates);
 
   const bool follows = parameters.superposition == Superposition::follow;
   const std::span<const Aggregate> followed =
