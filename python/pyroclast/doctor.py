@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import sys
+from contextlib import suppress
+
+from .programs import load_libraries
 
 _NEEDED = {"numpy": "figures", "h5py": "figures", "matplotlib": "figures", "scipy": "studies", "cmaes": "calibration",
            "jinja2": "pages of runs",
@@ -14,6 +17,8 @@ _NEEDED = {"numpy": "figures", "h5py": "figures", "matplotlib": "figures", "scip
 
 def main() -> None:
     """Prints a line for each."""
+    with suppress(Exception):  # what is missing is told below
+        load_libraries(is_alone=True)
     _tell("Python", f"{sys.version.split()[0]}, {sys.executable}")
     for name, purpose in _NEEDED.items():
         try:

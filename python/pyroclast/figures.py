@@ -42,6 +42,7 @@ from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, tempe
 from .heating import convergence, temperature_history, thrust, total_strain
 from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
+from .programs import complain, run_program, say
 from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
 from .results import Results, SpecimenFolder
@@ -51,6 +52,7 @@ from .style import page_of, save
 from .writing import make_folder
 
 _FORMATS = ("png", "svg", "pdf")
+_NAME = "pyroclast figures"
 _PER_INCH = {"mm": 25.4, "cm": 2.54, "in": 1.0}
 NARROWEST, WIDEST = 70.0 / 25.4, 400.0 / 25.4
 """Inches: widths for which figures can be drawn."""
@@ -343,15 +345,18 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code."""
-    asked = parser().parse_args(arguments)
+    return run_program(lambda: _draw(parser().parse_args(arguments)), _NAME)
+
+
+def _draw(asked: argparse.Namespace) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("always", GapWarning)
         warnings.showwarning = lambda message, *_: _tell(message)
         try:
             with page_of(asked.width):
                 for path in asked.draw(asked):
-                    print(path)
-        except (Error, OSError) as problem:
+                    say(path)
+        except Error as problem:
             _tell(problem)
             return 1
     return 0
@@ -359,7 +364,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _tell(what: object) -> None:
     for line in str(what).splitlines():
-        print(f"pyroclast figures: {line}", file=sys.stderr)
+        complain(line, _NAME)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import html
-import io
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -133,10 +132,7 @@ def _cracks_of_solid(run: Run, blocks: BlockMesh) -> np.ndarray:
 
 def png_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> bytes:
     """The figure as a PNG."""
-    picture = io.BytesIO()
-    with matplotlib.rc_context(style.STYLE), style.letters_told_once():
-        figure_of(run, draw_section).savefig(picture, format="png")
-    return picture.getvalue()
+    return style.png(figure_of(run, draw_section))
 
 
 def html_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 import textwrap
 import warnings
@@ -23,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
+from .texts import seen_on_a_line
 from .writing import whole
 
 Made = TypeVar("Made")
@@ -44,7 +46,11 @@ _TITLE_WIDTH = 100  # characters that fit a page of two columns
 _MOST_LETTERS = 20  # that a warning names
 _MOST_OF_A_TEXT = 200  # characters of a user's text
 
+_OF_PROGRAMS = ("backend", "interactive", "toolbar", "webagg", "tk.", "keymap.")  # settings that no figure shows
+
 STYLE = {
+    # All settings as Matplotlib comes: a figure is the same whatever a matplotlibrc says.
+    **{key: value for key, value in matplotlib.rcParamsDefault.items() if not key.startswith(_OF_PROGRAMS)},
     "font.size": 8.0,
     "axes.titlesize": 9.0,
     "axes.linewidth": 0.6,
@@ -296,8 +302,7 @@ def plain(text: str) -> str:
 
 def visible(text: str) -> str:
     """On one line, with what cannot be seen written out, such as \\x1b, and cut where it is long."""
-    line = " ".join("".join(c if c.isprintable() or c.isspace() else c.encode("unicode_escape").decode()
-                            for c in text).split())
+    line = seen_on_a_line(" ".join(text.split()))
     return line if len(line) <= _MOST_OF_A_TEXT else f"{line[:_MOST_OF_A_TEXT]}… ({len(line)} characters)"
 
 
@@ -431,7 +436,16 @@ def letters_told_once() -> Iterator[None]:
     if lacking and not _told:
         _told.append(lacking)
         warnings.warn(f"the font {FontProperties().get_name()} has no {lacking[:_MOST_LETTERS]}: figures show boxes in "
-                      "their place; name another font by font.family in a matplotlibrc", stacklevel=3)
+                      "their place; write titles and names in letters that it has", stacklevel=3)
+
+
+@matplotlib.rc_context(STYLE)
+def png(figure: Figure) -> bytes:
+    """The figure as a PNG."""
+    into = io.BytesIO()
+    with letters_told_once():
+        figure.savefig(into, format="png")
+    return into.getvalue()
 
 
 @matplotlib.rc_context(STYLE)

@@ -25,7 +25,6 @@ import base64
 import errno
 import hashlib
 import html
-import io
 import os
 import re
 import shutil
@@ -50,17 +49,19 @@ from .files import GapWarning, Lock, Writer, read_json
 from .fractures import draw_specimen, fracture_legend
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
-from .interrupts import hear_ctrl_c
+from .programs import complain, run_program, say
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
 from .results import Frame, GrowingResults
 from .style import save
 from .textplot import curve, plain_label
+from .texts import seen_on_a_line
 from .writing import shell_path
 
 PICTURE = Path("figures") / "watch.png"
 """Within the run's folder."""
 
+_NAME = "pyroclast watch"
 _SIZE, _DPI = (9.0, 5.0), 110  # inches; dots per inch
 _LOOK = 0.2  # s between two looks whether the run is over
 _REFRESH = 1.0  # s between two drawings, at least
@@ -298,10 +299,7 @@ class Watch:
 
     def png(self) -> bytes:
         """The picture."""
-        into = io.BytesIO()
-        with style.letters_told_once():
-            self.draw().savefig(into, format="png")
-        return into.getvalue()
+        return style.png(self.draw())
 
     def save(self) -> Path:
         """Writes the picture, whole or not at all. Returns its path: that which was asked for, or PICTURE in the folder,
@@ -486,7 +484,7 @@ def _once(watch: Watch) -> None:
         file = watch.save()
         if file not in (asked, watch.folder / PICTURE):
             _tell(f"{watch.folder} may not be written; the picture is elsewhere:")
-        print(file)
+        say(file)
     except OSError as problem:
         if asked is not None or watch.picture is None:
             raise
@@ -495,13 +493,13 @@ def _once(watch: Watch) -> None:
 
 def _print(lines: Sequence[str], before: str = "") -> None:
     """In one piece, in the characters that the terminal has."""
-    text = before + "".join(f"{line}\n" for line in lines)
+    text = before + "".join(f"{seen_on_a_line(line)}\n" for line in lines)
     sys.stdout.flush()
     os.write(sys.stdout.fileno(), text.encode(sys.stdout.encoding or "ascii", errors="replace"))
 
 
 def _tell(what: object) -> None:
-    print(f"pyroclast watch: {what}", file=sys.stderr)
+    complain(what, _NAME)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -520,28 +518,22 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code."""
-    hear_ctrl_c()
+    return run_program(lambda: _show(arguments), _NAME)
+
+
+def _show(arguments: Sequence[str] | None) -> int:
     options = parser()
     asked = options.parse_args(arguments)
     if asked.out is not None and asked.out.suffix.lower() not in (".png", ".svg", ".pdf"):
         options.error("--out: the file's ending must be .png, .svg or .pdf")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GapWarning)  # the figures tell of them
-            watch = Watch(asked.folder, asked.out)
-            if asked.once:
-                _once(watch)
-            else:
-                os.nice(_NICENESS)
-                follow(watch, _screen(asked.on, watch))
-    except KeyboardInterrupt:
-        return 128 + signal.SIGINT
-    except BrokenPipeError:  # who read it has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except (Error, OSError) as problem:
-        _tell(problem)
-        return 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GapWarning)  # the figures tell of them
+        watch = Watch(asked.folder, asked.out)
+        if asked.once:
+            _once(watch)
+        else:
+            os.nice(_NICENESS)
+            follow(watch, _screen(asked.on, watch))
     return 0
 
 

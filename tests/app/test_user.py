@@ -267,53 +267,6 @@ class LedgerOfARing(UserTest):
         self.assertEqual([slow["of_ledger"], slow["of_exchanges"]], [False, True])
 
 
-class FoldersOfOthers(UserTest):
-    """What stands in a folder acts on nothing outside of it."""
-
-    def setUp(self):
-        super().setUp()
-        self.assertEqual(self.pyroclast("run", self.write(small_deck()), "--out", "out", "--no-figures").returncode, 0)
-
-    def test_nothing_is_written_through_a_link(self):
-        mine = self.write("precious", "thesis.tex")
-        elsewhere = self.folder / "elsewhere"
-        elsewhere.mkdir()
-        for name, target, words in (("lock", mine, ("figures", "run", "out")), ("run.log", mine, ("resume", "out")),
-                                    ("history.csv", mine, ("resume", "out")),
-                                    ("figures", elsewhere, ("figures", "run", "out")),
-                                    ("figures", elsewhere, ("figures", "run", "out", "--format", "svg"))):
-            with self.subTest(name):
-                place = self.folder / "out" / name
-                kept = place.read_bytes() if place.is_file() else None
-                place.unlink(missing_ok=True)
-                place.symlink_to(target)
-                done = self.pyroclast(*words)
-                self.assertEqual(done.returncode, 1, done.stdout)
-                self.assertIn(f"{name}: is a link", done.stderr)
-                self.assertEqual((mine.read_text(), list(elsewhere.iterdir())), ("precious", []))
-                place.unlink()
-                if kept is not None:
-                    place.write_bytes(kept)
-
-    def test_no_module_is_taken_from_the_current_folder(self):
-        for name in ("random.py", "numpy.py"):
-            self.write("open('taken', 'w')\nraise SystemExit(7)\n", name)
-        for words in (("figures", "run", "out"), ("watch", "out", "--once")):
-            done = self.pyroclast(*words)
-            self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertFalse((self.folder / "taken").exists())
-        self.assertTrue((self.folder / "out/figures/stress_strain.png").exists())
-
-    def test_a_table_that_is_no_regular_file_is_refused(self):
-        os.mkfifo(self.folder / "pipe")
-        for file in ("/dev/zero", "pipe"):
-            deck = self.write(small_deck().replace('E = "29.4 GPa"', f'E = {{ csv = "{file}" }}'))
-            done = subprocess.run([PROGRAM, "check", deck], cwd=self.folder, capture_output=True, text=True, timeout=20,
-                                  check=False)
-            self.assertEqual(done.returncode, 1)
-            self.assertIn(f"{file}: is no regular file", done.stderr)
-
-
 class Memory(UserTest):
     def peak(self, *words) -> float:
         """MB of a command, whatever comes of it."""

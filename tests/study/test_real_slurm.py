@@ -17,6 +17,7 @@ from collections.abc import Callable
 
 from pyroclast.study.executors.slurm import Slurm
 from pyroclast.study.file import SlurmSettings
+from pyroclast.study.start import FOLDER
 from pyroclast.study.store import DONE, RunResult
 from pyroclast.study.work import Job
 
@@ -49,7 +50,7 @@ class RealSlurm(unittest.TestCase):
         self.results: dict[str, RunResult] = {}
 
     def job(self, i: int, mode: str = "plain") -> Job:
-        return Job(f"run-{i}", 1, "command", ("sh", str(self.folder / "model.sh"), str(i), "FOLDER", mode), {"x": i},
+        return Job(f"run-{i}", 1, "command", ("sh", str(self.folder / "model.sh"), str(i), FOLDER, mode), {"x": i},
                    ("z",), "summary", 3600.0, 1.0, 0)
 
     def run_all(self, jobs: list[Job], stopped: Callable[[], bool] = lambda: False, **settings) -> None:

@@ -76,7 +76,7 @@ seeds = 1
 runner = "command"
 command = "{sys.executable} words.py {{kind}} {{folder}}"
 [parameters.kind]
-choice = ["fine sand", "a; touch gone", "$(touch gone)"]
+choice = ["fine sand", "a; touch gone", "$(touch gone)", "FOLDER", "{{folder}}"]
 [method]
 kind = "grid"
 [outputs]
@@ -89,8 +89,45 @@ z = "z"
         os.chdir(self.folder)
         self.addCleanup(os.chdir, here)
         self.assertTrue(study.run(jobs=1))
-        self.assertEqual([row["z"] for row in study.rows()], [9.0, 13.0, 13.0])
+        self.assertEqual([row["z"] for row in study.rows()], [9.0, 13.0, 13.0, 6.0, 8.0])
         self.assertFalse((self.folder / "gone").exists())
+        self.assertIn("words.py FOLDER FOLDER", study.rows()[3]["command"])
+
+    def test_a_field_of_a_command_that_may_ask_for_all_memory_is_refused(self) -> None:
+        fields = ("{seed:>3000000000}", "{seed:<30000}", "{seed:.9999d}", "{seed:{x}}", "{x!r:>{seed}}", "{0}", "{}",
+                  "{x.real}", "{folder[0]}", "{unknown}")
+        for field in fields:
+            with self.subTest(field):
+                text = self.of_command("plain").replace("{seed}", f"{{seed}} {field}")
+                with self.assertRaisesRegex(Error, r"study\.toml:4: \{.*\}"):
+                    self.study(text).check()
+        self.study(self.of_command("plain").replace("{seed}", "{seed:>05} {x:>999}")).check()
+
+    def test_a_choice_with_a_character_that_no_argument_can_hold_is_refused(self) -> None:
+        text = self.of_command("plain", 'kind = "grid"').replace("uniform = [0, 1]", r'choice = ["a", "b\u0000c"]')
+        with self.assertRaisesRegex(Error, r"study\.toml:8: .*NUL"):
+            self.study(text).check()
+
+    def test_control_characters_are_written_out_on_terminals_and_in_tables(self) -> None:
+        odd = "\x1b[31mred\x07\u202e\x9b\nline\ttab"
+        self.model.write_text(f"def line(kind, seed):\n    if kind == 'end':\n        raise ValueError({odd!r})\n"
+                              "    return {'z': 1.0}\n")
+        named = json.dumps(odd).replace("\x9b", "\\u009b")
+        file = self.file(self.of_function('kind = "grid"', f'[parameters.kind]\nchoice = [{named}, "end"]'))
+        env = os.environ | {"PYROCLAST_CODE": "always"}
+        said = [subprocess.run([PROGRAM, "study", *words], cwd=self.folder, env=env, capture_output=True, text=True)
+                for words in (("run", str(file)), ("status", str(file)), ("table", str(file), "--out", "-"))]
+        shown = r"\x1b[31mred\x07\u202e\x9b\nline\ttab"
+        self.assertIn(f"crashed: ValueError: {shown}", said[1].stdout)
+        # the value, which stands in its command too, and the reason
+        self.assertEqual(said[2].stdout.count(shown), 2 + 1, said[2].stdout)
+        self.assertEqual(len(said[2].stdout.splitlines()), 3)
+        for done in said:
+            self.assertNotRegex(done.stdout + done.stderr, "[\x1b\x07\u202e\x9b\t]")
+        table = self.folder / "study-study/table.csv"
+        self.assertEqual(table.read_text(), said[2].stdout)
+        earlier = self.study(file.read_text().replace("[study]", f'[study]\nfolder = "later"\nearlier = ["{table}"]'))
+        self.assertEqual([row["reason"] for row in earlier.rows()], ["", f"ValueError: {shown}"])
 
     def test_timed_out(self) -> None:
         row = self.one("slow", 'wall_limit = "0.5 s"')
@@ -251,6 +288,21 @@ class Links(StudyTest):
                 self.assertEqual(caught.exception.filename, str(study.setup.folder / name))
                 self.assertIn("is a link", str(caught.exception))
                 self.check_untouched()
+
+    def test_a_file_that_has_another_name_is_not_written_either(self) -> None:
+        study = self.study(self.of_command("plain", 'kind = "grid"'))
+        runs = study.setup.folder / "runs"
+        runs.mkdir(parents=True)
+        for place in (study.setup.folder / "lock", runs / f"{study.rows()[0]['run']}.log"):
+            with self.subTest(place.name):
+                place.hardlink_to(self.mine)
+                with self.assertRaises(OSError) as caught:
+                    study.run(jobs=1)
+                self.assertEqual(caught.exception.filename, str(place))
+                self.assertIn("copied by links (cp -l, rsync --link-dest); copy the folder whole",
+                              str(caught.exception))
+                self.check_untouched()
+                place.unlink()
 
     def test_what_is_made_whole_takes_the_place_of_the_link(self) -> None:
         study = self.study(self.of_command("plain", 'kind = "grid"'))

@@ -24,6 +24,7 @@ from pyroclast.errors import Error
 from pyroclast.study.executors import slurm
 from pyroclast.study.executors.slurm import MOST_LOST, Slurm, runs_per_task
 from pyroclast.study.file import SlurmSettings
+from pyroclast.study.start import FOLDER
 from pyroclast.study.store import CRASHED, DONE, RunResult, only_writer, result_file
 from pyroclast.study.work import Job, known_result
 
@@ -72,7 +73,7 @@ class SlurmTest(unittest.TestCase):
         self.results: dict[str, RunResult] = {}
 
     def job(self, i: int, mode: str = "plain") -> Job:
-        return Job(f"run-{i}", 1, "command", ("sh", str(self.model), str(i), "FOLDER", mode), {"x": i}, ("z",), "summary",
+        return Job(f"run-{i}", 1, "command", ("sh", str(self.model), str(i), FOLDER, mode), {"x": i}, ("z",), "summary",
                    100.0, 1.0, 0)
 
     def jobs(self, count: int, mode: str = "plain") -> list[Job]:

@@ -8,27 +8,22 @@ from __future__ import annotations
 import sys
 import warnings
 
-from ..errors import Error
 from ..files import GapWarning
-from ..interrupts import hear_ctrl_c
+from ..programs import run_program, say
 from . import write_page
 from .command_line import parser
 
 
 def main(words: list[str]) -> int:
     """Returns the exit code."""
-    hear_ctrl_c()
+    return run_program(lambda: _make(words))
+
+
+def _make(words: list[str]) -> int:
     asked = parser().parse_args(words)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GapWarning)  # gaps of curves stay gaps
-        try:
-            print(write_page(asked.folders, asked.out))
-        except Error as error:
-            print(f"error: {error}", file=sys.stderr)
-            return 1
-        except OSError as error:
-            print(f"error: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-            return 1
+        say(write_page(asked.folders, asked.out))
     return 0
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import html
 
+from ..texts import seen
+
 
 class Markup(str):
     """Text that is HTML already; Jinja2 knows it by its method."""
@@ -22,11 +24,6 @@ def element(name: str, *inside: str, **attributes: str) -> Markup:
 def together(*inside: str) -> Markup:
     """One after the other; texts are escaped, with what cannot be seen written out."""
     return Markup("".join(part if isinstance(part, Markup) else html.escape(seen(part)) for part in inside))
-
-
-def seen(text: str) -> str:
-    """With characters that would act unseen, as \\x1b, written out; line breaks and tabs stay."""
-    return "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode() for c in text)
 
 
 def picture(png: bytes, alt: str, width: int | None = None) -> Markup:

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from ..libraries import library
-from .markup import Markup, seen
+from ..texts import seen
+from .markup import Markup
 
 _HERE = Path(__file__).parent
 _STYLE = "page.css"

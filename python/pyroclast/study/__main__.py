@@ -5,15 +5,14 @@ from __future__ import annotations
 import argparse
 import collections
 import math
-import os
 import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import replace
 
 from .. import _core
-from ..errors import CodeNotAllowed, Error
-from ..interrupts import hear_ctrl_c
+from ..errors import Error
+from ..programs import INTERRUPTED, complain, load_libraries, run_program, say
 from ..writing import shell_path
 from .command_line import parser
 from .driver import NOT_RUN, WITH_A_BEST, duration
@@ -34,24 +33,19 @@ _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of t
 
 def main(words: list[str]) -> int:
     """Exit code: 0 done, 2 runs are missing, 3 code has to be allowed first, 1 another error."""
-    try:
-        hear_ctrl_c()
-        options = parser().parse_args(words)
-        if options.allow_code:
-            _core.allow_code()
-        return int(_COMMANDS[options.do](options) or 0)
-    except CodeNotAllowed as error:
-        print(f"error: {_core.shown(str(error))}", file=sys.stderr)
-        return 3
-    except Error as error:
-        print(f"error: {_core.shown(str(error))}", file=sys.stderr)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except OSError as error:
-        print(f"error: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-    except KeyboardInterrupt:
-        return 130
-    return 1
+    return run_program(lambda: _do(words))
+
+
+def _do(words: list[str]) -> int:
+    options = parser().parse_args(words)
+    if options.allow_code:
+        _core.allow_code()
+    return _COMMANDS[options.do](options)
+
+
+def _speech(options: argparse.Namespace) -> Callable[[str], None]:
+    """Prints lines of progress, or nothing where that was asked for."""
+    return (lambda line: None) if options.quiet else say
 
 
 def _study(options: argparse.Namespace) -> Study:
@@ -66,7 +60,7 @@ def _run(options: argparse.Namespace) -> int:
         return _foresee(study)
     if options.again:
         study.forget_failures()
-    say = (lambda line: None) if options.quiet else (lambda line: print(line, flush=True))
+    say = _speech(options)
     executor = study.executor(options.executor, options.jobs)
     is_complete = study.run(executor, say=say)
     table = study.setup.folder / "table.csv"
@@ -75,11 +69,11 @@ def _run(options: argparse.Namespace) -> int:
         return 0
     if not is_complete:
         say(f"stopped; to go on: pyroclast study run {shell_path(options.study)}")
-        return 130
+        return INTERRUPTED
     say(f"table           {table}")
     if not study.count_values():
         reasons = {str(row["reason"]) for row in study.rows()}
-        print(f"error: no run gave a value: {'; '.join(sorted(reasons)[:3])}", file=sys.stderr)
+        complain(f"no run gave a value: {'; '.join(sorted(reasons)[:3])}")
         return 1
     for line in study.warnings():
         say(f"warning         {line}")
@@ -94,7 +88,7 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
     try:
         found = study.findings
     except Error as error:
-        print(f"error: {error}", file=sys.stderr)
+        complain(error)
         return False
     values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
     say("best point      " + ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
@@ -115,13 +109,13 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         return True
     at_end = [f"{p.name} = {v:g}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
     end = [f"{' and '.join(at_end)}: at the end of the range"] if at_end else []
-    print(f"error: the targets are not met: {'; '.join([found['finished'], *end, *far])}", file=sys.stderr)
+    complain(f"the targets are not met: {'; '.join([found['finished'], *end, *far])}")
     return False
 
 
 def _checked(study: Study) -> None:
     for warning in study.check():
-        print(f"warning: {warning}", file=sys.stderr)
+        complain(warning, "warning")
 
 
 def _foresee(study: Study) -> int:
@@ -129,18 +123,18 @@ def _foresee(study: Study) -> int:
     seen = study.forecast()
     setup = study.setup
     more = "" if seen.is_complete else " to begin with; more may follow"
-    print(f"points          {seen.points}{more}")
-    print(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
+    say(f"points          {seen.points}{more}")
+    say(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
     if not seen.left:
         return 0
     seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
     if seconds is None:
-        print("time            not known before one run is done")
+        say("time            not known before one run is done")
     else:
-        print(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
+        say(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
     if setup.runner.kind == "pyroclast":
         there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
-        print(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
+        say(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
               f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
               f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
     return 0
@@ -150,7 +144,7 @@ def _check(options: argparse.Namespace) -> int:
     study = _study(options)
     _checked(study)
     seen = study.forecast()
-    print(f"{options.study} is valid: {study.setup.title}; {_counted(seen.points, 'point')}, {_counted(seen.runs, 'run')}"
+    say(f"{options.study} is valid: {study.setup.title}; {_counted(seen.points, 'point')}, {_counted(seen.runs, 'run')}"
           + ("" if seen.is_complete else " to begin with"))
     return 0
 
@@ -162,30 +156,30 @@ def _counted(number: int, what: str) -> str:
 def _status(options: argparse.Namespace) -> int:
     study = _study(options)
     seen = study.forecast()
-    print(f"study           {study.setup.title} ({study.setup.method.kind})")
-    print(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points may follow"))
+    say(f"study           {study.setup.title} ({study.setup.method.kind})")
+    say(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points may follow"))
     if not math.isnan(seen.seconds) and seen.left:
-        print(f"left            {duration(seen.seconds)} of one core")
+        say(f"left            {duration(seen.seconds)} of one core")
     if begun := study.count_begun():
-        print(f"begun           {begun}, under way or broken off")
+        say(f"begun           {begun}, under way or broken off")
     table = study.rows()
     states = collections.Counter(row["state"] for row in table)
     for state, count in states.most_common():
-        print(f"{state:<15} {count}")
+        say(f"{state:<15} {count}")
     reasons = collections.Counter((row["state"], row["reason"]) for row in table if row["reason"])
     for (state, reason), count in reasons.most_common(10):
-        print(f"{count:>6} x {state}: {reason}")
+        say(f"{count:>6} x {state}: {reason}")
     return 0 if seen.is_complete and not seen.left else 2
 
 
 def _table(options: argparse.Namespace) -> int:
     study = _study(options)
     if all(row["state"] == NOT_RUN for row in study.rows()):
-        print(f"{study.setup.folder}: there is no table yet, for no run is done; to make them: pyroclast study run "
-              f"{shell_path(options.study)}", file=sys.stderr)
+        complain("there is no table yet, for no run is done; to make them: pyroclast study run "
+                 f"{shell_path(options.study)}", str(study.setup.folder))
         return 2
     if options.out is None:
-        print(study.write_table())
+        say(study.write_table())
     elif str(options.out) == "-":
         sys.stdout.write(study.table_text())
     else:
@@ -194,9 +188,10 @@ def _table(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
+    load_libraries(is_alone=False)
     from .report import write_report
 
-    print(write_report(_study(options), options.out))
+    say(write_report(_study(options), options.out))
     return 0
 
 
@@ -206,15 +201,17 @@ def _keys(options: argparse.Namespace) -> int:
 
 
 def _scatter(options: argparse.Namespace) -> int:
+    load_libraries(is_alone=False)
     from . import scatter
 
-    return scatter.run(options, (lambda line: None) if options.quiet else (lambda line: print(line, flush=True)))
+    return scatter.run(options, _speech(options))
 
 
 def _converge(options: argparse.Namespace) -> int:
+    load_libraries(is_alone=False)
     from . import converge
 
-    return converge.run(options, (lambda line: None) if options.quiet else (lambda line: print(line, flush=True)))
+    return converge.run(options, _speech(options))
 
 
 _COMMANDS = {"run": _run, "scatter": _scatter, "converge": _converge, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}

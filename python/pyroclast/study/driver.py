@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..errors import Error
 from ..results import Results
+from ..texts import seen_on_a_line
 from ..writing import write_text
 from .executors import Executor
 from .file import FIRST_SEED, StudySetup
@@ -41,7 +42,7 @@ _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
 _FEW = 30  # runs of which each is told when it is done
 _PROGRESS = 1.0  # s between two lines of progress
-_BEGINS_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # in a cell of a spreadsheet
+_BEGINS_FORMULA = ("=", "+", "-", "@")  # in a cell of a spreadsheet
 
 
 @dataclass(frozen=True)
@@ -181,7 +182,7 @@ class Driver:
             for output in self.study.outputs:
                 number = result.number(output.what) if result else math.nan
                 row[output.name] = None if math.isnan(number) else number
-            row["reason"] = result.reason if result else ""
+            row["reason"] = seen_on_a_line(result.reason) if result else ""
             row["physics_version"] = result.version if result else None
             row["host"] = result.host if result else ""
             row["wall_s"] = result.wall if result else None
@@ -199,9 +200,9 @@ class Driver:
         """Of `rows`, as CSV."""
         rows = self.rows()
         text = io.StringIO(newline="")
-        writer = csv.DictWriter(text, list(rows[0]) if rows else ["run"], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(map(_cell, rows[0] if rows else ["run"]))
+        writer.writerows(map(_cell, row.values()) for row in rows)
         return text.getvalue()
 
     def write_best(self) -> Path | None:
@@ -340,8 +341,13 @@ class _Progress:
 
 
 def _cell(value: Any) -> Any:
-    """What no spreadsheet takes for a formula: a text that would be one stands behind an apostrophe."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(_BEGINS_FORMULA) else value
+    """What no spreadsheet takes for a formula, and what acts on no terminal: a text that would be a formula stands
+    behind an apostrophe, and control characters are written out.
+    """
+    if not isinstance(value, str):
+        return value
+    shown = seen_on_a_line(value)
+    return f"'{shown}" if shown.startswith(_BEGINS_FORMULA) else shown
 
 
 def _text(cell: str) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import re
+import string
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -19,8 +21,10 @@ from .code import words_of
 from .file import StudySetup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
+from .start import FOLDER
 
 _ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
+_LONGEST_NUMBER = 3  # digits: of the width, or the precision, of a field in a command
 _NO_RESULT = ("fields", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
 
 
@@ -101,9 +105,14 @@ class Points:
         if runner.kind == "function":
             return [f"{runner.file}:{runner.function}"]
         if runner.kind == "command":
-            fields = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
-            # Words first: what is put into one stays in it, whatever it holds.
-            return [word.format(**fields, seed=seed, folder=folder or "FOLDER") for word in words_of(runner.command)]
+            fields: dict[str, Any] = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
+            fields |= {"seed": seed, "folder": str(folder or FOLDER)}
+            try:
+                # Words first: what is put into one stays in it, whatever it holds.
+                return [_filled(word, fields) for word in words_of(runner.command)]
+            except (Error, KeyError, ValueError) as error:
+                named = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
+                raise Error(f"{self._study.place('study.command')}: {named}") from error
         words = [program, "run", str(runner.deck), "--of-study"]
         for path, value in self.changes(values):
             words += ["--set", f"{path}={value}"]
@@ -192,9 +201,12 @@ class Points:
         if self._study.runner.kind == "command":
             try:
                 self.command("", middle, 1)
-            except (Error, KeyError, IndexError, ValueError, AttributeError) as error:
-                named = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
-                wrong.append(f"{self._study.place('study.command')}: {named}")
+            except Error as error:
+                wrong.append(str(error))
+            for parameter in self._study.parameters:
+                if any("\0" in str(end) for end in parameter.distribution.ends()):
+                    place = self._study.place(f"parameters.{parameter.name}")
+                    wrong.append(f"{place}: no word of a command can hold the character NUL, \\u0000")
             unnamed = [p.name for p in self._study.parameters if f"{{{p.name}" not in self._study.runner.command]
             wrong += [f"{self._study.place(f'parameters.{name}')}: the command has no {{{name}}}" for name in unnamed]
         for parameter, value in zip(self._study.parameters, middle):
@@ -223,6 +235,22 @@ def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, versi
 
 def _hash(what: Any) -> str:
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:_ID_LENGTH]
+
+
+def _filled(word: str, fields: Mapping[str, Any]) -> str:
+    """A word of a command with fields in the place of `{name}` or `{name:format}`.
+
+    Raises Error for other fields, and for formats that may ask for all memory; and what str.format raises.
+    """
+    for _, name, form, _ in string.Formatter().parse(word):
+        if name is None:
+            continue
+        if not name.isidentifier():
+            raise Error(f"{{{name:.40}}}: a field is the name of a parameter, seed or folder")
+        if "{" in (form or "") or any(len(number) > _LONGEST_NUMBER for number in re.findall(r"\d+", form or "")):
+            raise Error(f"{{{name:.40}:{form:.40}}}: the width in a format is a number of at most {_LONGEST_NUMBER} "
+                        "digits")
+    return word.format(**fields)
 
 
 def _plain(value: Value, parameter: Parameter) -> str:

@@ -10,7 +10,6 @@ import fcntl
 import json
 import math
 import os
-import sys
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -19,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Error
+from ..programs import complain
 from ..writing import make_folder, refuse_link, write_text
 
 BEGUN = "begun"  # in the place of a state, in `begun_file`
@@ -87,10 +87,10 @@ def read_result(file: Path) -> RunResult | None:
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
-        line = f"warning: {file} cannot be read ({error}); its run counts as not made"
+        line = f"{file} cannot be read ({error}); its run counts as not made"
         if line not in _said:
             _said.add(line)
-            print(line, file=sys.stderr)
+            complain(line, "warning")
         return None
 
 

@@ -21,7 +21,7 @@ from typing import Any
 from ..errors import Error
 from ..writing import make_folder, refuse_link
 from .outputs import Output, read_summary
-from .start import python
+from .start import FOLDER, python
 from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, RunResult, begun_file,
                     read_result, result_file, write_result)
 
@@ -78,7 +78,7 @@ class Job:
             return python("pyroclast.study.call", self.command[0], json.dumps(self.values), str(self.seed),
                           str(folder / "summary.json"))
         if self.kind == "command":
-            return [word.replace("FOLDER", str(folder)) for word in self.command]
+            return [word.replace(FOLDER, str(folder)) for word in self.command]
         fields = [] if self.keep == "all" else ["--no-fields"]
         return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
 

@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "pyroclast/app/open.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
@@ -129,8 +130,9 @@ int check(const RunOptions& options) {
   const auto simulation = make_simulation(setup, opened.team);
   const Model& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
-  fmt::print("{}{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
-             describe(simulation->specimen()), describe_warnings(simulation->warnings_of_specimen()));
+  say(fmt::format("{}{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup),
+                  describe_own_laws(), describe(simulation->specimen()),
+                  describe_warnings(simulation->warnings_of_specimen())));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),
              model.gridpoint_count(), model.contact_count());

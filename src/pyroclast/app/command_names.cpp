@@ -35,7 +35,7 @@ constexpr ExitCode kExitCodes[] = {
     {3,
      "The deck or the study names code that was not allowed (--allow-code); of check: all keys but that "
      "law's were checked."},
-    {130, "Ended by Ctrl-C or another signal; results so far and a checkpoint are kept."},
+    {kInterrupted, "Ended by Ctrl-C or another signal; results so far and a checkpoint are kept."},
 };
 
 /// Returns the commands that users see.

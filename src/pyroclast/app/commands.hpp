@@ -77,6 +77,9 @@ double time_option(const std::string& name, const std::string& text);
 /// Exit code where code that came with a deck was not allowed.
 constexpr int kCodeNotAllowed = 3;
 
+/// Exit code of a command that was interrupted.
+constexpr int kInterrupted = 130;
+
 // Each of the next functions returns the exit code and throws Error for the user.
 int check(const RunOptions& options);
 int make_specimen(const RunOptions& options);

@@ -49,7 +49,10 @@ std::string disk() {
 
 /// Returns the first line that a program prints for --version, or none where it cannot run.
 std::optional<std::string> version_of(const std::string& program) {
-  const fs::path output = fs::temp_directory_path() / fmt::format("pyroclast-doctor-{}", getpid());
+  // a folder of its own: others could lay a link where a name in the folder of all can be guessed
+  std::string folder = (fs::temp_directory_path() / "pyroclast-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) return std::nullopt;
+  const fs::path output = fs::path(folder) / "version";
   std::optional<std::string> first;
   try {
     std::string line;
@@ -61,7 +64,7 @@ std::optional<std::string> version_of(const std::string& program) {
     // that it cannot run is what is asked
   }
   std::error_code ignored;
-  fs::remove(output, ignored);
+  fs::remove_all(folder, ignored);
   return first;
 }
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/python_package.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
@@ -40,8 +41,10 @@ int figures(const std::vector<std::string>& words) {
   if (words.size() >= 2 && (words[0] == "run" || words[0] == "plane") &&
       std::ranges::none_of(words, is_out) && std::filesystem::is_directory(words[1]))
     lock.emplace(words[1]);
-  const auto code = draw(kFigures, words);
+  const Interrupt interrupt;  // Python is ended first: it removes a figure that is not whole
+  const auto code = draw(kFigures, words, Speech::usual, [&] { return interrupt.asked(); });
   if (!code) throw Error(no_python());
+  if (interrupt.asked()) return kInterrupted;
   return *code == 0 ? 0 : 1;
 }
 

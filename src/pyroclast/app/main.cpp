@@ -13,6 +13,7 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/app/watcher.hpp"
+#include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/shell_words.hpp"
@@ -368,8 +369,8 @@ int command_line(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ,
-              SIG_IGN);  // a file that must not grow further is an error of that file, with a sentence
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that must not grow further is an error with a sentence
+  forget_current_folder();
   try {
     return command_line(argc, argv);
   } catch (const pyroclast::CodeNotAllowed& e) {

@@ -5,6 +5,7 @@
 
 #include "pyroclast/app/cases.hpp"
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/base/shell_words.hpp"
@@ -29,8 +30,8 @@ int make_deck(const std::string& name, const std::string& from) {
   write_text_file(
       file,
       fmt::format("{}{}", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string()), found->text));
-  fmt::print("{} is written. Next:\n  pyroclast check {}\n  pyroclast run {}\n", file.string(),
-             shell_path(file), shell_path(file));
+  say(fmt::format("{0} is written. Next:\n  pyroclast check {1}\n  pyroclast run {1}\n", file.string(),
+                  shell_path(file)));
   return 0;
 }
 

@@ -146,7 +146,7 @@ std::string describe_own_laws() {
 
 void print_kept(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& foreign) {
   for (const auto& file : foreign)
-    fmt::print("kept            {}, which no run writes\n", (folder / file).string());
+    say(fmt::format("kept            {}, which no run writes\n", (folder / file).string()));
 }
 
 std::string describe(const MadeSpecimen& specimen) {

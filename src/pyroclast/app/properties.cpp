@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/open.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/results/properties_file.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -41,7 +42,7 @@ std::vector<ReadCurve> properties_of(const Setup& setup) {
 /// Prints the curves that the deck gives, a line each.
 void print(const std::vector<ReadCurve>& curves) {
   for (const auto& [path, unit, curve] : curves)
-    fmt::print("{:<42}{} {}\n", path, curve.describe(), unit == "1" ? "" : "[" + unit + "]");
+    say(fmt::format("{:<42}{} {}\n", path, curve.describe(), unit == "1" ? "" : fmt::format("[{}]", unit)));
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ int plot_properties(const PropertiesOptions& options) {
   write_text_file(out / "properties.csv",
                   properties_csv(properties_of(setup), setup.temperatures, PropertyRows::every_kelvin));
   print(setup.curves);
-  fmt::print("{}\n", (out / "properties.csv").string());
+  say(fmt::format("{}\n", (out / "properties.csv").string()));
   draw_figures("properties", out);
   return 0;
 }

@@ -72,6 +72,9 @@ if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
 try:
     from pyroclast.libraries import hear_matplotlib
     hear_matplotlib()
+    if '@' in ('pyroclast.figures', 'pyroclast.report', 'pyroclast.watch'):
+        from pyroclast.programs import load_libraries
+        load_libraries(True)
     runpy.run_module('@', run_name='__main__', alter_sys=True)
 except ImportError as error:
     if "'_core'" in str(error) or error.name == 'pyroclast._core':
@@ -84,7 +87,7 @@ except ImportError as error:
 
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
   std::string start = kStart;
-  start.replace(start.find('@'), 1, module);
+  for (auto at = start.find('@'); at != std::string::npos; at = start.find('@')) start.replace(at, 1, module);
   start.replace(start.find('?'), 1, kNeeded);
   std::vector<std::string> arguments{python(), "-c", start};
   arguments.insert(arguments.end(), words.begin(), words.end());

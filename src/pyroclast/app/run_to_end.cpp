@@ -120,7 +120,7 @@ std::string describe(const Summary& s, const AskedSpecimen& specimen, const std:
 }
 
 int exit_code(const Summary& summary) {
-  if (summary.outcome == Outcome::stopped) return 130;
+  if (summary.outcome == Outcome::stopped) return kInterrupted;
   return is_good(summary.outcome) && summary.is_sound ? 0 : 2;
 }
 

@@ -13,4 +13,9 @@ inline void say_aside(const std::string& text) {
   std::fputs(shown(text, true).c_str(), stderr);
 }
 
+/// Writes to stdout a text with words of others, such as paths, in the same form.
+inline void say(const std::string& text) {
+  std::fputs(shown(text, true).c_str(), stdout);
+}
+
 }  // namespace pyroclast::app

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/open.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
@@ -43,8 +44,8 @@ int make_specimen(const RunOptions& asked) {
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  fmt::print("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
-             describe_warnings(warned), folder.path().string());
+  say(fmt::format("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
+                  describe_warnings(warned), folder.path().string()));
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
 }

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <cstdlib>
 #include <string>
 
 namespace pyroclast {
 
 /// Returns a variable of the environment; empty where the variable is not set.
-inline std::string environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value ? value : "";
-}
+std::string environment(const char* name);
+
+/// Takes the current folder out of the environment, for this process and those that it starts: of variables
+/// that say where programs, libraries, headers and settings lie, only absolute paths stay. An empty entry, as
+/// in `CPATH=:/opt/include`, means the current folder to the compiler.
+void forget_current_folder();
 
 }  // namespace pyroclast

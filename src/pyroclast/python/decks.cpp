@@ -6,7 +6,6 @@
 #include <pybind11/stl.h>
 
 #include "pyroclast/base/sha256.hpp"
-#include "pyroclast/base/shown.hpp"
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/errors.hpp"
@@ -98,10 +97,6 @@ void bind_decks(py::module_& m) {
            }),
            py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("changes"), py::arg("laws"),
            py::arg("stages"), py::arg("deck_names"), py::arg("changes_name"));
-  m.def(
-      "shown", [](const std::string& text) { return shown(text, true); }, py::arg("text"),
-      "A text from elsewhere as a terminal may show it: characters that act on a terminal are written out, "
-      "but for line breaks.");
   m.def(
       "allow_code", [] { allows_code = true; },
       "Lets code that decks and studies name run in this process, until the code changes.");
