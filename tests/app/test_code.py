@@ -1,5 +1,7 @@
 """Code that came with a deck or a study runs after the user's word, by whatever command. PYROCLAST names the program."""
 
+import csv
+import json
 import os
 import pathlib
 import shutil
@@ -71,6 +73,12 @@ class CodeTest(unittest.TestCase):
         self.assertEqual(ran, runs, words)
         return done
 
+    def write_script(self, name: str, y: float = 1.0) -> None:
+        """A script that leaves y as its result."""
+        script = self.folder / name
+        script.write_text(f'#!/bin/sh\ntouch {self.mark}\necho \'{{"y": {y}}}\' > "$1"/summary.json\n')
+        script.chmod(0o755)
+
     def make_object(self) -> None:
         """law.so: what the program compiles of the header."""
         self.assert_done("law", "--verify", "law.hpp", "--paths", "64", runs=True, codes=(0, 1))
@@ -131,6 +139,36 @@ class CodeOfADeck(CodeTest):
         self.make_object()
         self.try_law("object.toml")
 
+    def test_a_header_that_includes_files_by_odd_words(self):
+        """A byte-order mark, or a backslash and a blank, hides no include from the hash."""
+        self.env["PYROCLAST_CACHE"] = str(self.folder / "cache")
+        for name in ("x.hpp", "y.hpp"):
+            (self.folder / name).write_text("// one\n")
+        (self.folder / "law.hpp").write_text('\ufeff#include "x.hpp"\n#inc\\ \nlude "y.hpp"\n' + CARELESS_LAW)
+        self.assert_done("check", "header.toml", "--allow-code", runs=False)
+        self.assert_done("check", "header.toml", runs=False)
+        for name in ("x.hpp", "y.hpp"):
+            (self.folder / name).write_text(MARK.replace("MARK", str(self.mark)))
+            self.assert_refused("check", "header.toml")
+            (self.folder / name).write_text("// one\n")
+        self.assert_done("check", "header.toml", runs=False)
+
+    def test_no_precompiled_header_is_taken(self):
+        """A law.hpp.gch of other code beside law.hpp does not run, and does not get into the cache."""
+        log = self.folder / "words"
+        compiler = self.folder / "compiler"
+        compiler.write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >> {log}\nexec c++ "$@"\n')
+        compiler.chmod(0o755)
+        law = self.folder / "law.hpp"
+        law.write_text(CARELESS_LAW + "// of the test of precompiled headers\n")
+        self.assert_refused("check", "header.toml", CXX=str(compiler))
+        words = log.read_text().splitlines()
+        flags = words[words.index("-std=c++20"):words.index("-E")]
+        other = self.folder / "other.hpp"
+        other.write_text(CARELESS_LAW + MARK.replace("MARK", str(self.mark)))
+        subprocess.run(["c++", *flags, "-x", "c++-header", other, "-o", f"{law}.gch"], check=True)
+        self.assert_done("check", "header.toml", "--allow-code", runs=False, PYROCLAST_CACHE=str(self.folder / "cache"))
+
     def test_what_the_command_line_names_needs_no_word(self):
         self.make_object()
         self.assert_done("law", "--verify", "law.hpp", "--paths", "64", runs=True, codes=(0, 1))
@@ -180,20 +218,232 @@ class CodeOfAStudy(CodeTest):
 
         def change():
             (self.folder / "helper.py").write_text("# another\n")
-            shutil.rmtree(self.folder / "study-study")
 
         self.try_study('runner = "function"\nfunction = "model.py:model"', change)
 
     def test_a_command(self):
-        model = self.folder / "model.sh"
-        model.write_text(f'#!/bin/sh\ntouch {self.mark}\necho \'{{"y": 1.0}}\' > "$1"/summary.json\n')
-        model.chmod(0o755)
+        self.write_script("model.sh")
 
         def change():
-            model.write_text(model.read_text() + "# another\n")
-            shutil.rmtree(self.folder / "study-study")
+            (self.folder / "model.sh").write_text((self.folder / "model.sh").read_text() + "# another\n")
 
         self.try_study('runner = "command"\ncommand = "./model.sh {folder}"', change)
+
+
+class HashOfAStudy(CodeTest):
+    """What runs is what was hashed, and runs of other code do not count."""
+
+    PYTHON = "/usr/bin/python3"
+
+    def setUp(self):
+        super().setUp()
+        self.runs_script = False  # whether the study runs a script of write_script
+
+    def write_script(self, name: str, y: float = 1.0) -> None:
+        super().write_script(name, y)
+        self.runs_script = True
+
+    def write_function(self, model: str = "", helper: str = "def value():\n    return 1.0\n") -> None:
+        """A study of model.py, which returns helper.value()."""
+        (self.folder / "model.py").write_text(f'{model}\nimport helper\ndef model(seed):\n'
+                                              '    return {"y": helper.value()}\n')
+        (self.folder / "helper.py").write_text(helper)
+        self.write_study('runner = "function"\nfunction = "model.py:model"')
+
+    def write_command(self, command: str, more: str = "") -> None:
+        self.write_study(f"runner = \"command\"\ncommand = '''{command}'''", more)
+
+    def write_study(self, runner: str, more: str = "") -> None:
+        text = STUDY.format(runner=runner) + more
+        (self.folder / "study.toml").write_text(text.replace('"ensemble"', '"grid"') if more else text)
+
+    def run_study(self, *words: str) -> tuple[list[float], str]:
+        """y of each run after `study run`, and what it says."""
+        done = self.assert_done("study", "run", "study.toml", *words, runs=self.runs_script)
+        with open(self.folder / "study-study/table.csv", newline="") as table:
+            return [float(row["y"]) for row in csv.DictReader(table)], done.stdout + done.stderr
+
+    def compile_other(self, into: str) -> None:
+        """Other code in the place of the compiled form of helper.py."""
+        other = self.folder / "other.txt"
+        other.write_text(f"import pathlib\npathlib.Path({str(self.mark)!r}).touch()\ndef value():\n    return 2.0\n")
+        (self.folder / into).parent.mkdir(exist_ok=True)
+        subprocess.run([self.PYTHON, "-c", "import py_compile, sys\npy_compile.compile(sys.argv[1], cfile=sys.argv[2], "
+                        "invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH)", other, self.folder / into],
+                       check=True)
+
+    def test_no_compiled_module_runs_in_the_place_of_a_helper(self):
+        self.write_function()
+        for name in (f"__pycache__/helper.{sys.implementation.cache_tag}.pyc", "helper.pyc"):
+            self.compile_other(name)
+        (self.folder / "helper.abi3.so").write_text("no module")
+        self.assertEqual(self.run_study("--allow-code")[0], [1.0])
+        (self.folder / "helper.py").unlink()
+        done, ran = self.run_it("study", "run", "study.toml", "--allow-code")
+        self.assertFalse(ran)
+        self.assertIn("helper.abi3.so: is compiled; only .py files", done.stderr)
+
+    def test_no_compiled_module_runs_in_the_place_of_a_helper_of_a_command(self):
+        (self.folder / "model.py").write_text('import helper, json, sys\njson.dump({"y": helper.value()}, '
+                                              'open(sys.argv[1] + "/summary.json", "w"))\n')
+        (self.folder / "helper.py").write_text("def value():\n    return 1.0\n")
+        self.write_command(f"{self.PYTHON} model.py {{folder}}")
+        self.compile_other(f"__pycache__/helper.{sys.implementation.cache_tag}.pyc")
+        self.assertEqual(self.run_study("--allow-code")[0], [1.0])
+        for planted in ("helper.pyc", "random.py", "helper.abi3.so"):
+            shutil.copy(self.folder / "other.txt", self.folder / planted)
+            self.assert_refused("study", "run", "study.toml")
+            (self.folder / planted).unlink()
+
+    def test_a_planted_module_does_not_take_the_place_of_one_of_python(self):
+        self.write_function("import statistics, pathlib\nfrom numpy import random")
+        for name in ("fractions", "secrets", "numbers", "sitecustomize", "numpy"):
+            (self.folder / f"{name}.py").write_text(f"open({str(self.mark)!r}, 'w')\n")
+        done = self.assert_done("study", "run", "study.toml", "--allow-code", runs=False, codes=(1,))
+        self.assertIn("imports numpy, of which there are two", done.stderr)
+        (self.folder / "numpy.py").unlink()
+        self.assertEqual(self.run_study("--allow-code")[0], [1.0])
+
+    def test_a_helper_with_the_name_of_a_module_of_python_is_refused(self):
+        self.write_function("from queue import value")
+        (self.folder / "queue.py").write_text("def value():\n    return 1.0\n")
+        for command in ("run", "check"):
+            done = self.assert_done("study", command, "study.toml", "--allow-code", runs=False, codes=(1,))
+            for word in ("model.py", "queue.py", "give the file another name"):
+                self.assertIn(word, done.stderr)
+
+    def test_a_module_that_no_statement_imports_does_not_run(self):
+        self.write_function("", "import importlib\ndef value():\n    return importlib.import_module('late').V\n")
+        (self.folder / "late.py").write_text(f"open({str(self.mark)!r}, 'w')\nV = 1.0\n")
+        done = self.assert_done("study", "run", "study.toml", "--allow-code", runs=False, codes=(1,))
+        self.assertIn("late.py: is not in the hash of the study's code; write `import late`", done.stdout + done.stderr)
+
+    def test_helpers_in_packages_and_folders_are_in_the_hash(self):
+        self.write_function("", "from parts.deep import more\nimport whole.one\ndef value():\n"
+                            "    return more.value() + whole.one.two.ZERO\n")
+        for folder in ("parts", "whole"):
+            (self.folder / folder).mkdir()
+        (self.folder / "whole/__init__.py").touch()
+        (self.folder / "whole/one.py").write_text("import whole.two as two\n")
+        (self.folder / "whole/two.py").write_text("ZERO = 0.0\n")
+        (self.folder / "parts/deep.py").write_text("from . import more\n")
+        for y in (1.0, 7.0):
+            (self.folder / "parts/more.py").write_text(f"def value():\n    return {y}\n")
+            self.assert_refused("study", "run", "study.toml")
+            self.assertEqual(self.run_study("--allow-code")[0], [y])
+        (self.folder / "whole/two.py").write_text("ZERO = -0.0\n")
+        self.assert_refused("study", "run", "study.toml")
+
+    def test_runs_of_other_code_are_made_anew(self):
+        """Whatever changed: a helper, a script that a command names in any way, a module, a link."""
+        def helper(y: float) -> None:
+            self.write_function("", f"def value():\n    return {y}\n")
+
+        def script(y: float) -> None:
+            self.write_script("w.sh", y)
+
+        def link(y: float) -> None:
+            self.write_script(f"of_{y:g}.sh", y)
+            (self.folder / "link.sh").unlink(missing_ok=True)
+            (self.folder / "link.sh").symlink_to(f"of_{y:g}.sh")
+
+        def module(y: float) -> None:
+            (self.folder / "one.py").write_text(f"Y = {y}\n")
+            (self.folder / "run.py").write_text("import json, sys, one\njson.dump({'y': one.Y}, "
+                                                "open(sys.argv[1] + '/summary.json', 'w'))\n")
+
+        self.write_script("v.sh", 3.0)
+        choice = '[parameters.name]\nchoice = ["w", "v"]\n'
+        for change, command, more in [
+                (helper, "", ""), (script, "./w.sh {folder}", ""), (script, "sh -c './w.sh \"{folder}\"'", ""),
+                (script, "env -- sh w.sh {folder}", ""), (script, "./{name}.sh {folder}", choice),
+                (link, "./link.sh {folder}", ""), (module, f"{self.PYTHON} run.py {{folder}}", ""),
+                (module, f"{self.PYTHON} -m run {{folder}}", "")]:
+            with self.subTest(command=command):
+                shutil.rmtree(self.folder / "study-study", ignore_errors=True)
+                if command:
+                    self.write_command(command, more)
+                others = [3.0] if more else []
+                self.runs_script = False
+                change(1.0)
+                self.assertEqual(self.run_study("--allow-code")[0], [1.0, *others])
+                change(7.0)
+                values, said = self.run_study("--allow-code")
+                self.assertEqual(values, [7.0, *others])
+                self.assertIn("of other code", said)
+
+    def test_code_that_the_hash_cannot_cover_needs_a_word_each_time(self):
+        self.write_script("w.sh")
+        (self.folder / "bin").mkdir()
+        for command, why in [
+                ("env PATH=bin:/usr/bin:/bin sh w.sh {folder}", "bin is a folder, and any file there may be code"),
+                ("sh -c 'cd . && ./w.sh {folder}'", "it goes to another folder by cd"),
+                ("sh -c './w*.sh {folder}'", "its shell makes words"),
+                (f"{self.PYTHON} -m unknown_module w.sh {{folder}}", "the module unknown_module")]:
+            with self.subTest(command=command):
+                shutil.rmtree(self.folder / "study-study", ignore_errors=True)
+                self.write_command(command)
+                self.assert_refused("study", "run", "study.toml", says=why)
+                self.run_it("study", "run", "study.toml", "--allow-code")
+                self.assert_refused("study", "run", "study.toml", says="each time")
+                self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
+
+    def test_code_that_changes_while_a_study_runs_ends_it(self):
+        self.write_script("w.sh")
+        self.write_command("sh w.sh {folder}")
+        study = self.folder / "study.toml"
+        study.write_text(study.read_text().replace("seeds = 1", "seeds = 3"))
+        script = self.folder / "w.sh"
+        script.write_text(script.read_text() + "echo '# another' >> w.sh\n")
+        done = self.assert_done("study", "run", "study.toml", "--allow-code", "--jobs", "1", runs=True, codes=(1,))
+        self.assertIn("w.sh has changed since the study began", done.stderr)
+
+
+class OptionsOfSlurm(CodeTest):
+    """What sbatch gets from a study runs nothing without the user's word."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "model.py").write_text('def model(seed):\n    return {"y": 1.0}\n')
+        tools = self.folder / "tools"
+        tools.mkdir()
+        for name in ("sbatch", "squeue", "scontrol"):
+            (tools / name).write_text(f'#!/bin/sh\ncase "$*" in\n*--job-name*) touch {self.mark}; echo no >&2; exit 1;;\n'
+                                      'esac\n')
+            (tools / name).chmod(0o755)
+        self.env["PATH"] = f"{tools}:{self.env['PATH']}"
+
+    def write_options(self, *options: str) -> None:
+        (self.folder / "study.toml").write_text(STUDY.format(runner='runner = "function"\nfunction = "model.py:model"')
+                                                + f"[slurm]\noptions = {json.dumps(options)}\n")
+
+    def test_plain_options_need_no_word(self):
+        self.write_options(*(f"--{name}=1" for name in (
+            "partition", "account", "qos", "mem", "mem-per-cpu", "constraint", "gres", "nodelist", "exclude",
+            "reservation", "cpus-per-task", "mail-type", "mail-user")))
+        self.assert_done("study", "check", "study.toml", runs=False)
+        self.assert_done("study", "run", "study.toml", "--executor", "slurm", "--allow-code", runs=True, codes=(1,))
+
+    def test_other_options_need_a_word(self):
+        for option in ("--wrap=touch RAN", "script.sh"):
+            with self.subTest(option=option):
+                self.write_options("--partition=long", option)
+                self.assert_refused("study", "check", "study.toml", says=option)
+                self.assert_refused("study", "run", "study.toml", "--executor", "slurm")
+                self.assertFalse((self.folder / "study-study").exists())
+        self.assert_done("study", "run", "study.toml", "--allow-code", "--quiet", runs=False)  # here they are not used
+        self.assert_refused("study", "run", "study.toml", "--executor", "slurm", says=option)
+        self.assert_done("study", "check", "study.toml", "--allow-code", runs=False)
+        shutil.rmtree(self.folder / "study-study")
+        self.assert_done("study", "run", "study.toml", "--executor", "slurm", runs=True, codes=(1,))
+        self.write_options("--partition=long", "--part=short")
+        self.assert_refused("study", "run", "study.toml", "--executor", "slurm", says="--part=short")
+
+    def test_values_that_cannot_be_meant_are_errors(self):
+        self.write_options("--partition=a\n#SBATCH --wrap=x")
+        done = self.assert_done("study", "check", "study.toml", runs=False, codes=(1,))
+        self.assertIn("study.toml:", done.stderr)
+        self.assertIn("line break", done.stderr)
 
 
 if __name__ == "__main__":

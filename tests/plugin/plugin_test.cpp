@@ -250,12 +250,14 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   ASSERT_EQ(commands_.size(), 1U);
   EXPECT_TRUE(says(commands_[0], {"-ffp-contract=off", "-O3"}));
   EXPECT_EQ(commands_[0].find("march=native"), std::string::npos);
-  EXPECT_EQ(opened_laws().back()->header.file, fs::canonical(folder_ / "mine.hpp"));
+  EXPECT_EQ(opened_laws().back()->headers.front(), fs::canonical(folder_ / "mine.hpp"));
   struct stat cache {};
   ASSERT_EQ(stat(sources_.compiler.cache.c_str(), &cache), 0);
   EXPECT_EQ(cache.st_mode & 0777, 0700U);
 
-  const auto compile = [&] { return compile_law(folder_ / "mine.hpp", "small::Law", sources_.compiler); };
+  const auto compile = [&](const fs::path& header = "mine.hpp") {
+    return compile_law(preprocess_law(folder_ / header, sources_.compiler), "small::Law", sources_.compiler);
+  };
   std::vector<fs::path> found(2);
   std::thread other([&] { found[0] = compile(); });
   found[1] = compile();
@@ -265,7 +267,7 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   // a run that goes on has a copy of the header elsewhere
   fs::create_directories(folder_ / "inputs");
   write("inputs/of_a_run.hpp", small());
-  EXPECT_EQ(compile_law(folder_ / "inputs" / "of_a_run.hpp", "small::Law", sources_.compiler), found[0]);
+  EXPECT_EQ(compile("inputs/of_a_run.hpp"), found[0]);
   EXPECT_EQ(commands_.size(), 1U) << "wherever it lies";
 
   // a body moves with it
@@ -297,7 +299,8 @@ TEST_F(LawInAHeader, WhatThePollThrowsEndsTheCompilerAndLeavesNothingInTheCache)
   compiler.poll = [&] {
     if (compiles) throw std::runtime_error("interrupted");
   };
-  EXPECT_THROW(compile_law(folder_ / "mine.hpp", "small::Law", compiler), std::runtime_error);
+  const LawText law = preprocess_law(folder_ / "mine.hpp", compiler);
+  EXPECT_THROW(compile_law(law, "small::Law", compiler), std::runtime_error);
   EXPECT_TRUE(compiles);
   for (const auto& file : fs::directory_iterator(compiler.cache)) EXPECT_NE(file.path().extension(), ".so");
 }
@@ -361,7 +364,7 @@ class CodeOfADeck : public LawInAHeader {
     try {
       find_law(stated, folder_, sources_, named);
     } catch (const CodeNotAllowed& error) {
-      EXPECT_EQ(error.code(), folder_ / "mine.hpp");
+      EXPECT_EQ(error.code().what, folder_ / "mine.hpp");
       return true;
     }
     return false;
@@ -400,19 +403,91 @@ TEST_F(CodeOfADeck, AListThatOthersMayWriteIsNotTrusted) {
   EXPECT_TRUE(says(refusal_of("mine.hpp"), {"config: ", "not trusted", "chmod 0700"}));
 }
 
-TEST_F(CodeOfADeck, WhatCannotBeKnownIsRefused) {
-  for (const char* const line :
-       {"#include MACRO\n", "# /* */ include MACRO\n", "%:include MACRO\n", "#inc\\\nlude MACRO\n",
-        "const char* s = R\"(/*)\";\n#include MACRO\n//*/\n",
-        "#define FOOR\nconst char* s = FOOR\"(\";\n#include MACRO\nconst char* t = \")\";\n"}) {
+// Promise: a file that the compiler takes into the law is in the hash, by whatever words it is included.
+TEST_F(CodeOfADeck, AFileIsInTheHashHoweverItIsIncluded) {
+  const std::string here = fs::canonical(folder_).string();
+  fs::create_directories(folder_ / "sub dir");
+  fs::create_symlink("../part.hpp", folder_ / "sub dir" / "link$#.hpp");
+  const auto hash = [&] {
+    const LawText law = preprocess_law(folder_ / "mine.hpp", sources_.compiler);
+    EXPECT_EQ(law.files.size(), 2U);
+    return law.hash;
+  };
+  for (const std::string& line : {
+           std::string("\xEF\xBB\xBF#include \"part.hpp\"\n"),
+           std::string("#inc\\ \nlude \"part.hpp\"\n"),
+           std::string("constexpr int kA = 1'0 + '/*';\n#include \"part.hpp\"\nconstexpr int kB = '*/';\n"),
+           std::string("#define PART \"part.hpp\"\n#include PART\n"),
+           std::string("#if __has_include(\"part.hpp\")\n%:include \"part.hpp\"\n#endif\n"),
+           std::string("const char* s = R\"(/*)\";\n/*\\\n*/ # /**/ include \"part.hpp\"\n"),
+           std::string("#import \"sub dir/link$#.hpp\"\n"),
+           fmt::format("#include <{}/part.hpp>\n", here),
+           std::string("#line 1 \"/usr/include/stdio.h\"\n#include \"part.hpp\"\n"),
+       }) {
+    write("part.hpp", "#pragma once\n#pragma GCC system_header\n");
     write("mine.hpp", line + small());
-    EXPECT_TRUE(says(refusal_of("mine.hpp"), {"by a macro"})) << line;
+    const std::string before = hash();
+    EXPECT_EQ(hash(), before) << line;
+    write("part.hpp", "#pragma once\n#pragma GCC system_header\ninline int more() { return 1; }\n");
+    EXPECT_NE(hash(), before) << line;
   }
-  for (const char* const line :
-       {"// #include MACRO\n", "/*\n#include MACRO\n*/\n", "const char* s = \"#include MACRO\";\n"}) {
-    write("mine.hpp", line + small());
-    EXPECT_TRUE(is_refused("mine.hpp")) << line;
-  }
+}
+
+// Promise: a folder that the environment names to the compiler is the user's, its files are in the hash.
+TEST_F(CodeOfADeck, AFileThatTheEnvironmentBringsIsInTheHash) {
+  fs::create_directories(folder_ / "other");
+  write("other/far.hpp", "inline int far() { return 1; }\n");
+  write("mine.hpp", "#include <far.hpp>\n" + small());
+  setenv("CPLUS_INCLUDE_PATH", (folder_ / "other").c_str(), 1);
+  const LawText before = preprocess_law(folder_ / "mine.hpp", sources_.compiler);
+  write("other/far.hpp", "inline int far() { return 2; }\n");
+  const LawText after = preprocess_law(folder_ / "mine.hpp", sources_.compiler);
+  unsetenv("CPLUS_INCLUDE_PATH");
+  EXPECT_EQ(before.files.back(), folder_ / "other" / "far.hpp");
+  EXPECT_NE(before.hash, after.hash);
+}
+
+// Promise: what a header asks of its surroundings is in the hash by what it makes of the law.
+TEST_F(CodeOfADeck, AFileThatIsAskedForOnlyIsInTheHashByItsEffect) {
+  write("mine.hpp", "#if __has_include(\"flag\")\ninline int more() { return 1; }\n#endif\n" + small());
+  const std::string before = preprocess_law(folder_ / "mine.hpp", sources_.compiler).hash;
+  write("flag", "");
+  EXPECT_NE(preprocess_law(folder_ / "mine.hpp", sources_.compiler).hash, before);
+}
+
+// Promise: the hash holds in another folder and under another name, for a law that names its own file too.
+TEST_F(CodeOfADeck, TheHashHoldsWhereverTheFilesLie) {
+  const std::string text =
+      "#include \"part.hpp\"\ninline const char* file() { return __FILE__; }\n" + small();
+  write("mine.hpp", text);
+  fs::create_directories(folder_ / "a dir");
+  write("a dir/mine.hpp", text);
+  write("a dir/part.hpp", "// nothing\n");
+  const LawText here = preprocess_law(folder_ / "mine.hpp", sources_.compiler),
+                there = preprocess_law(folder_ / "a dir" / "mine.hpp", sources_.compiler);
+  EXPECT_EQ(here.hash, there.hash);
+  EXPECT_EQ(here.normalised, there.normalised);
+}
+
+TEST_F(CodeOfADeck, WhatWouldBeReadAfterTheHashIsRefused) {
+  write("mine.hpp", "#define HASH #\nHASH include \"part.hpp\"\n" + small());
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"mine.hpp", "# include \"part.hpp\"", "stays in the text"}));
+  write("mine.hpp", "inline const char* when() { return __TIME__; }\n" + small());
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"mine.hpp:1:", "date-time"}));
+  sources_.permission.policy = CodePolicy::always;
+  write("mine.hpp", "#pragma GCC pch_preprocess \"part.gch\"\n" + small());
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"mine.hpp:1:", "pch_preprocess"}));
+  write("mine.hpp", small() + fmt::format("asm(\".section .comment\\n.inc\" \"bin \\\"{}\\\"\\n.text\");\n",
+                                          (folder_ / "part.hpp").string()));
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"the assembler reads", "part.hpp", ".incbin"}));
+  for (const auto& file : fs::directory_iterator(sources_.compiler.cache))
+    EXPECT_NE(file.path().extension(), ".so");
+}
+
+TEST(Plugin, ARuleOfMakeNamesFiles) {
+  EXPECT_EQ(files_of_rule("law: /a/b.hpp \\\n /c\\ d/e$$\\#.hpp\n\n/x.hpp:\n"),
+            (std::vector<fs::path>{"/a/b.hpp", "/c d/e$#.hpp"}));
+  EXPECT_TRUE(files_of_rule("").empty());
 }
 
 TEST_F(CodeOfADeck, ATypeIsAName) {
@@ -441,9 +516,8 @@ TEST(Plugin, TheEnvironmentSaysWhichCodeRuns) {
 }
 
 TEST(Plugin, TheTypeOfAHeaderIsTheStructWithAName) {
-  EXPECT_EQ(law_type("a.hpp", R"(// struct Not { static constexpr const char* name = "no"; };
-namespace a::b { struct Helper { const char* name = "x"; };
-struct Base {}; /* struct Nor { */ struct Law final : Base { static constexpr const char* name = "struct {"; }; })"),
+  EXPECT_EQ(law_type("a.hpp", R"(namespace a::b { struct Helper { const char* name = "x"; };
+struct Base {}; struct Law final : Base { static constexpr const char* name = "struct {"; }; })"),
             "a::b::Law");
   EXPECT_EQ(
       law_type("b.hpp", "struct Law { void f() { for (;;) {} } static constexpr auto name = \"b\"; };\n"),

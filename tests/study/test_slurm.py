@@ -8,6 +8,7 @@ from __future__ import annotations
 import collections
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -177,9 +178,24 @@ class Refused(SlurmTest):
         self.assert_all_done(1)
 
     def test_options_that_the_study_says(self) -> None:
-        for option in ("--time=10", "-t 10", "-J mine", "--array=1-2"):
+        for option in ("--time=10", "-t 10", "-J mine", "--array=1-2", "--arr=0-3", "--outp=x"):
             with self.assertRaisesRegex(Error, "the study says"):
-                self.run_all(self.jobs(1), options=(option,))
+                SlurmSettings(options=(option,))
+
+    def test_options_whose_values_cannot_be_meant(self) -> None:
+        for option, why in [("--partition=a\n#SBATCH --wrap=x", "line break"), ("--account", "--account=VALUE"),
+                            ("--mem=", "--mem=VALUE"), ("--qos=--wrap=x", "--qos=VALUE")]:
+            with self.subTest(option=option), self.assertRaisesRegex(Error, why):
+                SlurmSettings(options=(option,))
+
+    def test_options_that_may_run_a_program_are_told_from_others(self) -> None:
+        plain = ("--partition=long", "--account=a", "--qos=q", "--mem=2G", "--mem-per-cpu=1G", "--constraint=a&b",
+                 "--gres=gpu:1", "--nodelist=n[1-2]", "--exclude=n3", "--reservation=r", "--cpus-per-task=2",
+                 "--mail-type=END", "--mail-user=a@b.c")
+        unusual = ("--wrap=touch RAN", "--wra=touch RAN", "--export=ALL,LD_PRELOAD=x.so", "--export-file=x", "--bcast",
+                   "--container=x", "--chdir=/tmp", "-p long", "-plong", "script.sh", "--prolog=x", "--part=long",
+                   "--mem-bind=local", "--mail=END")
+        self.assertEqual(SlurmSettings(options=(*plain, *unusual)).unusual, unusual)
 
     def test_full_queue(self) -> None:
         self.slurm.refusals = [
@@ -384,6 +400,41 @@ points_per_task = 4
         self.results.clear()
         self.run_all(self.jobs(1))
         self.assertEqual(self.made(), [0, 0])
+
+
+class OneNode(unittest.TestCase):
+    """scripts/slurm-one-node, with daemons that do nothing."""
+
+    SCRIPT = pathlib.Path(__file__).parents[2] / "scripts" / "slurm-one-node"
+
+    def run_script(self, *words: str, **env: str) -> subprocess.CompletedProcess:
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        for name in ("munged", "slurmctld", "slurmd", "dpkg-query", "sinfo", "scancel", "squeue"):
+            tool = pathlib.Path(scratch.name) / name
+            tool.write_text({"dpkg-query": "#!/bin/sh\necho install ok installed\n",
+                             "sinfo": "#!/bin/sh\necho idle\n"}.get(name, "#!/bin/sh\n"))
+            tool.chmod(0o755)
+        environment = {"PATH": f"{scratch.name}:{os.environ['PATH']}", "HOME": scratch.name, **env}
+        return subprocess.run([self.SCRIPT, *words], env=environment, capture_output=True, text=True, check=False)
+
+    def test_its_folder_has_a_name_that_nobody_knows_beforehand(self) -> None:
+        folders = []
+        for _ in range(2):
+            said = self.run_script("start")
+            self.assertEqual(said.returncode, 0, said.stderr)
+            conf = pathlib.Path(said.stdout.split("SLURM_CONF=")[1].split()[0])
+            self.addCleanup(shutil.rmtree, conf.parent)
+            self.assertIn(f"StateSaveLocation={conf.parent}/state", conf.read_text())
+            self.assertIn(f"stop {conf.parent}", said.stdout)
+            folders.append(conf.parent)
+            self.assertIn(str(conf.parent), self.run_script("stop", SLURM_CONF=str(conf)).stdout)
+        self.assertNotEqual(*folders)
+
+    def test_stop_needs_to_know_the_folder(self) -> None:
+        said = self.run_script("stop")
+        self.assertEqual(said.returncode, 2)
+        self.assertIn("stop needs the folder that start named, or SLURM_CONF", said.stderr)
 
 
 if __name__ == "__main__":

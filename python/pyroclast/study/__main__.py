@@ -143,6 +143,7 @@ def _foresee(study: Study) -> int:
 def _check(options: argparse.Namespace) -> int:
     study = _study(options)
     _checked(study)
+    study.require_options()
     seen = study.forecast()
     say(f"{options.study} is valid: {study.setup.title}; {_counted(seen.points, 'point')}, {_counted(seen.runs, 'run')}"
           + ("" if seen.is_complete else " to begin with"))
@@ -160,6 +161,8 @@ def _status(options: argparse.Namespace) -> int:
     say(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points may follow"))
     if not math.isnan(seen.seconds) and seen.left:
         say(f"left            {duration(seen.seconds)} of one core")
+    if outdated := study.count_outdated():
+        say(f"outdated        {outdated}, made of other code, another deck or another version")
     if begun := study.count_begun():
         say(f"begun           {begun}, under way or broken off")
     table = study.rows()

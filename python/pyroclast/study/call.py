@@ -1,11 +1,12 @@
-"""Calls a function for a study: `python3 -m pyroclast.study.call FILE.py:NAME VALUES SEED FILE`, or many times:
-`python3 -m pyroclast.study.call FILE.py:NAME`. That says "ready" once it has loaded the function, reads [values, seed]
-as JSON, a line each, and answers each with a line: the outputs by name, or a text that says what went wrong.
+"""Calls a function for a study: `python3 -m pyroclast.study.call FILE.py:NAME HASH VALUES SEED FILE`, or many times:
+`python3 -m pyroclast.study.call FILE.py:NAME HASH`. That says "ready" once it has loaded the function, reads [values,
+seed] as JSON, a line each, and answers each with a line: the outputs by name, or a text that says what went wrong.
+
+HASH is that of the function's code. Other code is not run.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
 import os
@@ -16,18 +17,19 @@ from typing import Any
 
 from ..errors import Error
 from ..writing import write_text
+from .modules import hash_of_function, imported, modules_of_function
 
 
-def function_at(place: str) -> Callable[..., Any]:
-    """Of FILE.py:NAME. Raises Error where there is none."""
+def function_at(place: str, code: str = "") -> Callable[..., Any]:
+    """Of FILE.py:NAME. code: hash that it must have; "" for any.
+
+    Raises Error where there is none, or it is other code.
+    """
     path, _, name = place.rpartition(":")
-    spec = importlib.util.spec_from_file_location("pyroclast_study_model", path)
-    if spec is None or spec.loader is None or not Path(path).exists():
-        raise Error(f"{path}: is no Python file")
-    module = importlib.util.module_from_spec(spec)
-    sys.path.insert(0, str(Path(path).resolve().parent))
-    spec.loader.exec_module(module)
-    function: Callable[..., Any] | None = getattr(module, name, None)
+    sources = modules_of_function(Path(path).resolve())
+    if code and hash_of_function(sources, name) != code:
+        raise Error(f"{path}, or a module that it imports, has changed since the study began; start it again")
+    function: Callable[..., Any] | None = getattr(imported(sources), name, None)
     if not callable(function):
         raise Error(f"{path}: has no function {name}")
     return function
@@ -48,10 +50,10 @@ def _finite(outputs: dict[str, float]) -> dict[str, float | None]:
 def main(words: list[str]) -> int:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what the function prints
-    function = function_at(words[0])
-    if len(words) > 1:
-        outputs = answer(function, json.loads(words[1]), int(words[2]))
-        write_text(Path(words[3]), json.dumps({"outcome": "completed", **_finite(outputs)}))
+    function = function_at(words[0], words[1])
+    if len(words) > 2:
+        outputs = answer(function, json.loads(words[2]), int(words[3]))
+        write_text(Path(words[4]), json.dumps({"outcome": "completed", **_finite(outputs)}))
         return 0
     answers.write('"ready"\n')
     answers.flush()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 import os
 import shlex
@@ -23,6 +24,7 @@ from ..errors import Error
 from ..results import Results
 from ..texts import seen_on_a_line
 from ..writing import write_text
+from .code import StudyCode
 from .executors import Executor
 from .file import FIRST_SEED, StudySetup
 from .outputs import Output, read_summary
@@ -78,15 +80,17 @@ class Driver:
     """Brings a study to its end, from what its store knows."""
 
     def __init__(self, study: StudySetup, store: Store, program: str = "pyroclast",
-                 functions: Mapping[str, Callable[[Results], float]] = MappingProxyType({})):
+                 functions: Mapping[str, Callable[[Results], float]] = MappingProxyType({}),
+                 code: StudyCode | None = None):
         """
         program: makes the runs, and is what the command line of each names.
         functions: outputs by name that are taken of what is kept of a run.
+        code: of the study, where it is known already.
 
         Raises Error for earlier tables that cannot be read.
         """
         self.study, self.store, self.program, self.functions = study, store, program, functions
-        self.points = Points(study)
+        self.points = Points(study, code)
         self.plan: Plan = plan_of(study)
         self._take_in_earlier()
 
@@ -131,6 +135,9 @@ class Driver:
             say: Callable[[str], None] = lambda line: None) -> bool:
         """Makes all runs that the method asks for; whether it has them all. say: gets lines of progress."""
         self.check()
+        if outdated := self.count_outdated():
+            said = "1 earlier run is" if outdated == 1 else f"{outdated} earlier runs are"
+            say(f"{said} of other code, another deck or another version: they stay, and do not count")
         while True:
             proposal = self.plan.propose(self._answers)
             missing = self._missing(proposal)
@@ -166,6 +173,13 @@ class Driver:
         """Runs that gave a value of every output."""
         return sum(result is not None and result.state == DONE
                    for result in map(self._result, self._wanted(self.plan.propose(self._answers))))
+
+    def count_outdated(self) -> int:
+        """Runs whose values and seed the method asks for, made of another deck, other code or another version."""
+        wanted = self._wanted(self.plan.propose(self._answers))
+        known = {run for w in wanted for run in w.ids}
+        asked = {_of_point(dict(zip((p.name for p in self.study.parameters), w.point.values)), w.seed) for w in wanted}
+        return sum(r.id not in known and _of_point(r.values, r.seed) in asked for r in self.store)
 
     def count_begun(self) -> int:
         """Runs that were begun and have no result."""
@@ -300,7 +314,8 @@ class Driver:
                    dict(zip((p.name for p in study.parameters), values)),
                    tuple(o.what for o in study.outputs if not o.is_function), study.keep,
                    study.wall_limit, max(_LEAST_CHECKPOINT, _SHARE_OF_CHECKPOINTS * expected),
-                   _core.physics_version if study.runner.kind == "pyroclast" else 0, expected)
+                   _core.physics_version if study.runner.kind == "pyroclast" else 0, expected,
+                   self.points.code.hash, dict(self.points.code.files))
 
     def _take_in_earlier(self) -> None:
         """Runs of earlier tables, by their identity."""
@@ -338,6 +353,10 @@ class _Progress:
         left = (self._total - self._done) * (self._last - self._begun) / max(self._done, 1)
         failed = f", {self._failed} without a value" if self._failed else ""
         self._say(f"{self._done} of {self._total} runs{failed}" + (f", about {duration(left)} left" if left else ""))
+
+
+def _of_point(values: Mapping[str, Any], seed: int) -> str:
+    return json.dumps([values, seed], sort_keys=True)
 
 
 def _cell(value: Any) -> Any:

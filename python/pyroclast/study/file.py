@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -47,18 +47,56 @@ class Runner:
     function: str = ""
 
 
+PLAIN_OPTIONS = ("partition", "account", "qos", "mem", "mem-per-cpu", "constraint", "gres", "nodelist", "exclude",
+                 "reservation", "cpus-per-task", "mail-type", "mail-user")
+"""Options of sbatch that run nothing. sbatch takes shortened names too; here a name counts only as a whole."""
+
+_OF_STUDY = ("array", "job-name", "time", "signal", "output", "dependency", "requeue", "no-requeue", "open-mode")
+_SHORT = {"a": "array", "J": "job-name", "t": "time", "o": "output", "d": "dependency"}
+_OPTION = re.compile(r"--([a-z][a-z-]*)(?:=(.*))?", re.DOTALL)
+
+
+def _check_option(option: str) -> None:
+    if any(ord(c) < 32 or ord(c) == 127 for c in option):
+        raise Error(f"option {option!r} has a line break or another control character")
+    short = _SHORT.get(option[1:2]) if option.startswith("-") and not option.startswith("--") else None
+    found = _OPTION.fullmatch(option)
+    name = short or (found[1] if found else "")
+    own = [whole for whole in _OF_STUDY if name and whole.startswith(name)]
+    if name not in PLAIN_OPTIONS and own:
+        raise Error(f"option {option!r}: the study says --{name if name in own else own[0]} itself")
+    if found and found[1] in PLAIN_OPTIONS and (not found[2] or found[2].startswith("-")):
+        raise Error(f"option {option!r}: is written as \"--{found[1]}=VALUE\", and VALUE begins with no -")
+
+
+def _is_plain(option: str) -> bool:
+    found = _OPTION.fullmatch(option)
+    return found is not None and found[1] in PLAIN_OPTIONS and bool(found[2])
+
+
 @dataclass(frozen=True)
 class SlurmSettings:
     """How jobs of a study are asked for.
 
     slots: tasks at a time. time: of a task, s. points_per_task: runs that a task makes one after the other; 0: so many
     that it lasts some ten minutes. options: further ones of sbatch.
+
+    Raises Error for an option that the study sets itself, and for one with a value that cannot be meant.
     """
 
     slots: int = 16
     time: float = 3600.0
     points_per_task: int = 0
     options: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for option in self.options:
+            _check_option(option)
+
+    @property
+    def unusual(self) -> tuple[str, ...]:
+        """Options that may run a program, or change what runs, so that the user has to allow them."""
+        return tuple(option for option in self.options if not _is_plain(option))
 
 
 @dataclass(frozen=True)
@@ -460,12 +498,19 @@ def _slurm(root: _core.Table) -> SlurmSettings:
     table = root.optional_table("slurm", "Jobs of `--executor slurm`.")
     if table is None:
         return SlurmSettings()
-    return SlurmSettings(
+    settings = SlurmSettings(
         table.integer("slots", "Tasks at a time.", 1, None, 16),
         table.quantity("time", "s", "Of a task; runs that it cannot end go on in another.", 60.0, None, 3600.0),
         table.integer("points_per_task", "Runs that a task makes one after the other; 0: so many that it lasts some "
-                      "ten minutes.", 0, None, 0),
-        tuple(table.texts("options", "Further options of sbatch, such as [\"--partition=long\"].", is_optional=True)))
+                      "ten minutes.", 0, None, 0))
+    options = table.texts("options", "Further options of sbatch, such as [\"--partition=long\"]. Options that may run "
+                          "a program need `--allow-code`; see [Studies on a cluster](../do/cluster.md).",
+                          is_optional=True)
+    try:
+        return replace(settings, options=tuple(options))
+    except Error as error:
+        table.error("options", str(error))
+        return settings
 
 
 def _check_together(root: _core.Table, own: _core.Table, method: Method, parameters: list[Parameter],

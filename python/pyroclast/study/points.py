@@ -17,7 +17,7 @@ from typing import Any
 from .. import _core
 from ..decks import toml
 from ..errors import CodeNotAllowed, DeckError, Diagnostic, Error
-from .code import words_of
+from .code import StudyCode, code_of, words_of
 from .file import StudySetup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
@@ -46,8 +46,10 @@ class Point:
 class Points:
     """Makes the points of a study. Those whose deck is refused are infeasible."""
 
-    def __init__(self, study: StudySetup):
+    def __init__(self, study: StudySetup, code: StudyCode | None = None):
+        """code: of the study, where it is known already. Raises Error where a file of the code cannot be read."""
         self._study = study
+        self.code = code or code_of(study)
         self._made: dict[tuple[Value, ...], Point] = {}
 
     def at(self, values: Sequence[Value]) -> Point:
@@ -61,7 +63,7 @@ class Points:
         runner = self._study.runner
         if runner.kind != "pyroclast":
             named = dict(zip((p.name for p in self._study.parameters), values))
-            return Point(values, [lambda seed: _hash([self._model, named, seed])])
+            return Point(values, [lambda seed: _hash([self.code.hash, named, seed])])
         try:
             text, files, _ = self.resolve(values)
         except CodeNotAllowed:
@@ -71,11 +73,6 @@ class Points:
         tables = tomllib.loads(text)
         versions = [v for v in (_core.physics_version, self._study.accept_version) if v is not None]
         return Point(values, [functools.partial(run_id, tables, files, version=v) for v in versions])
-
-    @cached_property
-    def _model(self) -> str:
-        runner = self._study.runner
-        return runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
 
     def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Diagnostic]]:
         """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""

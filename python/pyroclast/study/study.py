@@ -19,7 +19,7 @@ from .. import _core
 from ..decks import is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
 from .choices import EXECUTORS
-from .code import require_code
+from .code import StudyCode, code_of, require_code, require_options
 from .driver import Driver, StudyForecast, free_cores
 from .executors import Executor
 from .executors.commands import Commands
@@ -60,7 +60,7 @@ class Study:
         needs_program = self.setup.runner.kind == "pyroclast"
         self._program = program or (_program() if needs_program else "")
         self._held: Driver | None = None
-        self._made_from: tuple[StudySetup, list[int]] | None = None  # and when the deck or the model was written
+        self._made_from: tuple[StudySetup, list[int], StudyCode] | None = None  # and when the deck was written
 
     def check(self) -> list[Diagnostic]:
         """Returns what the check of the deck in the middle of all ranges warns of.
@@ -87,10 +87,13 @@ class Study:
 
         Ctrl-C stops it: each run keeps its state and goes on the next time.
         """
-        require_code(self.setup.runner, self._is_own)
+        code = code_of(self.setup)
+        require_code(code, self._is_own)
         chosen = self.executor(executor, jobs) if isinstance(executor, str) else executor
+        if isinstance(chosen, Slurm):
+            require_options(self.setup, self._is_own)
         with only_writer(self.setup.folder) as store, _interrupts() as stopped:
-            return self._hold(store).run(chosen, stopped, say or (lambda line: None))
+            return self._hold(store, code).run(chosen, stopped, say or (lambda line: None))
 
     def executor(self, name: str, jobs: int | None = None) -> Executor:
         """By its name. Raises Error for another one."""
@@ -149,6 +152,14 @@ class Study:
                 kinds.setdefault(head, []).append(text)
         return [f"{len(texts)} of {len(summaries)} runs: {texts[0]}" for texts in kinds.values()]
 
+    def count_outdated(self) -> int:
+        """Runs that are there and do not count: of other code, another deck or another version."""
+        return self._driver().count_outdated()
+
+    def require_options(self) -> None:
+        """Returns where sbatch may get the options of the study. Raises CodeNotAllowed where they need a word."""
+        require_options(self.setup, self._is_own)
+
     def count_begun(self) -> int:
         """Runs that are under way or were broken off: begun, without a result."""
         return self._driver().count_begun()
@@ -185,19 +196,21 @@ class Study:
 
     def _driver(self) -> Driver:
         """That knows what any process has written by now; made anew where the setup, the deck or the model changed."""
-        if self._held is None or self._made_from != self._sources():
-            return self._hold(Store(self.setup.folder))
+        code = code_of(self.setup)
+        if self._held is None or self._made_from != self._sources(code):
+            return self._hold(Store(self.setup.folder), code)
         self._held.store.look()
         return self._held
 
-    def _hold(self, store: Store) -> Driver:
-        sources = self._sources()
-        self._held, self._made_from = Driver(self.setup, store, self._program, self._functions), sources
+    def _hold(self, store: Store, code: StudyCode) -> Driver:
+        sources = self._sources(code)
+        self._held = Driver(self.setup, store, self._program, self._functions, code)
+        self._made_from = sources
         return self._held
 
-    def _sources(self) -> tuple[StudySetup, list[int]]:
-        files = (self.setup.runner.deck, self.setup.runner.file)
-        return self.setup, [file.stat().st_mtime_ns for file in files if file.is_file()]
+    def _sources(self, code: StudyCode) -> tuple[StudySetup, list[int], StudyCode]:
+        deck = self.setup.runner.deck
+        return self.setup, [deck.stat().st_mtime_ns] if deck.is_file() else [], code
 
     def __repr__(self) -> str:
         return f"<Study {self.setup.file}: {self.setup.method.kind}>"

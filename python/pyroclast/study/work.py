@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import datetime
 import errno
+import functools
 import json
 import math
 import os
@@ -12,14 +14,16 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import Error
 from ..writing import make_folder, refuse_link
+from .hashes import require_unchanged
 from .outputs import Output, read_summary
 from .start import FOLDER, python
 from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, RunResult, begun_file,
@@ -49,6 +53,7 @@ class Job:
     command: as its user would type it, without the folder; of a function FILE:NAME alone.
     checkpoint: wall time between two checkpoints, s.
     expected: wall time that it will probably take, s; 0: not known.
+    code: hash of the code of a function or a command. files: that a command runs, with the SHA-256 of each.
     """
 
     id: str
@@ -62,6 +67,8 @@ class Job:
     checkpoint: float
     version: int
     expected: float = 0.0
+    code: str = ""
+    files: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def from_json(cls, text: str) -> Job:
@@ -75,12 +82,26 @@ class Job:
     def line(self, folder: Path) -> list[str]:
         """The command line of the run from its beginning, with results in a folder."""
         if self.kind == "function":
-            return python("pyroclast.study.call", self.command[0], json.dumps(self.values), str(self.seed),
-                          str(folder / "summary.json"))
+            return python("pyroclast.study.call", self.command[0], self.code, json.dumps(self.values),
+                          str(self.seed), str(folder / "summary.json"))
         if self.kind == "command":
             return [word.replace(FOLDER, str(folder)) for word in self.command]
         fields = [] if self.keep == "all" else ["--no-fields"]
         return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
+
+
+@functools.cache
+def _empty_folder() -> str:
+    """A folder of this process alone."""
+    folder = tempfile.mkdtemp(prefix="pyroclast-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _environment(job: Job) -> dict[str, str]:
+    """Python, where the command names a file of it, takes no compiled module that lies beside the file."""
+    is_python = any(file.endswith(".py") for file in job.files)
+    return {**os.environ, "PYTHONPYCACHEPREFIX": _empty_folder()} if is_python else dict(os.environ)
 
 
 def _log_file(runs: Path, run: str) -> Path:
@@ -111,13 +132,15 @@ class Attempt:
         refuse_link(self._log)
         with open(self._log, "ab") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                                            start_new_session=True, preexec_fn=die_with_parent(os.getpid()))
+                                            start_new_session=True, preexec_fn=die_with_parent(os.getpid()),
+                                            env=_environment(job))
         self._asked: float | None = None
         self.asked_to_stop = self.is_late = False
 
     def _command(self) -> list[str]:
         job = self.job
         if job.kind != "pyroclast":
+            require_unchanged(job.files)
             return job.line(self.folder)
         checkpoint = ["--checkpoint", f"{job.checkpoint:g} s"]
         if kept(self.folder) is not None:

@@ -139,7 +139,7 @@ std::string describe_own_laws() {
   for (const OpenedLaw* law : opened_laws())
     text +=
         fmt::format("law             \"{}\" is code that is not part of pyroclast: {}{}, compiled by {}\n",
-                    law->table.name, law->header.file.empty() ? "" : law->header.file.string() + " in ",
+                    law->table.name, law->headers.empty() ? "" : law->headers.front().string() + " in ",
                     law->shared_object.string(), law->compiler);
   return text;
 }

@@ -1,12 +1,9 @@
 #include "pyroclast/plugin/code_permission.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 #include <fcntl.h>
@@ -16,17 +13,13 @@
 
 #include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/read_file.hpp"
-#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shown.hpp"
-#include "pyroclast/plugin/cpp_lines.hpp"
 
 namespace pyroclast {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostFiles = 1000;  // most files that a header may include
 
 CodePolicy policy_of(const std::string& word) {
   if (word.empty() || word == "ask") return CodePolicy::ask;
@@ -90,67 +83,34 @@ void add_to_list(const fs::path& list, const std::string& hash, const std::strin
                             std::strerror(cause)));
 }
 
-/// Returns the text behind the word of a line that takes in another file; empty for other lines.
-std::string included_by(const std::string& line) {
-  std::string_view rest = line;
-  const auto skip = [&] {
-    while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())) != 0)
-      rest.remove_prefix(1);
-  };
-  skip();
-  for (const std::string_view sign : {"#", "%:", "?\?="})
-    if (rest.starts_with(sign)) {
-      rest.remove_prefix(sign.size());
-      skip();
-      for (const std::string_view word : {"include_next", "include", "import", "embed"})
-        if (rest.starts_with(word)) {
-          rest.remove_prefix(word.size());
-          skip();
-          return std::string(rest);
-        }
-      return {};
-    }
-  return {};
-}
-
-/// Adds the header, and the files that it includes in quotes where they lie beside it, each once.
-void add_files(const fs::path& header, std::vector<fs::path>& files) {
-  if (std::ranges::find(files, header) != files.end()) return;
-  if (files.size() >= kMostFiles)
-    throw Error(fmt::format("{}: includes more than {} files", files.front().string(), kMostFiles));
-  files.push_back(header);
-  for (const std::string& line : logical_lines(read_file(header))) {
-    const std::string included = included_by(line);
-    if (included.empty() || included[0] == '<') continue;
-    const auto end = included.find('"', 1);
-    if (included[0] != '"' || end == std::string::npos)
-      throw Error(
-          fmt::format("{}: includes a file by a macro, so which code it is is not known; name the file",
-                      header.string()));
-    const fs::path file = header.parent_path() / included.substr(1, end - 1);
-    if (fs::exists(file)) add_files(fs::canonical(file), files);
-  }
-}
-
 }  // namespace
 
 CodePermission CodePermission::of_environment() {
   return {policy_of(environment("PYROCLAST_CODE")), false, list_file()};
 }
 
-void CodePermission::require(const std::string& what, const std::string& hash, bool named) const {
+void CodePermission::require(const Code& code, bool named) const {
   if (policy == CodePolicy::always) return;
   if (policy == CodePolicy::never) {
     if (named) return;
     throw CodeNotAllowed(
         fmt::format("{}: is code that came with a file, and PYROCLAST_CODE = \"never\" lets none of it run",
-                    what),
-        what);
+                    code.what),
+        code);
   }
-  if (is_listed(list, hash)) return;
+  if (!code.unknown.empty()) {
+    if (allow || named) return;
+    throw CodeNotAllowed(
+        fmt::format(
+            "{}: is code, and runs only after your word: read it, then say --allow-code. It needs your "
+            "word each time, because {}",
+            code.what, code.unknown),
+        code);
+  }
+  if (is_listed(list, code.hash)) return;
   if (allow) {
     if (list.empty()) throw Error("--allow-code: there is no folder to keep it in; set XDG_CONFIG_HOME");
-    add_to_list(list, hash, what);
+    add_to_list(list, code.hash, code.what);
     return;
   }
   if (!named)
@@ -158,30 +118,12 @@ void CodePermission::require(const std::string& what, const std::string& hash, b
         fmt::format(
             "{}: is code, and runs only after your word: read it, then say --allow-code once. Until it "
             "changes it is known by its hash, {:.12}",
-            what, hash),
-        what);
+            code.what, code.hash),
+        code);
   try {
-    if (!list.empty()) add_to_list(list, hash, what);
+    if (!list.empty()) add_to_list(list, code.hash, code.what);
   } catch (const Error&) {  // a home that cannot be written: a file that names the code needs permission
   }
-}
-
-std::vector<fs::path> files_of_header(const fs::path& header) {
-  std::vector<fs::path> files;
-  add_files(fs::canonical(header), files);
-  return files;
-}
-
-std::string hash_of_files(const std::vector<fs::path>& files) {
-  std::vector<std::string> texts;
-  for (const fs::path& file : files) texts.push_back(read_file(file));
-  return hash_of_texts(texts);
-}
-
-std::string hash_of_texts(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts) all += fmt::format("{}\n", sha256(text));
-  return sha256(all);
 }
 
 }  // namespace pyroclast

@@ -10,16 +10,24 @@
 
 namespace pyroclast {
 
+/// Code that came with a deck or a study.
+struct Code {
+  std::string what;                          ///< name for messages and for the list; of a law its file
+  std::string hash;                          ///< SHA-256 of all its texts
+  std::vector<std::filesystem::path> files;  ///< files of a law, the first that which the deck names
+  /// Reason why the hash does not cover all that runs; such code needs the user's word each time. Else empty.
+  std::string unknown;
+};
+
 /// Error of code that came with a deck or a study and that the user did not allow.
 class CodeNotAllowed : public Error {
  public:
-  CodeNotAllowed(const std::string& message, std::string code) : Error(message), code_(std::move(code)) {}
+  CodeNotAllowed(const std::string& message, Code code) : Error(message), code_(std::move(code)) {}
 
-  /// Returns the name of the code, see CodePermission::require: of a law its file.
-  const std::string& code() const { return code_; }
+  const Code& code() const { return code_; }
 
  private:
-  std::string code_;
+  Code code_;
 };
 
 /// Policy on code: `never` runs only code that the command line names, `ask` also code that was allowed once,
@@ -39,18 +47,8 @@ struct CodePermission {
 
   /// Returns where the code may run. Throws CodeNotAllowed where it may not, and Error where others may write
   /// the list, or it cannot be written.
-  /// \param what   name of the code, for messages and in the list
-  /// \param hash   SHA-256 of all code that runs
   /// \param named  true where the command line, or a script, names the code: it is then allowed from now on
-  void require(const std::string& what, const std::string& hash, bool named = false) const;
+  void require(const Code& code, bool named = false) const;
 };
-
-/// Returns a header and, recursively, all files beside it that it includes in quotes. Throws Error where a
-/// file cannot be read, or is included by a macro, so that it is not known.
-std::vector<std::filesystem::path> files_of_header(const std::filesystem::path& header);
-
-/// Returns the SHA-256 of code in several texts, or files, whatever these are called.
-std::string hash_of_texts(const std::vector<std::string>& texts);
-std::string hash_of_files(const std::vector<std::filesystem::path>& files);
 
 }  // namespace pyroclast

@@ -156,26 +156,100 @@ void require_new(const std::string& version) {
                             version.substr(0, version.find('\n')), kOldest));
 }
 
-std::string source_of(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
+/// Returns the source of which the preprocessor makes the text of a law.
+std::string source_of(const fs::path& header) {
+  // the assertion comes first because a pragma at the very beginning could load a precompiled header
+  return fmt::format(R"(// Written by pyroclast to preprocess a contact law.
+static_assert(true);
+#include {}
+#include "pyroclast/mechanics/step/compiled_law.hpp"
+#include "pyroclast/plugin/stamp.hpp"
+)",
+                     fmt::format("\"{}\"", header.string()));
+}
+
+/// Returns the code that hands a law over; it follows the preprocessed text of the law.
+std::string code_of(const std::string& type, const LawCompiler& compiler) {
   const auto set = static_cast<std::size_t>(compiler.instructions);
   const auto dimensions = compiler.dimension == 2 ? "plane" : "space";
   std::string packs[kInstructionSets]{"nullptr", "nullptr", "nullptr"};
   packs[set] = fmt::format("&pyroclast::Compiled<pyroclast::{}, {}, pyroclast::Dimensions::{}>::law",
                            build_settings::kTypeOfSet[set], type, dimensions);
-  return fmt::format(R"(// Written by pyroclast to compile a contact law.
-#include {0}
-
-#include "pyroclast/mechanics/step/compiled_law.hpp"
-#include "pyroclast/plugin/stamp.hpp"
-
+  return fmt::format(R"(
+# 1 "code of pyroclast that hands over {0}"
 extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1() {{
-  static const pyroclast_law law = pyroclast::describe_law<{1}, pyroclast::Dimensions::{2}>(
-      "{3}", pyroclast::CompiledForSets{{{{{4}, {5}, {6}}}}});
+  static const pyroclast_law law = pyroclast::describe_law<{0}, pyroclast::Dimensions::{1}>(
+      "{2}", pyroclast::CompiledForSets{{{{{3}, {4}, {5}}}}});
   return &law;
 }}
 )",
-                     fmt::format("\"{}\"", header.string()), type, dimensions, build_settings::kVersion,
-                     packs[0], packs[1], packs[2]);
+                     type, dimensions, build_settings::kVersion, packs[0], packs[1], packs[2]);
+}
+
+/// Returns the words that call the compiler for a law, with the flags that change its numbers.
+std::vector<std::string> command_of(const LawCompiler& compiler, const fs::path& header) {
+  std::vector<std::string> words{compiler.program};
+  for (const auto& more : {flags_of(compiler.instructions), include_flags()})
+    words.insert(words.end(), more.begin(), more.end());
+  // else a text that names its own file would hang on the folder
+  words.push_back(fmt::format("-fmacro-prefix-map={}=", (header.parent_path() / "").string()));
+  return words;
+}
+
+/// Runs a command. Throws Error with the words of the compiler where the command fails.
+/// \param what  what is wrong with the header then
+void attempt(const std::vector<std::string>& words, const fs::path& header, const std::string& what,
+             const LawCompiler& compiler) {
+  const fs::path messages = compiler.cache / "messages.txt";
+  if (!run_program(words, messages, compiler.poll))
+    throw Error(fmt::format("{}: {}; the compiler says:{}\nIt was run as: {}\nAll that it says: {}",
+                            header.string(), what, essence(read_file(messages), header),
+                            fmt::join(words, " "), messages.string()));
+}
+
+/// Returns what a program says. Throws Error where the program fails.
+std::string said_by(const std::vector<std::string>& words, const LawCompiler& compiler) {
+  const fs::path messages = compiler.cache / "messages.txt";
+  if (!run_program(words, messages, compiler.poll))
+    throw Error(fmt::format("{}: fails; see {}", fmt::join(words, " "), messages.string()));
+  return read_file(messages);
+}
+
+/// Returns the folders of headers that belong to the compiler, the system or this program. The environment
+/// may name further folders to the compiler; files there are the user's.
+std::vector<fs::path> installed_folders(const LawCompiler& compiler) {
+  std::vector<fs::path> folders;
+  for (const std::string& flag : include_flags()) folders.emplace_back(flag.substr(2));
+  std::istringstream lines(said_by({"env", "-u", "CPATH", "-u", "CPLUS_INCLUDE_PATH", "LC_ALL=C",
+                                    compiler.program, "-v", "-E", "-x", "c++", "/dev/null"},
+                                   compiler));
+  bool is_folder = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "End of search list.") break;
+    if (is_folder && line.starts_with(' ')) folders.emplace_back(line.substr(1));
+    is_folder = is_folder || line == "#include <...> search starts here:";
+  }
+  return folders;
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+/// Tells whether a file lies in one of the folders by its name and by its real place: a link elsewhere that
+/// points there does not.
+bool lies_in(const fs::path& file, const std::vector<fs::path>& folders) {
+  std::error_code ignored;
+  const fs::path real = fs::weakly_canonical(file, ignored), named = fs::absolute(file).lexically_normal();
+  const auto holds = [&](const fs::path& name, const fs::path& folder) {
+    return is_below(name, folder.has_filename() ? folder : folder.parent_path());
+  };
+  return std::ranges::any_of(
+             folders, [&](const fs::path& folder) { return holds(named, folder.lexically_normal()); }) &&
+         std::ranges::any_of(folders, [&](const fs::path& folder) {
+           std::error_code none;
+           return holds(real, fs::weakly_canonical(folder, none));
+         });
 }
 
 }  // namespace
@@ -222,52 +296,67 @@ std::string law_type(const fs::path& header, const std::string& text) {
                           types.size(), fmt::join(types, ", "), header.filename().string(), types.front()));
 }
 
-fs::path compile_law(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
+LawText preprocess_law(const fs::path& header, const LawCompiler& compiler) {
   const fs::path file = fs::canonical(header);
   if (file.string().find_first_of("\"\\\n") != std::string::npos)
     throw Error(
         fmt::format("{}: a name with quotes, backslashes or line breaks cannot be included", file.string()));
   make_private(compiler.cache);
   const FileLock lock(compiler.cache / "lock");
-  const auto in_cache = [&](const char* name) { return compiler.cache / name; };
-  const fs::path source = in_cache("law.cpp"), messages = in_cache("messages.txt");
-  write(source, source_of(file, type, compiler));
-
-  const auto flags = flags_of(compiler.instructions);
-  std::vector<std::string> command{compiler.program};
-  command.insert(command.end(), flags.begin(), flags.end());
-  const auto folders = include_flags();
-  command.insert(command.end(), folders.begin(), folders.end());
-  const auto with = [&](std::vector<std::string> more) {
-    auto words = command;
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  const auto attempt = [&](const std::vector<std::string>& words) {
-    if (!run_program(words, messages, compiler.poll))
-      throw Error(fmt::format(
-          "{}: does not compile as the contact law {}; the compiler says:{}\nIt was run as: {}\n"
-          "All that it says: {}",
-          file.string(), type, essence(read_file(messages), file), shell_command(words), messages.string()));
-  };
-  if (!run_program({compiler.program, "--version"}, messages, compiler.poll))
-    throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
-  const std::string version = read_file(messages);
+  const std::string version = said_by({compiler.program, "--version"}, compiler);
   require_new(version);
-  const fs::path preprocessed = in_cache("law.ii");
-  // without -P the text would hold the places of its headers, and a run that goes on has copies of its own
-  attempt(with({"-E", "-P", source.string(), "-o", preprocessed.string()}));
-  const std::string key =
-      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", read_file(preprocessed), version, fmt::join(flags, " "),
-                         build_settings::kVersion, kLawTableVersion, layout_hash()));
-  fs::remove(preprocessed);
-  const fs::path kept = compiler.cache / (key + ".so");
+  const fs::path source = compiler.cache / "law.cpp", preprocessed = compiler.cache / "law.ii",
+                 rule = compiler.cache / "law.d";
+  write(source, source_of(file));
+  // macros may grow without end, and nobody has allowed this header yet
+  std::vector<std::string> words{"prlimit", "--cpu=60", "--fsize=268435456"};
+  for (const auto& more : {command_of(compiler, file),
+                           {"-E", "-Werror=date-time", source.string(), "-o", preprocessed.string(), "-MD",
+                            "-MT", "law", "-MF", rule.string()}})
+    words.insert(words.end(), more.begin(), more.end());
+  attempt(words, file, "the preprocessor refuses this contact law", compiler);
+  const auto folders = installed_folders(compiler);
+  LawText law = read_law_text(file, read_file(preprocessed), read_file(rule), [&](const fs::path& named) {
+    return named == source || lies_in(named, folders);
+  });
+  law.version = version;
+  for (const fs::path& aside : {preprocessed, rule}) fs::remove(aside);
+  return law;
+}
+
+fs::path compile_law(const LawText& law, const std::string& type, const LawCompiler& compiler) {
+  make_private(compiler.cache);
+  const FileLock lock(compiler.cache / "lock");
+  const auto in_cache = [&](const std::string& name) { return compiler.cache / name; };
+  const std::string code = code_of(type, compiler);
+  const std::string key = sha256(fmt::format("{}\n{}\n{}\n{}\n{} {} {:016x}", law.normalised, code,
+                                             law.version, fmt::join(flags_of(compiler.instructions), " "),
+                                             build_settings::kVersion, kLawTableVersion, layout_hash()));
+  const fs::path kept = in_cache(key + ".so");
   if (fs::exists(kept)) return kept;
-  const fs::path aside = in_cache("law.so");
-  const auto words = with({"-shared", source.string(), "-o", aside.string()});
+  const fs::path preprocessed = in_cache("law.ii"), object = in_cache("law.so"), rule = in_cache("law.d");
+  write(preprocessed, law.text + code);
+  auto words = command_of(compiler, law.header);
+  for (const std::string& word : {std::string("-shared"), preprocessed.string(), std::string("-o"),
+                                  object.string(), std::string("-pipe")})
+    words.push_back(word);
+  // the assembler tells what it reads; that of Clang itself does not
+  if (law.version.find("clang") != std::string::npos)
+    words.insert(words.end(), {"-fno-integrated-as", "-fno-addrsig"});
+  words.insert(words.end(), {"-Xassembler", "--MD", "-Xassembler", rule.string()});
   compiler.tell(shell_command(words));
-  attempt(words);
-  fs::rename(aside, kept);
+  attempt(words, law.header, fmt::format("does not compile as the contact law {}", type), compiler);
+  for (const fs::path& read : files_of_rule(read_file(rule))) {
+    // the rule names the text itself, and a file that the compiler made for the assembler and then removed
+    if (read == in_cache("law.cpp") || read == preprocessed || !fs::exists(read)) continue;
+    fs::remove(object);
+    throw Error(
+        fmt::format("{}: the assembler reads {}, as asm with .incbin or .include asks it to; the hash of the "
+                    "law does not cover that file, so write its content into the header",
+                    law.header.string(), read.string()));
+  }
+  for (const fs::path& aside : {preprocessed, rule}) fs::remove(aside);
+  fs::rename(object, kept);
   return kept;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/plugin/law_text.hpp"
 
 namespace pyroclast {
 
@@ -23,17 +24,20 @@ struct LawCompiler {
   std::function<void()> poll = [] {};
 };
 
-/// Returns the type of the law in a header, such as "mine::Law": the struct that holds `static constexpr
-/// const char* name`. Throws Error when there is none, or more than one.
-/// \param file  file of the text
+/// Returns the type of the law in a preprocessed text, such as "mine::Law": the struct that holds `static
+/// constexpr const char* name`. Throws Error when there is none, or more than one.
+/// \param file  header of the text, for messages
 std::string law_type(const std::filesystem::path& file, const std::string& text);
 
-/// Returns the shared object of a law, from the cache where the same law was compiled before: the same text
-/// of all its headers, wherever they lie, compiler, flags and layout. Throws Error with the compiler's words
-/// where the law does not compile.
+/// Returns the text that the preprocessor makes of a law's header; no precompiled header is read. Throws
+/// Error with the compiler's words where the preprocessor refuses the header.
+LawText preprocess_law(const std::filesystem::path& header, const LawCompiler& compiler);
+
+/// Returns the shared object of a law, from the cache where the same law was compiled before: the same text,
+/// wherever the header lies, compiler, flags and layout. Throws Error with the compiler's words where the law
+/// does not compile, and where the assembler reads a file, which no hash covers.
 ///
 /// \param type  type of the law, as C++ names it
-std::filesystem::path compile_law(const std::filesystem::path& header, const std::string& type,
-                                  const LawCompiler& compiler);
+std::filesystem::path compile_law(const LawText& law, const std::string& type, const LawCompiler& compiler);
 
 }  // namespace pyroclast

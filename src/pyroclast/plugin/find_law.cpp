@@ -11,6 +11,7 @@
 #include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/open.hpp"
@@ -57,9 +58,8 @@ void require_type(const fs::path& header, const std::string& type) {
                             shown_in_short(type)));
 }
 
-void require_code(const fs::path& file, const std::vector<fs::path>& all, const LawSources& sources,
-                  bool named) {
-  sources.permission.require(file.string(), hash_of_files(all), named || in_folders(file, sources));
+void require_code(const Code& code, const LawSources& sources, bool named) {
+  sources.permission.require(code, named || in_folders(code.files.front(), sources));
 }
 
 const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources,
@@ -74,18 +74,19 @@ const LawTable& law_of_header(const fs::path& header, std::string type, const La
                     header.string()));
   if (sources.compiler.cache.empty())
     throw Error(fmt::format("{}: no folder for compiled laws: set PYROCLAST_CACHE", header.string()));
-  std::string text = read_file(header);
-  if (type.empty()) type = law_type(header, text);
-  require_type(header, type);
-  require_code(header, files_of_header(header), sources, named);
-  return with_own_name(
-      open_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));
+  if (!type.empty()) require_type(header, type);
+  const LawText law = preprocess_law(header, sources.compiler);
+  if (type.empty()) type = law_type(header, law.own);
+  std::vector<fs::path> files = law.files;
+  files.front() = header;
+  require_code({header.string(), law.hash, files, {}}, sources, named);
+  return with_own_name(open_law(compile_law(law, type, sources.compiler), law.files));
 }
 
 const LawTable& law_of_object(const fs::path& file, const LawSources& sources, bool named) {
   if (!fs::exists(file))
     throw Error(fmt::format("{}: there is no such shared object of a contact law", file.string()));
-  require_code(file, {file}, sources, named);
+  require_code({file.string(), sha256(read_file(file)), {file}, {}}, sources, named);
   const OpenedLaw& law = open_law(file);
   if (const int dim = sources.compiler.dimension; !includes(law.dimensions, dim))
     throw Error(fmt::format("{}: the contact law \"{}\" is made for bodies in {}D, not in {}D", file.string(),

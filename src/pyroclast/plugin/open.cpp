@@ -127,14 +127,15 @@ Opened& opened() {
 
 }  // namespace
 
-const OpenedLaw& open_law(const std::filesystem::path& shared_object, LawHeader header) {
+const OpenedLaw& open_law(const std::filesystem::path& shared_object,
+                          std::vector<std::filesystem::path> headers) {
   const auto file = std::filesystem::weakly_canonical(shared_object);
   auto& [mutex, laws] = opened();
   const std::scoped_lock lock(mutex);
   for (const OpenedLaw& law : laws)
     if (law.shared_object == file) return law;
   OpenedLaw law = Opener(file).open();
-  law.header = std::move(header);
+  law.headers = std::move(headers);
   return laws.emplace_back(std::move(law));
 }
 

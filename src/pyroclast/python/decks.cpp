@@ -102,11 +102,13 @@ void bind_decks(py::module_& m) {
       "Lets code that decks and studies name run in this process, until the code changes.");
   m.def(
       "require_code",
-      [](const std::string& what, const std::vector<std::string>& texts, bool named) {
-        code_permission().require(what, hash_of_texts(texts), named);
+      [](const std::string& what, const std::string& hash, const std::string& unknown, bool named) {
+        code_permission().require({what, hash, {}, unknown}, named);
       },
-      py::arg("what"), py::arg("texts"), py::arg("named"),
-      "Returns where code, all its texts, may run; raises CodeNotAllowed elsewhere.");
+      py::arg("what"), py::arg("hash"), py::arg("unknown"), py::arg("named"),
+      "Returns where code may run; raises CodeNotAllowed elsewhere. unknown: reason why the hash does not "
+      "cover "
+      "all that runs, or \"\"; such code needs the user's word each time.");
   m.def(
       "written", [](const DeckText& text) { return parse(text).text(); }, py::arg("deck"),
       "The text of a deck with its changes in place.");

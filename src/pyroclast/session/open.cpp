@@ -45,7 +45,8 @@ Opened::Opened(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
 std::vector<OwnLaw> own_laws() {
   std::vector<OwnLaw> laws;
   for (const OpenedLaw* law : opened_laws())
-    laws.push_back({law->table.name, law->shared_object, law->header.file, law->compiler});
+    laws.push_back({law->table.name, law->shared_object,
+                    law->headers.empty() ? std::filesystem::path() : law->headers.front(), law->compiler});
   return laws;
 }
 

@@ -469,10 +469,12 @@ class InterfaceReader {
     try {
       const LawTable& law = find_law_(stated, s.is_changed("law"));
       for (const OpenedLaw* opened : opened_laws())
-        if (&opened->table == &law) name_file(s, *opened, stated);
+        if (&opened->table == &law)
+          name_files(s, opened->headers.empty() ? std::vector{opened->shared_object} : opened->headers,
+                     stated);
       return law;
     } catch (const CodeNotAllowed& error) {
-      name_file(s, error.code(), stated);
+      name_files(s, error.code().files, stated);
       s.leave_open();
       return unknown_law();
     } catch (const Error& error) {
@@ -494,19 +496,16 @@ class InterfaceReader {
     return law;
   }
 
-  /// Names the file of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
-  static void name_file(const Section& s, const OpenedLaw& law, const std::string& stated) {
-    name_file(s, law.header.file.empty() ? law.shared_object : law.header.file, stated);
-  }
-
-  static void name_file(const Section& s, const std::filesystem::path& file, const std::string& stated) {
-    const std::string name = file.filename().string();
+  /// Names the files of a law that is not part of the program. The first is mine.so, or mine.hpp with or
+  /// without ":Type"; the others are the files that mine.hpp includes.
+  static void name_files(const Section& s, const std::vector<std::filesystem::path>& files,
+                         const std::string& stated) {
+    const std::string name = files.front().filename().string();
     const auto begin = stated.rfind(name);
     const bool is_named = begin != std::string::npos;  // "mine" stands for mine.so
-    s.names_file("law", file, is_named ? stated.substr(begin + name.size()) : "");
-    if (file.extension() == ".so") return;
-    for (const std::filesystem::path& included : files_of_header(file))
-      if (included != std::filesystem::canonical(file)) s.needs_file(included);
+    s.names_file("law", files.front(), is_named ? stated.substr(begin + name.size()) : "");
+    for (auto included = files.begin() + 1; included != files.end(); ++included)
+      s.needs_file(included->lexically_normal());
   }
 
   const Section& shared_;

@@ -462,7 +462,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
 
 void require_code(const Setup& setup) {
   const auto& refused = setup.code_not_allowed;
-  if (!refused.empty()) throw CodeNotAllowed(fmt::format("{}", fmt::join(refused, "\n")), refused.front());
+  if (!refused.empty()) throw CodeNotAllowed(fmt::format("{}", fmt::join(refused, "\n")), Code{});
 }
 
 DeckSchema deck_schema(const StageRegistry& kinds) {

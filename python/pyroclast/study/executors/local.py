@@ -81,8 +81,9 @@ def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[RunRes
 class _Server:
     """A process that calls the function of a study, point by point."""
 
-    def __init__(self, place: str):
-        self.process = subprocess.Popen(python("pyroclast.study.call", place), bufsize=0,
+    def __init__(self, job: Job):
+        """job: one of those that call the same function."""
+        self.process = subprocess.Popen(python("pyroclast.study.call", job.command[0], job.code), bufsize=0,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                                         preexec_fn=die_with_parent(os.getpid()))
         self.job: Job | None = None
@@ -147,7 +148,7 @@ def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> RunRe
 def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None], stopped: Callable[[], bool]) -> None:
     waiting = deque(jobs)
     in_vain: dict[str, int] = {}
-    servers = [_Server(jobs[0].command[0]) for _ in range(slots)]
+    servers = [_Server(jobs[0]) for _ in range(slots)]
     try:
         while not stopped():
             for server in servers:
@@ -165,7 +166,7 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None]
                     if not server.is_ready and server.process.wait() > 0:
                         raise Error(f"{jobs[0].command[0]}: the function cannot be loaded; Python's message stands above")
                     server.close()
-                    servers[servers.index(server)] = _Server(jobs[0].command[0])
+                    servers[servers.index(server)] = _Server(jobs[0])
                     if result is None and job is not None:
                         in_vain[job.id] = in_vain.get(job.id, 0) + 1
                         if in_vain[job.id] < MOST_IN_VAIN:
@@ -178,7 +179,7 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None]
                 if server.job is not None and server.wall > server.job.wall_limit:
                     late = server.job
                     server.close()
-                    servers[servers.index(server)] = _Server(late.command[0])
+                    servers[servers.index(server)] = _Server(late)
                     finished(RunResult(late.id, late.seed, TIMED_OUT, f"wall limit of {late.wall_limit:g} s",
                                        values=late.values, host=socket.gethostname(), wall=late.wall_limit,
                                        version=late.version))

@@ -36,8 +36,6 @@ _WARNING = 120  # s before the time of a task is over
 _SHARE_OF_WARNING = 0.25  # of the time of a task, at most
 _LOOK = 0.2  # s between two looks at what asks to stop
 _GROWTH = 1.5  # of the interval between two questions to Slurm
-_OURS = ("array", "job-name", "time", "signal", "output", "dependency", "requeue", "no-requeue", "open-mode")
-_SHORT = {"a": "array", "J": "job-name", "t": "time", "o": "output", "d": "dependency"}
 
 _LATER = re.compile(r"(?:QOS|Assoc)\w*Submit\w*Limit|job submit limit|temporarily unable to accept|queue full|"
                     r"Job dependency problem", re.IGNORECASE)
@@ -146,11 +144,6 @@ class Slurm:
     def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         """Makes the jobs; see executors. Raises Error with the words of Slurm where it does not take them."""
-        for option in self.settings.options:
-            named = re.match(r"--([a-z-]+)|-([a-zA-Z])", option)
-            name = named and (named[1] or _SHORT.get(named[2]))
-            if name in _OURS:
-                raise Error(f"[slurm] options: {option!r}: the study says --{name} itself")
         make_folder(runs)
         _Queue(self, jobs, runs.resolve(), finished, stopped).work()
 
