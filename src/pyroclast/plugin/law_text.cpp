@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
@@ -29,10 +30,6 @@ struct LineMark {
 
 bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
-}
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
 bool is_octal(char c) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "pyroclast/base/characters.hpp"
+
 namespace pyroclast {
 namespace meaning {
 
@@ -96,9 +98,6 @@ const ColumnMeaning opening{
 
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 bool is_small(char c) {
   return c >= 'a' && c <= 'z';
 }
@@ -116,7 +115,7 @@ std::string folded(std::string_view word) {
 }
 
 /// Splits a name into words, without digits: "xCenter_1" is x and center.
-std::vector<std::string> words_of(std::string_view name) {
+std::vector<std::string> words_of_name(std::string_view name) {
   std::vector<std::string> words;
   std::string word;
   const auto end_word = [&] {
@@ -154,7 +153,7 @@ ColumnMeanings common(const ColumnMeanings& a, const ColumnMeanings& b) {
 ColumnMeanings meanings_of_name(std::string_view name, const ColumnMeanings& vocabulary) {
   if (const ColumnMeanings whole = that_have(folded(name), vocabulary); !whole.empty()) return whole;
   std::vector<ColumnMeanings> of_words;
-  for (const std::string& word : words_of(name))
+  for (const std::string& word : words_of_name(name))
     if (ColumnMeanings found = that_have(word, vocabulary); !found.empty())
       of_words.push_back(std::move(found));
   for (const ColumnMeanings& one : of_words)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/tables/cell.hpp"
 #include "pyroclast/tables/table_lines.hpp"
 #include "pyroclast/units/spellings.hpp"
@@ -117,17 +118,13 @@ std::string likely_unit(std::string_view cell) {
     const bool has_sign =
         std::ranges::any_of(std::array{"%", "‰", "°", "µ", "μ", "ε"},
                             [&](std::string_view sign) { return unit.find(sign) != unit.npos; });
-    const bool is_condition = at > 0 && cell[at - 1] >= '0' && cell[at - 1] <= '9';  // "strain at 50 %"
+    const bool is_condition = at > 0 && is_digit(cell[at - 1]);  // "strain at 50 %"
     if (at > 0 && !is_condition && has_sign && is_unit(unit)) return std::string(unit);
   }
   return "";
 }
 
 using Words = std::vector<std::string>;
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// Splits a text at blanks, commas, semicolons and colons.
 Words words_between(std::string_view text) {
@@ -195,7 +192,7 @@ bool may_have_prefix(std::string_view text) {
 }
 
 /// Splits a line into words; text in brackets or quotes is one word.
-Words words_of(std::string_view line) {
+Words words_of_line(std::string_view line) {
   Words words(1);
   int depth = 0;
   bool is_quoted = false;
@@ -278,7 +275,7 @@ std::optional<std::string> unit_cell(std::string_view cell) {
 }
 
 std::vector<std::string> cells_between_blanks(std::string_view line, std::size_t count) {
-  const Words words = words_of(line);
+  const Words words = words_of_line(line);
   for (const Words& cells : {with_their_units(words), up_to_brackets(words)})
     if (cells.size() == count) return cells;
   return {};

@@ -14,6 +14,7 @@
 #include <locale.h>
 #include <udunits2.h>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/units/decimal.hpp"
 #include "pyroclast/units/spellings.hpp"
 
@@ -96,9 +97,6 @@ bool same_dimension(const ut_unit* a, const ut_unit* b) {
   return quotient && structure_of(quotient.get()).base_units == 0;
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 bool is_space(char c) {
   return c == ' ' || c == '\t';
 }
