@@ -277,8 +277,11 @@ TEST(DrivesBeside, WhatIsSteeredIsLeftAlone) {
         free_deck(kUniform + drive("duration = \"1 ms\"", under_way) + drive("duration = \"1 ms\"", own)));
     const auto& stages = trial.run.stages();
     const auto& first = dynamic_cast<const Drive&>(*stages[0]);
-    return pyroclast::message(
-        [&] { dynamic_cast<const Drive&>(*stages[1]).check_beside(first, *trial.simulation); });
+    const auto& second = dynamic_cast<const Drive&>(*stages[1]);
+    Acting acting = acting_on(*trial.simulation);
+    first.check(*trial.simulation, acting);
+    second.check(*trial.simulation, acting);
+    return pyroclast::message([&] { second.check_beside(first, *trial.simulation, acting.supports); });
   };
   const std::string held = does("left", "hold = [\"x\", \"y\"]");
   const std::string pulled = held + does("right", "velocity = \"1 mm/s\"\ndirection = \"x\"");
@@ -295,6 +298,7 @@ TEST(DrivesBeside, WhatIsSteeredIsLeftAlone) {
   expect_in(words, refused(held + push, does("right", "pressure = \"1 MPa\"")));
   EXPECT_EQ(refused(held + push, does("top", "pressure = \"1 MPa\"")), kNone);
   EXPECT_EQ(refused(held + push, does("right", "hold = [\"x\"]")), kNone);
+  expect_in("the stage under way loads set \"right\"", refused(held + push, does("right", "hold = [\"y\"]")));
 }
 
 // Promise: a drive that moves or loads is one that loads; holding alone is not. Its sets are those it acts

@@ -275,7 +275,8 @@ TEST(MeasuredTable, ReadsSignsBetweenThousandsAndPowersOfFortran) {
     for (const std::string rows :
          {"0;20\n1_200;1_049.5\n", "0;20\n1_200;1_049,5\n", "0\t20\n1_200\t1_049.5\n",
           "0,20\n1_200,1_049.5\n", "0;20\n\"1_200\";\"1049,5\"\n"}) {
-      std::string text = std::string("time [s]") + rows[1] + "T [degC]\n" + rows;
+      std::string text = "time [s]";
+      text.append(1, rows[1]).append("T [degC]\n").append(rows);
       for (std::size_t at = 0; (at = text.find('_')) != text.npos;) text.replace(at, 1, blank);
       Record read;
       ASSERT_NO_THROW(read = layouts::read(text)) << text;
