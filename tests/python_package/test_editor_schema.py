@@ -193,6 +193,7 @@ FAULTS = (unknown_key, wrong_type, other_unit, out_of_range, missing_key)
 # Faults that the readers alone can see (docs/do/editors.md).
 READERS_ALONE = re.compile(r"""
     missing_key:\ without\ (materials|contacts)\.\w+$            # tables that the deck names
+    | missing_key:\ without\ \.materials$                         # ... and their table
     | missing_key:\ without\ \.(record|platens|output|superposition|aggregates|bearings|sets|heat|coupling|inclusions)$  # for others
     | missing_key:\ without\ materials\.\w+\.(conductivity|specific_heat)$  # needed by what another stage does
     | missing_key:\ without\ heat\.boundaries\[\]\.faces$         # one of several keys is needed

@@ -264,8 +264,8 @@ class Cylinder(unittest.TestCase):
             with self.assertRaisesRegex(pyroclast.Error, told, msg=str(change)[:80]):
                 pyroclast.SolidSpecimen.read(file)
         deck["specimen"] = pyroclast.SolidSpecimen.read(self.place / "good.json")
-        for key, value, told in (("specimen.depth", "1 m", "has no meaning"), ("specimen.join", "1 um", "has no meaning"),
-                                 ("specimen.thickness", "1 m", "thickness"), ("blocks.count", 9, "no effect"),
+        for key, value, told in (("specimen.depth", "1 m", "has no meaning"), ("specimen.thickness", "1 m", "thickness"),
+                                 ("blocks.count", 9, "no effect"),
                                  ("superposition.matrix", "paste", "none is the matrix")):
             other = deck.copy()
             other[key] = value
