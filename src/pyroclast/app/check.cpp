@@ -103,9 +103,10 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
 void print_results(const Rehearsal& cost, bool has_fields) {
   constexpr double kKilo = 1e3, kMega = 1e6, kGiga = 1e9;
   const double bytes = std::max(kKilo, cost.history_bytes + cost.field_bytes);
+  const double frames = std::max(1.0, std::ceil(cost.forecast.frames));
   fmt::print(
       "results         about {:.2g} rows of history.csv{}; {} of disk\n", std::max(1.0, cost.forecast.looks),
-      has_fields ? fmt::format(", {:.2g} frames of the fields", std::max(1.0, cost.forecast.frames)) : "",
+      has_fields ? fmt::format(", {:.2g} frame{} of the fields", frames, frames == 1.0 ? "" : "s") : "",
       bytes < kMega   ? fmt::format("{:.0f} kB", bytes / kKilo)
       : bytes < kGiga ? fmt::format("{:.0f} MB", bytes / kMega)
                       : fmt::format("{:.3g} GB", bytes / kGiga));
