@@ -39,8 +39,9 @@ TEST(LawPoint, WhatALawRefusesNamesTheWordOfTheCommandLine) {
     stated_material(elastic(), {"K_n=-1 GPa/m", "K_s=4 GPa/m"});
     ADD_FAILURE();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "--set K_n=-1 GPa/m: K_n of the contact law \"elastic\" must be greater than 0");
+    EXPECT_STREQ(
+        error.what(),
+        "--set K_n=-1 GPa/m: K_n of the contact law \"elastic\" must be greater than 0; it is -1e+09");
   }
 }
 

@@ -171,7 +171,8 @@ inline ColumnChoice choice_of(const Layout& layout) {
 
 inline Record read(std::string_view text, const ColumnChoice& choice = {}) {
   const auto table = MeasuredTable::parse(text, "furnace.csv", 2);
-  const std::array<AskedColumn, 2> asked{{{"time", unit::time}, {"temperature", unit::temperature}}};
+  const std::array<AskedColumn, 2> asked{{{"time", unit::time, {{&meaning::time}}},
+                                          {"temperature", unit::temperature, {{&meaning::temperature}}}}};
   const auto columns = table.choose(choice, asked);
   const auto times = table.values(columns[0], unit::time);
   const auto temperatures = table.values(columns[1], unit::temperature);

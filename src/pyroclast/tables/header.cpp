@@ -47,15 +47,21 @@ std::string_view without_in(std::string_view text) {
   return text.starts_with("in ") ? without_blanks(text.substr(3)) : text;
 }
 
-/// Returns the brackets of a cell that stand in no others, the last first.
+/// Returns the brackets of a cell that stand in no others, the last first. A bracket ends where one of its
+/// own kind closes it: the unit of "u_n [m(]" is no unit.
 std::vector<Bracket> brackets_of(std::string_view cell) {
   std::vector<Bracket> all;
   std::size_t begin = 0;
   int depth = 0;
   for (std::size_t i = 0; i < cell.size(); ++i) {
-    if ((cell[i] == '[' || cell[i] == '(') && depth++ == 0) begin = i;
-    if ((cell[i] == ']' || cell[i] == ')') && depth > 0 && --depth == 0)
+    if (depth == 0 && (cell[i] == '[' || cell[i] == '(')) {
+      begin = i;
+      depth = 1;
+    } else if (depth > 0 && cell[i] == cell[begin]) {
+      ++depth;
+    } else if (depth > 0 && cell[i] == (cell[begin] == '[' ? ']' : ')') && --depth == 0) {
       all.push_back({begin, i + 1, cell[begin] == '[', without_in(cell.substr(begin + 1, i - begin - 1))});
+    }
   }
   std::ranges::reverse(all);
   return all;
