@@ -265,12 +265,11 @@ class CurrentFolder(FolderTest):
         for name in ("latex", "fc-list", "c++", "python3"):
             self.plant(name, "#!/bin/sh\necho $0 > {mark}\nexit 1\n", 0o755)
         self.plant("matplotlibrc", "text.usetex: True\nsavefig.dpi: 20\nfont.size: 20\nno_such_key: 1\n")
-        self.assertEqual(self.pictures(self.here), expected)
-        self.plant("matplotlibrc", "savefig.dpi: 20\n\xff\xfe")
         named = {name: ":" for name in ("PATH", "PYTHONPATH", "HDF5_PLUGIN_PATH", "HDF5_EXT_PREFIX", "CPATH")}
         named |= {"PATH": f":.:{os.environ['PATH']}", "MATPLOTLIBRC": "matplotlibrc", "MPLCONFIGDIR": ".",
                   "XDG_CONFIG_HOME": ".", "PYTHONUSERBASE": ".", "HDF5_DRIVER": "nothing"}
         self.assertEqual(self.pictures(self.here, **named), expected)
+        self.plant("matplotlibrc", "savefig.dpi: 20\n\xff\xfe")
         self.assertEqual(self.pictures(self.folder, MATPLOTLIBRC=str(self.here / "matplotlibrc")), expected)
 
     def test_the_compiler_takes_neither_headers_nor_programs_from_there(self):
