@@ -21,8 +21,8 @@ _PATIENCE = 2.0  # s from the first signal, after which another one ends a progr
 
 
 def load_libraries(is_alone: bool) -> None:
-    """Loads Matplotlib with its own settings, not those of a matplotlibrc: Matplotlib looks for one as it loads, and in
-    the current folder first.
+    """Loads Matplotlib with its own settings. Without this, Matplotlib would look for a matplotlibrc as it loads, in the
+    current folder first.
 
     is_alone: nothing else runs in this process or is started by it; then HDF5 loads no filters, which are code.
     """
@@ -75,9 +75,9 @@ def run_program(program: Callable[[], int], of: str = "error") -> int:
 
 @contextmanager
 def _ctrl_c_heard() -> Iterator[None]:
-    """Ctrl-C and SIGTERM raise KeyboardInterrupt once: the program removes what it has begun to write, and a second signal
-    does not disturb that, unless it comes later than _PATIENCE. `pyroclast` starts Python so that Ctrl-C ends it at
-    once while modules load.
+    """Makes the first Ctrl-C or SIGTERM raise KeyboardInterrupt, upon which the program removes its unfinished files. A
+    second signal ends the program at once, but only later than _PATIENCE. While modules load, Ctrl-C ends Python at
+    once, because `pyroclast` starts it so.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

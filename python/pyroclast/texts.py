@@ -2,10 +2,10 @@
 
 
 def seen(text: str, kept: str = "\n\t") -> str:
-    """With characters that would act unseen written out, such as \\x1b. kept: those of them that stay."""
+    """Returns a text in which characters that would act unseen are written out, such as \\x1b. kept: those that stay."""
     return "".join(c if c.isprintable() or c in kept else c.encode("unicode_escape").decode() for c in text)
 
 
 def seen_on_a_line(text: str) -> str:
-    """The same with line breaks and tabs written out too."""
+    """Returns a text as `seen` does, with line breaks and tabs written out too."""
     return seen(text, "")

@@ -202,7 +202,7 @@ class _Command:
 
 
 def _code_of_shell(words: Sequence[str]) -> str | None:
-    """What `sh -c` gets to run."""
+    """Returns the code that `sh -c` gets to run; None where there is no -c."""
     for word, code in zip(words, words[1:]):
         if not word.startswith("-"):
             break

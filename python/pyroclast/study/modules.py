@@ -36,7 +36,7 @@ class SourceFile:
 
 
 def hash_of_function(sources: Mapping[str, SourceFile], function: str) -> str:
-    """By which the function of a study is known, wherever its files lie."""
+    """Returns the hash of a study's function, which does not depend on where its files lie."""
     return hash_of([("function", function.encode()), *((name, source.text) for name, source in sources.items())])
 
 
@@ -168,7 +168,7 @@ def _is_module(entry: Path) -> bool:
 
 
 def _elsewhere(name: str, folder: Path) -> str | None:
-    """Where Python has a module of its own of a name, or an installed one; None without one."""
+    """Returns the place of the module of Python, or of the installed module, that has a name; None without one."""
     if name in sys.builtin_module_names or name in sys.stdlib_module_names:
         return "Python"
     first = 0 if sys.flags.safe_path else 1  # the folder of the script that runs

@@ -99,7 +99,9 @@ def _empty_folder() -> str:
 
 
 def _environment(job: Job) -> dict[str, str]:
-    """Python, where the command names a file of it, takes no compiled module that lies beside the file."""
+    """Returns the environment of a run. Where the command names a .py file, Python then takes no compiled module from a
+    `__pycache__`, unless its options or the command ignore the environment.
+    """
     is_python = any(file.endswith(".py") for file in job.files)
     return {**os.environ, "PYTHONPYCACHEPREFIX": _empty_folder()} if is_python else dict(os.environ)
 
