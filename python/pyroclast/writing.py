@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from .texts import seen_on_a_line
+
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
@@ -55,7 +57,12 @@ def refuse_link(path: Path) -> None:
 
 def shell_path(path: str | Path) -> str:
     """Returns a path as a shell takes it for a command that is to be given next: quoted, and no option where it begins
-    with a dash.
+    with a dash. Characters that a terminal does not show are written by their bytes, in quotes of bash: $'\\033'.
     """
     text = str(path)
-    return shlex.quote(f"./{text}" if text.startswith("-") else text)
+    text = f"./{text}" if text.startswith("-") else text
+    if seen_on_a_line(text) == text:
+        return shlex.quote(text)
+    plain = (c if seen_on_a_line(c) == c and c not in "'\\" else "".join(f"\\{byte:03o}" for byte in os.fsencode(c))
+             for c in text)
+    return f"$'{''.join(plain)}'"

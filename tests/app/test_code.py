@@ -375,11 +375,19 @@ class HashOfAStudy(CodeTest):
     def test_code_that_the_hash_cannot_cover_needs_a_word_each_time(self):
         self.write_script("w.sh")
         (self.folder / "bin").mkdir()
+        odd = self.folder / "odd.py"
+        odd.write_text("#!/usr/bin/python3 -E\nimport sys, pathlib\n"
+                       'pathlib.Path(sys.argv[1], "summary.json").write_text(\'{"y": 1.0}\')\n')
+        odd.chmod(0o755)
         for command, why in [
                 ("env PATH=bin:/usr/bin:/bin sh w.sh {folder}", "bin is a folder, and any file there may be code"),
                 ("sh -c 'cd . && ./w.sh {folder}'", "it goes to another folder by cd"),
                 ("sh -c './w*.sh {folder}'", "its shell makes words"),
-                (f"{self.PYTHON} -m unknown_module w.sh {{folder}}", "the module unknown_module")]:
+                (f"{self.PYTHON} -m unknown_module w.sh {{folder}}", "the module unknown_module"),
+                (f"{self.PYTHON} -I odd.py {{folder}}", "with -I, Python may take compiled modules"),
+                (f"env -i {self.PYTHON} odd.py {{folder}}", "with env, Python may not get the study's environment"),
+                (f"env PYTHONPYCACHEPREFIX= {self.PYTHON} odd.py {{folder}}", "it changes PYTHONPYCACHEPREFIX"),
+                ("./odd.py {folder}", "the first line of ./odd.py gives options")]:
             with self.subTest(command=command):
                 shutil.rmtree(self.folder / "study-study", ignore_errors=True)
                 self.write_command(command)

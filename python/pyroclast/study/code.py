@@ -20,13 +20,15 @@ from .modules import hash_of_function, modules_of_function, modules_of_script
 from .parameters import Parameter
 
 _PYTHON = re.compile(r"(?:python|pypy)[\d.]*")
-_IGNORES_ENVIRONMENT = re.compile(r"-[a-zA-Z]*E[a-zA-Z]*")
+_IGNORES_ENVIRONMENT = re.compile(r"-[a-zA-Z]*[EI][a-zA-Z]*")
+_DROPS_ENVIRONMENT = re.compile(r"-|-[a-zA-Z]*[iu].*|--ignore-environment|--unset.*")  # of `env`
 _SHELL = re.compile(r"(?:ba|da|z|k|c|tc)?sh")
 _ASSIGNS = re.compile(r"[A-Z_][A-Z0-9_]*=")
 _WRITES = re.compile(r"\d?>>?\s*[^\s;&|]+")  # a file that a shell writes
 _BETWEEN = re.compile(r"[\s;&|<>()`'\"=,:]+")  # in a word: what may stand between names of files
 _GOES_ELSEWHERE = ("cd", "pushd", "-C", "--directory", "--chdir")
 _SYSTEM = ("/usr/", "/bin/", "/sbin/", "/lib/", "/lib64/", "/dev/", "/proc/", "/sys/")
+_COMPILED = "Python may take compiled modules that lie beside others"
 _MOST_FORMS = 10000  # of a command, by the choices of its parameters
 
 
@@ -127,6 +129,9 @@ class _Command:
             program = Path(word).name
             if _PYTHON.fullmatch(program):
                 self._look_at_python(words[number + 1:])
+            options = itertools.takewhile(lambda left: left.startswith("-"), words[number + 1:])
+            if program == "env" and any(map(_DROPS_ENVIRONMENT.fullmatch, options)):
+                self._unknown.append(f"with {word}, Python may not get the study's environment, and {_COMPILED}")
             if _SHELL.fullmatch(program) and (code := _code_of_shell(words[number + 1:])) is not None:
                 self._look_at_shell(code)
             if word is code:
@@ -137,6 +142,8 @@ class _Command:
     def _look_at_piece(self, piece: str, is_assigned: bool) -> None:
         if not piece or "{" in piece:
             return
+        if piece == "PYTHONPYCACHEPREFIX":
+            self._unknown.append(f"it changes {piece}, and {_COMPILED}")
         if piece in _GOES_ELSEWHERE:
             self._unknown.append(f"it goes to another folder by {piece}, where its names may mean other files")
         file = self._find(piece)
@@ -163,7 +170,7 @@ class _Command:
                     self._unknown.append(f"the module {rest} does not lie in the current folder")
                 return
             elif _IGNORES_ENVIRONMENT.fullmatch(word):
-                self._unknown.append(f"with {word}, Python may take compiled modules that lie beside others")
+                self._unknown.append(f"with {word}, {_COMPILED}")
             elif not word.startswith("-"):
                 if (script := self._find(word)) is not None and script.is_dir():
                     self._take_modules(word, script / "__main__.py", script)
@@ -190,7 +197,11 @@ class _Command:
         if name in self._files or _is_of_system(file) or not file.is_file():
             return
         self._files[name] = file
-        if file.suffix == ".py" or _begins_with_python(file):
+        interpreter = _interpreter_of(file)
+        is_python = any("python" in word for word in interpreter)
+        if is_python and len(interpreter) > (2 if Path(interpreter[0]).name == "env" else 1):
+            self._unknown.append(f"the first line of {name} gives options, with which {_COMPILED}")
+        if file.suffix == ".py" or is_python:
             real = file.resolve()
             self._take_modules(name, real, real.parent)
 
@@ -243,7 +254,8 @@ def _is_of_system(file: Path) -> bool:
     return real.startswith(_SYSTEM) and not real.startswith("/usr/local/")
 
 
-def _begins_with_python(file: Path) -> bool:
+def _interpreter_of(file: Path) -> list[str]:
+    """Returns the words by which the first line of a script names its interpreter; none where it names none."""
     with open(file, "rb") as opened:
         first = opened.readline(200)
-    return first.startswith(b"#!") and b"python" in first
+    return first[2:].decode(errors="replace").split() if first.startswith(b"#!") else []
