@@ -13,6 +13,7 @@
 
 #include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/base/shown.hpp"
 
 namespace pyroclast {
@@ -42,13 +43,12 @@ void require_own(const fs::path& path, const char* mode) {
   struct stat is {};
   if (stat(path.c_str(), &is) != 0) return;
   if (is.st_uid == geteuid() && (is.st_mode & (S_IWGRP | S_IWOTH)) == 0) return;
-  throw Error(
-      fmt::format("{}: others than you may write there, so the list of allowed code is not trusted; it must "
-                  "be yours alone: "
-                  "look through the list, then {}chmod {} '{}'",
-                  path.string(),
-                  is.st_uid == geteuid() ? "" : fmt::format("chown {} '{}' and ", geteuid(), path.string()),
-                  mode, path.string()));
+  const std::string quoted = shell_path(path);
+  throw Error(fmt::format(
+      "{}: others than you may write there, so the list of allowed code is not trusted; it must "
+      "be yours alone: look through the list, then {}chmod {} {}",
+      path.string(), is.st_uid == geteuid() ? "" : fmt::format("chown {} {} and ", geteuid(), quoted), mode,
+      quoted));
 }
 
 /// Tells whether a list has the hash. Throws Error where others than the user may write the list or its

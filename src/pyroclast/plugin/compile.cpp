@@ -191,7 +191,7 @@ std::vector<std::string> command_of(const LawCompiler& compiler, const fs::path&
   std::vector<std::string> words{compiler.program};
   for (const auto& more : {flags_of(compiler.instructions), include_flags()})
     words.insert(words.end(), more.begin(), more.end());
-  // else a text that names its own file would hang on the folder
+  // else a text that names its own file would depend on the folder
   words.push_back(fmt::format("-fmacro-prefix-map={}=", (header.parent_path() / "").string()));
   return words;
 }
@@ -204,14 +204,14 @@ void attempt(const std::vector<std::string>& words, const fs::path& header, cons
   if (!run_program(words, messages, compiler.poll))
     throw Error(fmt::format("{}: {}; the compiler says:{}\nIt was run as: {}\nAll that it says: {}",
                             header.string(), what, essence(read_file(messages), header),
-                            fmt::join(words, " "), messages.string()));
+                            shell_command(words), messages.string()));
 }
 
 /// Returns what a program says. Throws Error where the program fails.
 std::string said_by(const std::vector<std::string>& words, const LawCompiler& compiler) {
   const fs::path messages = compiler.cache / "messages.txt";
   if (!run_program(words, messages, compiler.poll))
-    throw Error(fmt::format("{}: fails; see {}", fmt::join(words, " "), messages.string()));
+    throw Error(fmt::format("{}: fails; see {}", shell_command(words), messages.string()));
   return read_file(messages);
 }
 

@@ -99,7 +99,8 @@ RunVerdict verdict_of(const Json& summary) {
                                              : ""));
     }
     add_warnings(stage, verdict.doubts);
-    if (const std::string rise = rise_again(results); !rise.empty()) verdict.doubts.push_back(rise);
+    if (const std::string rise = rise_again(results); !rise.empty())
+      verdict.doubts.push_back(fmt::format("{}: {}", name, rise));
   }
   if (has_no_numbers(summary)) refuse(text_of(value_at(summary, "outcome")));
   add_warnings(summary, verdict.doubts);
