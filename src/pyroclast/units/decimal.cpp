@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/characters.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -22,10 +24,6 @@ constexpr int kMostDigits = 18;    ///< digits that 64 bits hold
 constexpr int kMostExponent = 60;  ///< largest exponent; beyond it nobody writes numbers
 /// Number of digits of a quotient: more than it takes to tell which double is nearest.
 constexpr int kQuotientDigits = 30;
-
-bool is_decimal_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// Multiplies a number; returns false where the product does not fit.
 bool multiply(Wide& number, Wide by) {
@@ -81,7 +79,7 @@ std::optional<Decimal> decimal_of(std::string_view number) {
   int kept = 0;
   bool behind_point = false;
   std::size_t i = 0;
-  for (; i < number.size() && (is_decimal_digit(number[i]) || number[i] == '.'); ++i) {
+  for (; i < number.size() && (is_digit(number[i]) || number[i] == '.'); ++i) {
     if (number[i] == '.') {
       behind_point = true;
       continue;
