@@ -74,5 +74,16 @@ class Counts(unittest.TestCase):
         self.assertEqual(lines_with(rf"\b{_NUMBER}k? lines (?:of|executed)\b|\b(?:is|are|has|have) {_NUMBER}k? lines\b"), [])
 
 
+class ObjectsOfTheMesh(unittest.TestCase):
+    def test_are_the_same_for_both_readers_of_frames(self):
+        def names(file: str, begin: str, end: str) -> set[str]:
+            text = (ROOT / file).read_text(encoding="utf-8")
+            return set(re.findall(r'"(\w+)"', text[text.index(begin):].partition(end)[0]))
+
+        program = names("src/pyroclast/setup/hdf5_reader.cpp", "kInMesh[]", "};")
+        self.assertGreater(len(program), 10)
+        self.assertEqual(program, names("python/pyroclast/files.py", "_IN_MESH = ", "))"))
+
+
 if __name__ == "__main__":
     unittest.main()
