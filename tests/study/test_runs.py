@@ -663,6 +663,16 @@ class OfDecks(StudyTest):
 
 
 class Lists(StudyTest):
+    def test_a_line_of_the_list_runs_no_other_script_than_the_one_that_was_hashed(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run("commands")
+        line = (study.setup.folder / "commands.txt").read_text().splitlines()[0]
+        self.model.write_text(f"{self.model.read_text()}\n# changed\n")
+        done = subprocess.run(line, shell=True, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"error: {self.model} has changed since the study began; start it again", done.stderr)
+        self.assertEqual(self.made(study), [])
+
     def test_a_list_of_commands_makes_what_the_program_does_not(self) -> None:
         for text in (self.of_command("plain"), self.of_function('kind = "lhs"\nsamples = 4', rest="")):
             study = self.study(text)

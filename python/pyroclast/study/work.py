@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import atexit
 import ctypes
 import datetime
 import errno
-import functools
 import json
 import math
 import os
@@ -14,7 +12,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -25,7 +22,7 @@ from ..errors import Error
 from ..writing import make_folder, refuse_link
 from .hashes import require_unchanged
 from .outputs import Output, read_summary
-from .start import FOLDER, python
+from .start import FOLDER, environment, python
 from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, RunResult, begun_file,
                     read_result, result_file, write_result)
 
@@ -90,22 +87,6 @@ class Job:
         return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
 
 
-@functools.cache
-def _empty_folder() -> str:
-    """A folder of this process alone."""
-    folder = tempfile.mkdtemp(prefix="pyroclast-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
-
-
-def _environment(job: Job) -> dict[str, str]:
-    """Returns the environment of a run. Where the command names a .py file, Python then takes no compiled module from a
-    `__pycache__`, unless its options or the command ignore the environment.
-    """
-    is_python = any(file.endswith(".py") for file in job.files)
-    return {**os.environ, "PYTHONPYCACHEPREFIX": _empty_folder()} if is_python else dict(os.environ)
-
-
 def _log_file(runs: Path, run: str) -> Path:
     """What a run prints, until it is over."""
     return runs / f"{run}.log"
@@ -135,7 +116,7 @@ class Attempt:
         with open(self._log, "ab") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                             start_new_session=True, preexec_fn=die_with_parent(os.getpid()),
-                                            env=_environment(job))
+                                            env=environment(job.files))
         self._asked: float | None = None
         self.asked_to_stop = self.is_late = False
 

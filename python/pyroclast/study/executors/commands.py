@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -9,13 +10,17 @@ from pathlib import Path
 
 from ...writing import make_folder, write_text
 from ..outputs import read_summary
+from ..start import python
 from ..store import RunResult
 from ..work import Job, collected
 
 
 @dataclass
 class Commands:
-    """Takes in the runs that are done, and writes a command line for each of the others, a line each."""
+    """Takes in the runs that are done, and writes a command line for each of the others, a line each.
+
+    A line runs nothing where a file that its command names has changed since the line was written.
+    """
 
     file: Path
     written: int = field(default=0, init=False)
@@ -32,6 +37,7 @@ class Commands:
                 finished(collected(job, runs))
             else:
                 make_folder(folder)
-                lines.append(shlex.join(job.line(folder)))
+                checked = python("pyroclast.study.checked", json.dumps(job.files)) if job.files else []
+                lines.append(shlex.join([*checked, *job.line(folder)]))
         write_text(self.file, "".join(f"{line}\n" for line in lines))
         self.written = len(lines)
