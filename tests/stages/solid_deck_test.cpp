@@ -22,7 +22,7 @@ namespace pyroclast {
 namespace {
 
 constexpr double kWidth = 0.06, kHeight = 0.09, kDepth = 0.04;  // m
-constexpr double kConductivity = 1.5, kCapacity = 2.2e6;
+constexpr double kConductivity = 1.5;
 
 const std::string kCuboid = R"(title = "solid"
 [specimen]
