@@ -15,7 +15,7 @@
 #include "pyroclast/simulation/exchange.hpp"
 #include "pyroclast/simulation/fields.hpp"
 #include "pyroclast/simulation/gauges.hpp"
-#include "pyroclast/stages/drive.hpp"
+#include "pyroclast/stages/opening_control.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast::app {
@@ -58,7 +58,7 @@ void print_fields() {
 void print_columns() {
   std::vector<ColumnInfo> infos{
       {"stage", "1", "number of the stage, from 1; 0 is the body before its first stage"}};
-  for (const auto& more : {possible_gauge_columns(), Exchange::column_infos(), Drive::control_columns()})
+  for (const auto& more : {possible_gauge_columns(), Exchange::column_infos(), OpeningControl::columns()})
     infos.insert(infos.end(), more.begin(), more.end());
   for (const ColumnInfo& info : infos) fmt::print("{:<26} {:<8} {}\n", info.name, info.unit, info.meaning);
 }

@@ -16,6 +16,8 @@ struct SetLoad {
   double pressure = 0.0;  ///< pressure on the faces of the set, Pa; positive against the body
   bool is_follower =
       false;  ///< true: the pressure stays normal to the faces as they move; false: as they were at the start
+
+  bool operator==(const SetLoad&) const = default;
 };
 
 /// Forces on named sets of gridpoints, which last until they are changed. Where sets overlap their forces add

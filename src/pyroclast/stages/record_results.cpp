@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -11,6 +12,8 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/expression.hpp"
+#include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/units/units.hpp"
 
 namespace pyroclast {
@@ -220,6 +223,21 @@ void RecordPeak::visit_state(StateVisitor& visitor, std::size_t records) {
 
 PeakRule rule_of_records(const Peak& so_far) {
   return {.lasting = kLastingShare * so_far.driven()};
+}
+
+BodyFigures figures_of(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const std::vector<int>& specimen = model.set("specimen");
+  double depth = model.thickness;
+  if (model.dimension() == 3) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const int g : specimen) {
+      low = std::min(low, model.place(g)[2]);
+      high = std::max(high, model.place(g)[2]);
+    }
+    depth = high - low;
+  }
+  return {depth, norm(simulation.motion().totals().total_weight(gridpoint_set(model, specimen)))};
 }
 
 void BodyFigures::visit_state(StateVisitor& visitor) {

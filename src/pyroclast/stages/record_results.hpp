@@ -77,6 +77,8 @@ struct BodyFigures {
   void visit_state(StateVisitor& visitor);
 };
 
+BodyFigures figures_of(const Simulation& simulation);
+
 /// Returns the record that a key names; none after an error, which lists the records.
 std::optional<RecordParameters> find_record(const Section& s, std::string_view key, Meaning meaning,
                                             const std::vector<RecordParameters>& records);
