@@ -45,7 +45,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS
     "libpyroclast ${same_version}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, \
 python3-h5py, python3-matplotlib, python3-scipy, python3-cmaes, python3-jinja2")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS
-    "libpyroclast-dev ${same_version}, g++, paraview, python3-tk, python3-pandas, python3-xarray, python3-openturns, \
+    "libpyroclast-dev ${same_version}, g++, paraview, python3-pandas, python3-xarray, python3-openturns, \
 python3-emcee")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "simulation of concrete under load and fire
  Pyroclast simulates how concrete breaks under load and fire, by the discrete

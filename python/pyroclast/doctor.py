@@ -11,8 +11,7 @@ from .programs import load_libraries
 _NEEDED = {"numpy": "figures", "h5py": "figures", "matplotlib": "figures", "scipy": "studies", "cmaes": "calibration",
            "jinja2": "pages of runs",
            "openturns": "Sobol' indices, polynomial chaos", "emcee": "posteriors", "pandas": "tables as DataFrames",
-           "xarray": "fields as xarray", "meshio": "meshes from and to other programs", "PIL": "labelled images",
-           "tkinter": "windows of watch"}
+           "xarray": "fields as xarray", "meshio": "meshes from and to other programs", "PIL": "labelled images"}
 
 
 def main() -> None:

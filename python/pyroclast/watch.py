@@ -3,9 +3,10 @@
     python3 -m pyroclast.watch RUN_DIR          until the run is over
     python3 -m pyroclast.watch RUN_DIR --once   what there is by now
 
-With a display it opens a window. Without one it prints the curve in plain characters, and keeps a picture up to date,
-RUN_DIR/figures/watch.png; who may not write there finds it at a place of their own, which is told. It only reads what
-the run writes: however it ends, the run goes on. Ends with 1 and one line on stderr when there is no run.
+It prints the curve in plain characters, and keeps a picture up to date, RUN_DIR/figures/watch.png; who may not write
+there finds it at a place of their own, which is told. With a display it also keeps the page of the run up to date,
+RUN_DIR/report.html, which loads itself anew until the run is over. It only reads what the run writes: however it ends,
+the run goes on. Ends with 1 and one line on stderr when there is no run.
 
 In a notebook:
 
@@ -34,7 +35,7 @@ import tempfile
 import textwrap
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,6 +53,7 @@ from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .programs import complain, run_program, say
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
+from .report import PAGE, write_page
 from .results import Frame, GrowingResults
 from .style import save
 from .textplot import curve, plain_label
@@ -66,10 +68,9 @@ _SIZE, _DPI = (9.0, 5.0), 110  # inches; dots per inch
 _LOOK = 0.2  # s between two looks whether the run is over
 _REFRESH = 1.0  # s between two drawings, at least
 _SHARE = 0.2  # of a processor's time that goes into drawing, at most
-_PICTURE_EVERY = 5.0  # s, at least, where the picture is not what is looked at
+_PICTURE_EVERY, _PAGE_EVERY = 5.0, 10.0  # s, at least
 _FIRST_CURVE, _CURVE_AFTER = 10.0, 0.5  # s; of the time watched until the last curve, where curves follow one another
 _CURVE_HEIGHT, _TERMINAL = 20, (80, 24)
-_LEFT_OPEN = 24 * 3600.0  # s: a window that nobody closes goes at last
 _END_OF_LOG = 8192  # bytes
 _NICENESS = 5
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS)
@@ -339,142 +340,115 @@ def _say_in(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#6a6a6a")
 
 
-class _Nothing:
-    """Shows nothing, but keeps the picture."""
+class _Kept:
+    """A file that is written anew now and then, in a share of a processor's time. What hinders this is told once."""
 
-    is_open = True
-
-    def __init__(self) -> None:
+    def __init__(self, what: str, every: float, write: Callable[[bool], None]):
+        """write: gets whether it is the last time."""
+        self._what, self._every, self._write = what, every, write
         self._due, self._told = 0.0, False
 
-    def show(self, watch: Watch, is_last: bool) -> None:
-        """Shows the run as it is."""
+    def keep(self, is_last: bool) -> None:
+        """Writes the file where it is time."""
         if time.monotonic() < self._due and not is_last:
             return
         begun = time.process_time()
         try:
-            asked = watch.picture
-            file = watch.save()
-            if file != asked and file != watch.folder / PICTURE and not self._told:
-                _tell(f"{watch.folder} may not be written; the picture is {file}")
-                self._told = True
-        except OSError as problem:
+            self._write(is_last)
+        except (Error, OSError) as problem:
             if not self._told:
-                _tell(f"no picture: {problem}")
+                _tell(f"no {self._what}: {problem}")
             self._told = True
-        self._due = time.monotonic() + max(_PICTURE_EVERY, (time.process_time() - begun) / _SHARE)
+        self._due = time.monotonic() + max(self._every, (time.process_time() - begun) / _SHARE)
 
-    def wait(self, seconds: float) -> None:
-        time.sleep(seconds)
 
-    def leave(self) -> None:
-        """The run is over."""
+class _Nothing:
+    """Shows nothing, but keeps the picture, and where it is asked for the page."""
+
+    def __init__(self, watch: Watch, has_page: bool):
+        self._watch, self._told = watch, False
+        self._kept = [_Kept("picture", _PICTURE_EVERY, self._save_picture)]
+        if has_page:
+            self._kept.append(_Kept("page", _PAGE_EVERY, self._write_page))
+            _tell(f"{watch.folder / PAGE} follows the run; open it in a browser")
+
+    def show(self, is_last: bool) -> None:
+        """Shows the run as it is."""
+        for kept in self._kept:
+            kept.keep(is_last)
+
+    def _save_picture(self, _is_last: bool) -> None:
+        asked = self._watch.picture
+        file = self._watch.save()
+        if file != asked and file != self._watch.folder / PICTURE and not self._told:
+            _tell(f"{self._watch.folder} may not be written; the picture is {file}")
+            self._told = True
+
+    def _write_page(self, is_last: bool) -> None:
+        write_page([self._watch.folder], reload_every=None if is_last else _PAGE_EVERY)
 
 
 class _Lines(_Nothing):
     """Prints a curve now and then, each below the last and in one piece: others may print between two."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, watch: Watch, has_page: bool):
+        super().__init__(watch, has_page)
         self._begun = time.monotonic()
         self._curve_due = self._begun + _FIRST_CURVE
 
-    def show(self, watch: Watch, is_last: bool) -> None:
+    def show(self, is_last: bool) -> None:
         now = time.monotonic()
         if now >= self._curve_due or is_last:
-            _print(["", *watch.text(shutil.get_terminal_size(_TERMINAL).columns - 1, _CURVE_HEIGHT), ""])
+            _print(["", *self._watch.text(shutil.get_terminal_size(_TERMINAL).columns - 1, _CURVE_HEIGHT), ""])
             self._curve_due = now + max(_FIRST_CURVE, _CURVE_AFTER * (now - self._begun))
-        super().show(watch, is_last)
+        super().show(is_last)
 
 
 class _Terminal(_Nothing):
     """Draws the curve anew where the last one stands. Nobody else may print there."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, watch: Watch, has_page: bool):
+        super().__init__(watch, has_page)
         self._lines = 0
         signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # beside a run it is in the background
 
-    def show(self, watch: Watch, is_last: bool) -> None:
+    def show(self, is_last: bool) -> None:
         size = shutil.get_terminal_size(_TERMINAL)
-        lines = watch.text(size.columns - 1, min(_CURVE_HEIGHT, size.lines - 1))
+        lines = self._watch.text(size.columns - 1, min(_CURVE_HEIGHT, size.lines - 1))
         back = f"\x1b[{self._lines}F\x1b[J" if self._lines else ""
         _print(lines, back)
         self._lines = len(lines)
-        super().show(watch, is_last)
+        super().show(is_last)
 
 
-class _Window:
-    """A window; closing it ends the watching."""
-
-    def __init__(self, name: str):
-        """Throws ImportError when there can be none."""
-        matplotlib.use("TkAgg")
-        from matplotlib import pyplot  # only now: it needs the display
-
-        with matplotlib.rc_context(style.STYLE | {"figure.raise_window": False}):
-            self._figure = pyplot.figure(name, figsize=_SIZE, dpi=_DPI)
-            self._figure.canvas.mpl_connect("close_event", self._close)
-            self._figure.show()
-        self.is_open = True
-
-    def _close(self, _event: object) -> None:
-        self.is_open = False
-
-    def show(self, watch: Watch, is_last: bool) -> None:
-        watch.draw(self._figure)
-        self._figure.canvas.draw_idle()
-        self.wait(_LOOK)
-        if is_last:
-            _Nothing().show(watch, is_last)
-
-    def wait(self, seconds: float) -> None:
-        if self.is_open:
-            self._figure.canvas.start_event_loop(seconds)
-
-    def leave(self) -> None:
-        """Stays until it is closed, and keeps nobody waiting who reads what is printed."""
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        for stream in (sys.stdout, sys.stderr):
-            os.dup2(nowhere, stream.fileno())
-        end = time.monotonic() + _LEFT_OPEN
-        while self.is_open and time.monotonic() < end:
-            self.wait(1.0)
+_SCREENS = {"terminal": _Terminal, "lines": _Lines, "nothing": _Nothing}
 
 
-SCREENS = ("window", "terminal", "lines", "nothing")
-
-
-def _screen(asked: str | None, watch: Watch) -> _Nothing | _Window:
-    """asked: one of SCREENS; without it, what there is."""
+def _screen(asked: str | None, has_page: bool | None, watch: Watch) -> _Nothing:
+    """asked: one of _SCREENS; without it, what there is. has_page: None: where there is a display."""
     has_terminal = sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
-    if asked == "window" or asked is None and os.environ.get("DISPLAY"):
-        try:
-            return _Window(str(watch.folder))
-        except ImportError as problem:
-            picture = watch.picture or watch.folder / PICTURE
-            _tell(f"no window ({' '.join(str(problem).split())}); the picture is {picture}")
-    elif asked == "nothing":
-        return _Nothing()
-    return _Terminal() if has_terminal and asked in (None, "terminal") else _Lines()
+    if asked is None or asked == "terminal" and not has_terminal:
+        asked = "terminal" if has_terminal else "lines"
+    if has_page is None:
+        has_page = any(map(os.environ.get, ("DISPLAY", "WAYLAND_DISPLAY")))
+    return _SCREENS[asked](watch, has_page)
 
 
-def follow(watch: Watch, screen: _Nothing | _Window) -> None:
-    """Shows the run until it is over or the screen is closed."""
-    is_new, is_last = True, False
-    while screen.is_open:
+def follow(watch: Watch, screen: _Nothing) -> None:
+    """Shows the run until it is over."""
+    is_new = True
+    while True:
         begun = time.process_time()
         is_last = not watch.is_running
         is_new = watch.update() or is_new
         if is_new or is_last:
-            screen.show(watch, is_last)
+            screen.show(is_last)
         if is_last:
-            screen.leave()
             return
         is_new = False
         due = time.monotonic() + max(_REFRESH, (time.process_time() - begun) / _SHARE)
-        while screen.is_open and watch.is_running and time.monotonic() < due:
-            screen.wait(_LOOK)
+        while watch.is_running and time.monotonic() < due:
+            time.sleep(_LOOK)
 
 
 def _once(watch: Watch) -> None:
@@ -508,9 +482,11 @@ def parser() -> argparse.ArgumentParser:
                                      description="Shows a run while another process computes it.")
     parser.add_argument("folder", type=Path, metavar="RUN", help="folder of a run")
     parser.add_argument("--once", action="store_true", help="show the present state, and stop")
-    parser.add_argument("--on", choices=SCREENS,
-                        help="a window; the terminal, in place; lines, one curve below the other; or nothing "
+    parser.add_argument("--on", choices=_SCREENS,
+                        help="the terminal, in place; lines, one curve below the other; or nothing "
                              f"but {PICTURE} in the folder (default: the first of these that works here)")
+    parser.add_argument("--page", action=argparse.BooleanOptionalAction,
+                        help=f"keep {PAGE} in the folder up to date, for a browser (default: where there is a display)")
     parser.add_argument("--out", type=Path, metavar="FILE",
                         help=f"file for the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
     return parser
@@ -533,7 +509,7 @@ def _show(arguments: Sequence[str] | None) -> int:
             _once(watch)
         else:
             os.nice(_NICENESS)
-            follow(watch, _screen(asked.on, watch))
+            follow(watch, _screen(asked.on, asked.page, watch))
     return 0
 
 

@@ -3,11 +3,13 @@
 SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
 """
 
+import fcntl
 import json
 import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -49,6 +51,31 @@ class EveryCase(PageOfRun):
                 if run.name in ("compression", "cyclic"):  # the first is brushed across, the other goes back
                     self.assertEqual(browser.run("return pyroclast.curve.goesOneWay"), run.name == "compression")
                 self.assert_silent()
+
+
+class OfARunThatGoesOn(PageOfRun):
+    def test_watch_keeps_the_page_of_a_run_and_the_page_loads_itself_anew_until_the_end(self):
+        run = self.copy(RUNS / "compression", "summary.json")
+        display = {**os.environ, "DISPLAY": ":7"}
+        with open(run / "lock", "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            lock.write(f"{os.getpid()}\n")
+            lock.flush()
+            watcher = subprocess.Popen([sys.executable, "-m", "pyroclast.watch", str(run)], env=display,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            self.addCleanup(watcher.kill)
+            self.assertEqual(watcher.stderr.readline(),
+                             f"pyroclast watch: {run}/report.html follows the run; open it in a browser\n")
+            while not (run / "report.html").exists() and watcher.poll() is None:
+                time.sleep(0.05)
+            browser.open(run / "report.html")
+            reloads = "return document.querySelector('meta[http-equiv=refresh]')?.content ?? null"
+            self.assertEqual(browser.run(reloads), "10")
+            shutil.copy(RUNS / "compression/summary.json", run)
+        self.assertEqual((watcher.communicate()[1], watcher.returncode), ("", 0))
+        browser.wait("return document.querySelector('meta[http-equiv=refresh]') === null && "
+                     "document.querySelector('header .faint').textContent.startsWith('the stress fell')")
+        self.assert_silent()
 
 
 class OneRun(PageOfRun):

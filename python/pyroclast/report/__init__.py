@@ -17,9 +17,11 @@ PAGE = "report.html"
 _TRIES = 3  # where a run begins anew in a folder that is read
 
 
-def write_page(folders: Sequence[Path], out: Path | None = None) -> Path:
+def write_page(folders: Sequence[Path], out: Path | None = None, reload_every: float | None = None) -> Path:
     """Writes the page of a run into its folder, or to `out`; of several runs one that compares them; of a folder with
     folders of runs an index. Returns its path.
+
+    reload_every: seconds after which the page of a run loads itself anew; None: never.
 
     Raises Error where a folder holds no run, several runs have no `out`, or a run begins anew while it is read.
     """
@@ -31,16 +33,16 @@ def write_page(folders: Sequence[Path], out: Path | None = None) -> Path:
     if len(folders) > 1 and out is None:
         raise Error("report: the page of several runs needs --out FILE")
     path = out or folders[0] / PAGE
-    write_text(path, _page_of_runs(folders))
+    write_text(path, _page_of_runs(folders, reload_every))
     return path
 
 
-def _page_of_runs(folders: Sequence[Path]) -> str:
+def _page_of_runs(folders: Sequence[Path], reload_every: float | None) -> str:
     for _ in range(_TRIES):
         begun = [_begun(folder) for folder in folders]
         try:
             runs = [read_at_once(folder) for folder in folders]
-            text = run_page(runs[0]) if len(runs) == 1 else compare_page(runs)
+            text = run_page(runs[0], reload_every) if len(runs) == 1 else compare_page(runs)
         except Error:
             if begun == [_begun(folder) for folder in folders]:
                 raise

@@ -64,14 +64,14 @@ def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
     return RunData(data, notes + body.notes)
 
 
-def run_page(run: Results) -> str:
-    """All of the page."""
+def run_page(run: Results, reload_every: float | None = None) -> str:
+    """Returns all of the page. reload_every: seconds after which it loads itself anew; None: never."""
     data, notes = run_data(run)
     reasons = verdict(run)
     facts = [*map(_without_formulas, style.facts_of(run)), *_temperature(run), _tested(run)]
     body = data["body"]
     data["properties"] = _properties(run)
-    return page("run.html", _SCRIPTS, data, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
+    return page("run.html", _SCRIPTS, data, reload_every=reload_every, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
                 cards=_cards(run, data), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,31 +22,23 @@ constexpr const char* kModule = "pyroclast.watch";
 /// Longest wait for the last picture, s.
 constexpr double kLongestFarewell = 60.0;
 
-bool there_is_a_display() {
-  const char* display = std::getenv("DISPLAY");
-  return display != nullptr && *display != '\0';
-}
-
 }  // namespace
 
 Watcher::Watcher(std::filesystem::path folder, RunLog& log)
-    : folder_(std::move(folder)), log_(log), has_window_(there_is_a_display()) {
+    : folder_(std::move(folder)), log_(log) {
   // where every look is told on the terminal, curves can only follow one another
   const bool has_terminal = isatty(STDOUT_FILENO) != 0 && log_.speech() == Speech::usual;
-  const char* on = has_window_                      ? "window"
-                   : log_.speech() == Speech::quiet ? "nothing"
-                   : has_terminal                   ? "terminal"
-                                                    : "lines";
+  const char* on = log_.speech() == Speech::quiet ? "nothing" : has_terminal ? "terminal" : "lines";
   process_ = start_package(kModule, {folder_.string(), "--on", on},
                            {.hears_ctrl_c = false, .prints = log_.speech() != Speech::quiet});
   if (!process_)
     say_aside(fmt::format("warning: nobody watches, and the run goes on: {}\n", no_python()));
-  else if (!has_window_ && has_terminal)
+  else if (has_terminal)
     log_.keep_progress_off_screen(true);
 }
 
 Watcher::~Watcher() {
-  if (process_ && !has_window_) wait_for(*process_, [] { return true; });
+  if (process_) wait_for(*process_, [] { return true; });
 }
 
 void Watcher::look_after() {
@@ -56,7 +47,7 @@ void Watcher::look_after() {
 }
 
 void Watcher::see_out(const std::function<bool()>& skip) {
-  if (!process_ || has_window_) return;
+  if (!process_) return;
   const auto begun = Clock::now();
   bool was_long = false;
   const int status = wait_for(

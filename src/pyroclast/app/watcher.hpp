@@ -13,20 +13,19 @@ namespace pyroclast::app {
 /// Process that shows a run while it is computed, from the run's folder. Whatever becomes of this process,
 /// the run goes on.
 ///
-/// With a display the process opens a window, which may outlive the run. Without a display it draws a curve
-/// in the terminal; the run's lines of progress then go to `run.log` alone, as long as the process lives.
+/// The process draws a curve in the terminal; the run's lines of progress then go to `run.log` alone, as long
+/// as the process lives.
 class Watcher {
  public:
   /// \param log  log of the run, kept by reference
   Watcher(std::filesystem::path folder, RunLog& log);
-  /// Ends the process unless it has a window.
   ~Watcher();
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
   /// Notices that the process has ended, and reports an end that was not intended.
   void look_after();
-  /// Waits, where the process prints, until it has shown the run that is over.
+  /// Waits until the process has shown the run that is over.
   /// \param skip  asked during the wait; true ends the process
   void see_out(const std::function<bool()>& skip);
 
@@ -35,7 +34,6 @@ class Watcher {
 
   std::filesystem::path folder_;
   RunLog& log_;
-  bool has_window_;
   std::optional<pid_t> process_;  ///< id of the process as long as it lives
 };
 
