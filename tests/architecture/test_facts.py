@@ -45,6 +45,20 @@ class Modules(unittest.TestCase):
         self.assertEqual(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE), MODULES)
 
 
+class Tests(unittest.TestCase):
+    def test_their_page_has_each_folder_and_each_label(self):
+        text = (ROOT / "tests/README.md").read_text(encoding="utf-8")
+        kinds, folders = (re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for table in re.split(r"\|(?:---\|)+\n", text)[1:])
+        told = {name for row in folders for name in re.findall(r"`(\w+)`", row)}
+        self.assertEqual(told, {path.name for path in (ROOT / "tests").iterdir() if path.is_dir()} - {"__pycache__"})
+        lists = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("CMakeLists.txt"))
+        labels = {label for found in re.findall(r'LABELS\s+"([^"$]*)"', lists) for label in found.split(";")}
+        of_folders = {label for row in re.findall(r"^\| `.*?\| (`.*?) \|", text, re.MULTILINE)
+                      for label in re.findall(r"`(\w+)`", row)}
+        of_kinds = {name.strip("`") for name in kinds}
+        self.assertLessEqual(labels, told | of_folders | of_kinds)
+
+
 class Tables(unittest.TestCase):
     def test_each_row_of_results_has_its_physics_version(self):
         for table in tables():
