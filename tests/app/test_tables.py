@@ -146,19 +146,35 @@ class NamesOfColumns(Tables):
 
 class RecordsOfLoggers(Tables):
     def test_what_a_record_looks_like_is_told_with_a_remedy_that_keeps_it(self):
-        midnight = "time;T [degC]\n23:50:00;20\n23:55:00;120\n00:00:00;220\n00:05:00;320\n00:10:00;420\n"
+        midnight = "t [s];T [degC]\n86000;20\n86300;120\n200;220\n500;320\n900;420\n"
         twice = "t [s];T [degC]\n0;20\n60;30\n1300;40\n0;20\n60;30\n1300;40\n"
         for text, parts, never in (
                 (midnight, ("from line 3 to line 4", "the clock passes midnight", "since the start"), "sort"),
                 (twice, ("from line 4 to line 5", "the record begins again there"), "sort"),
                 ('t [s],T [degC]\n0,20\n600,220\n"1,200",420\n', ('record.csv:4: "1,200" may be 1.200',), "sed"),
                 ("t [s],T [degC]\n1700000000,20\n1700001300,420\n", ("it counts from a date",), "sort"),
-                ("time,T [degC]\n10:00:00,20\n10:30:00,420\n", ("times count from the start of heating",), "sort"),
+                ("t [min],T [degC]\n600,20\n630,420\n",
+                 ("is given from 36000 to 37800 s (table file record.csv)", 'write start = "first row" beside csv'), "sort"),
+                ("time,T [degC]\n10:14:05,20\n10:14:15,420\n",
+                 ("is given from 0 to 10 s (table file record.csv, times since 10:14:05)",), "start ="),
                 ("t [s],Temperature rise [degC]\n0,0\n1300,420\n", ("add the temperature at the start",), "sort")):
             with self.subTest(text):
                 done = self.record(text)
                 self.refused(done, "heat.boundaries[0].temperature", *parts)
                 self.assertNotIn(never, done.stderr)
+
+    def test_times_of_a_calendar_and_of_a_clock_count_from_the_first_row_or_a_stated_start(self):
+        for first, last, start in (("2026-03-02T10:14:05", "2026-03-02T10:44:05", ""),
+                                   ("2026-03-02 23:50:00+01:00", "2026-03-03 00:20:00+01:00", ""),
+                                   ("02.03.2026 23:50:00", "03.03.2026 00:20:00", ""),
+                                   ("10:14:05", "10:44:05", ""), ("23:50:00", "00:20:00", ""),
+                                   ("10:14:05", "10:44:05", ', start = "10:14:15"'),
+                                   ("2026-03-02T10:14:05", "2026-03-02T10:44:05", ', start = "2026-03-02T10:14:05"')):
+            with self.subTest(first, start=start):
+                boundary = FACE.format('{{ csv = "record.csv"' + start + " }}")
+                done = self.record(f"Zeit;Ofen 1 [°C]\n{first};20\n{last};420\n", boundary)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("20 to 289 degC" if "10:14:15" in start else "20 to 287 degC", done.stdout)
 
     def test_thousands_and_powers_of_fortran_are_read(self):
         for text in ("t [s];T [degC]\n0;20\n1 200;420\n", "t [s];T [degC]\n0;20\n1\u202f200;420\n",
@@ -229,14 +245,27 @@ class UnitsOfReferences(Tables):
         done = self.check(self.deck, press_csv="strain,force\n0,0\n1e-3,20\n")
         self.refused(done, 'column "force" is the force by its name, but stands in the place of the stress')
 
-    def test_a_clock_past_midnight_is_refused_in_a_reference_too(self):
+    def test_times_of_a_clock_are_read_in_a_reference_too(self):
         (self.folder / "one.json").write_text(json.dumps(CELL))
         deck = RECORD.format(boundary=FACE.format('"400 degC"'), initial="")
         deck += '\n[[output.references]]\nfile = "a.csv"\nof = "temperature"\n'
-        done = self.check(deck, a_csv="time,T [degC]\n23:50:00,20\n00:00:00,120\n00:10:00,200\n")
-        self.refused(done, "output.references[0].file", "the clock passes midnight")
+        midnight = "time,T [degC]\n23:50:00,20\n00:00:00,120\n00:10:00,200\n"
+        for start, parts in (("", ("times of a.csv count from its first row, 23:50:00", 'start = "0:00:00"')),
+                             ('start = "first row"\n', ()), ('start = "23:55:00"\n', ())):
+            done = self.check(deck + start, a_csv=midnight)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("count from its first row" in done.stdout + done.stderr, bool(parts))
+            for part in parts:
+                self.assertIn(part, done.stdout + done.stderr)
+        self.refused(self.check(deck + 'start = "1:00:00"\n', a_csv=midnight), "output.references[0].file",
+                     'start = "1:00:00" comes after the last time, "00:10:00"')
         done = self.check(deck, a_csv="T [degC],time\n20,00:00:00\n120,00:10:00\n200,00:20:00\n")
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("first row", done.stdout + done.stderr)
+
+    def test_a_start_without_times_has_no_meaning(self):
+        done = self.check(self.deck + 'start = "first row"\n', press_csv="strain,stress_MPa\n0,0\n1e-3,20\n")
+        self.refused(done, "output.references[0].start", 'has no meaning: "strain" is no time')
 
 
 if __name__ == "__main__":

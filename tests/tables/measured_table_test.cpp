@@ -197,10 +197,11 @@ TEST(MeasuredTable, ShowsBothReadingsOfATimeOfTwoParts) {
             refusal("time [min],T [degC]\n00:00:00,20\n00:12:30,800\n"));
 }
 
-TEST(MeasuredTable, RefusesDates) {
-  expect_in("furnace.csv:2: \"01/02/2024\" in column \"time\" is a date, of which the order of day and month",
+TEST(MeasuredTable, RefusesDatesWithoutATime) {
+  expect_in("furnace.csv:2: \"01/02/2024\" in column \"time\" is a date without a time of the day",
             refusal("time [s],T [degC]\n01/02/2024,20\n02/02/2024,800\n"));
-  expect_in("is a date", refusal("time [s];T [degC]\n01.02.2024 12:00:00;20\n01.02.2024 12:30:00;800\n"));
+  expect_in("furnace.csv:3: \"2024-02-02T25:00\" in column \"time\" is a date, and no time of the day",
+            refusal("time,T [degC]\n2024-02-02T23:00,20\n2024-02-02T25:00,800\n"));
 }
 
 /// Record whose times are these, with temperatures that say their places.
@@ -227,11 +228,10 @@ TEST(MeasuredTable, NamesTheLinesOfTimesThatDoNotAscend) {
        ":4: the time (column \"time\") falls from line 3 to line 4; it must ascend: "
        "line 3 or line 4 stands in a wrong place"},
       {"time [s]", {"90", "60", "30", "0"}, "it descends throughout: write the lines in the reverse order"},
-      {"time",
-       {"23:50:00", "23:55:00", "00:00:00", "00:05:00"},
-       ":4: the time (column \"time\") falls from line 3 to "
-       "line 4; it must ascend: the clock passes midnight"},
-      {"time [hh:mm]", {"10:00", "16:00", "22:00", "04:00", "11:00"}, "the clock passes midnight"},
+      {"time [h:mm:ss]",
+       {"11:50:00", "12:00:00", "12:50:00", "01:00:00"},
+       "the clock begins anew after 12 h there; write times since the start of heating: add 12 h from line "
+       "5"},
       {"time [h]", {"23.5", "23.9", "0.3", "0.7"}, "the clock passes midnight"},
       {"time [s]",
        {"86200", "86300", "0", "100"},
@@ -265,7 +265,111 @@ TEST(MeasuredTable, RefusesTimesSinceAYear) {
   expect_in(
       "furnace.csv:2: the time (column \"time\") begins at 1700000000 s, 53.9 years: it counts from a date",
       text);
-  expect_in("subtract the time of the start from all", text);
+  expect_in("write start = \"first row\" beside the file's name, or the time of the start", text);
+}
+
+/// Times of a record that a deck reads with a start, or without.
+std::vector<double> seconds(const std::string& header, const std::vector<std::string>& times,
+                            const std::string& start = "") {
+  ColumnChoice choice{"furnace.csv", {}, {}};
+  choice.start = start;
+  std::vector<double> result;
+  for (const auto& [time, temperature] : layouts::read(record_of(header, times), choice))
+    result.push_back(time);
+  return result;
+}
+
+// Promise: dates with times and times of the day are read as times since the first row, however they are
+// written.
+TEST(MeasuredTable, ReadsStampsAsTimesSinceTheFirstRow) {
+  struct Case {
+    std::string header;
+    std::vector<std::string> times;
+    double last;
+  };
+  const Case cases[] = {
+      {"Zeit", {"2026-03-02T10:14:05", "2026-03-02T10:14:20", "2026-03-02T10:44:05"}, 1800.0},
+      {"Zeit", {"2026-03-02 10:14:05", "2026-03-02 10:14:20", "2026-03-02 10:44:05"}, 1800.0},
+      {"Zeit [s]", {"2026-03-02T10:14:05", "2026-03-02T10:44:05"}, 1800.0},
+      {"Time (UTC)", {"2026-03-02T10:14:05Z", "2026-03-02T10:14:05.5Z"}, 0.5},
+      {"Time [local time]", {"2026-03-02T10:14:05,25", "2026-03-02T10:14:05,75"}, 0.5},
+      {"timestamp", {"2026-03-29T01:59:59+01:00", "2026-03-29T03:00:01+02:00"}, 2.0},
+      {"timestamp", {"2026-03-29 01:59:59 -0130", "2026-03-29 03:30:09 +0000"}, 10.0},
+      {"DateTime", {"20260302T235955", "20260303T000005"}, 10.0},
+      {"Date/Time", {"2026/12/31 23:59:50", "2027/01/01 00:00:20"}, 30.0},
+      {"Zeitstempel", {"28.02.2028 23:59:59", "01.03.2028 00:00:01"}, 86402.0},
+      {"Datum/Uhrzeit", {"31.12.26, 23:59", "01.01.27, 00:01"}, 120.0},
+      {"t", {"02/03/2026 10:14:05", "02/03/2026 10:14:35"}, 30.0},
+      {"t", {"2/3/26 10:14:05 AM", "2/3/26 12:14:05 PM"}, 7200.0},
+      {"t", {"02/13/2026 23:59:00", "02/14/2026 00:01:00"}, 120.0},
+      {"t [dd/mm/yyyy hh:mm:ss]", {"02/03/2026 23:59:00", "03/03/2026 00:01:00"}, 120.0},
+      {"t [MM/dd/yyyy HH:mm]", {"02/28/2026 23:59", "03/01/2026 00:01"}, 120.0},
+      {"Uhrzeit", {"10:14:05", "10:14:20", "10:44:05"}, 1800.0},
+      {"Uhrzeit", {"10:14:05.125", "10:14:05.375"}, 0.25},
+      {"time [hh:mm]", {"10:00", "16:00", "22:00", "04:00", "11:00"}, 90000.0},
+      {"time", {"23:50:00", "23:55:00", "00:00:00", "00:05:00"}, 900.0},
+      {"time", {"00:50:00", "12:50:00", "00:50:00"}, 86400.0},
+      {"time", {"11:59:58 PM", "12:00:08 AM"}, 10.0},
+      {"time", {"25:00:00", "26:00:00"}, 93600.0},  // no clock shows 25
+      {"time", {"00:00:15", "00:00:45"}, 45.0},     // rather since a start
+      {"time [mm:ss]", {"75:10", "80:10"}, 4810.0}};
+  for (const auto& [header, times, last] : cases) {
+    std::vector<double> read;
+    ASSERT_NO_THROW(read = seconds(header, times)) << header << times[0];
+    EXPECT_EQ(read.back(), last) << header << times[0];
+  }
+}
+
+// Promise: a deck states which time of a record counts as 0.
+TEST(MeasuredTable, CountsTimesFromTheStartThatADeckStates) {
+  using Times = std::vector<double>;
+  EXPECT_EQ(seconds("time", {"10:14:05", "10:14:20"}, "10:14:00"), (Times{5.0, 20.0}));
+  EXPECT_EQ(seconds("time", {"10:14:05", "10:14:20"}, "10:14:06"), (Times{-1.0, 14.0}));
+  EXPECT_EQ(seconds("time", {"10:14:05", "10:14:20"}, "0:00:00"), (Times{36845.0, 36860.0}));
+  EXPECT_EQ(seconds("time", {"00:00:15", "00:00:45"}, "first row"), (Times{0.0, 30.0}));
+  EXPECT_EQ(seconds("time", {"23:59:00", "00:01:00"}, "00:00:00"), (Times{-60.0, 60.0}));
+  EXPECT_EQ(seconds("time", {"00:01:00", "00:02:00"}, "23:59:00"), (Times{120.0, 180.0}));
+  EXPECT_EQ(seconds("time", {"2026-03-02T23:59:00", "2026-03-03T00:01:00"}, "2026-03-03T00:00:30"),
+            (Times{-90.0, 30.0}));
+  EXPECT_EQ(seconds("time [min]", {"5", "35"}, "300 s"), (Times{0.0, 1800.0}));
+  EXPECT_EQ(seconds("time [s]", {"1700000000", "1700000060"}, "first row"), (Times{0.0, 60.0}));
+  const auto told = [](const std::string& header, const std::vector<std::string>& times,
+                       const std::string& start) { return message([&] { seconds(header, times, start); }); };
+  expect_in("start = \"10:14\" is not written as the times of column \"time\"; write it like \"10:14:05\"",
+            told("time", {"10:14:05", "10:14:20"}, "10:14"));
+  expect_in("start = \"10:14:05\" is not written as the times",
+            told("time", {"2026-03-02T10:14:05", "2026-03-02T10:14:20"}, "10:14:05"));
+  expect_in("start = \"11:00:00\" comes after the last time, \"10:14:20\" in column \"time\"",
+            told("time", {"10:14:05", "10:14:20"}, "11:00:00"));
+  expect_in("write \"first row\", or a time such as \"5 min\"", told("time [min]", {"5", "35"}, "soon"));
+}
+
+// Promise: of two readings of a date none is chosen, and a column holds times of one kind.
+TEST(MeasuredTable, RefusesStampsThatAreNotCertain) {
+  const std::string order = refusal(record_of("t", {"02/03/2026 23:59:00", "03/03/2026 00:01:00"}));
+  expect_in("furnace.csv:3: \"03/03/2026 00:01:00\" in column \"t\" is a date, of which the order", order);
+  expect_in("it is 1 or 28 days after \"02/03/2026 23:59:00\"", order);
+  expect_in("\"dd/mm/yyyy hh:mm:ss\" or \"mm/dd/yyyy hh:mm:ss\", above it or in `units`", order);
+  for (const auto& [first, second] :
+       {std::pair("2026-03-02T10:14:05", "10:14:20"), std::pair("2026-03-02T10:14:05", "02.03.2026 10:14:20"),
+        std::pair("2026-03-02T10:14:05", "2026-03-02T10:14:20Z"), std::pair("10:14:05 AM", "10:14:20")})
+    expect_in(fmt::format("furnace.csv:3: \"{}\" in column \"t\" is written otherwise than \"{}\" in line 2",
+                          second, first),
+              refusal(record_of("t", {first, second})));
+  expect_in("furnace.csv:3: \"2026-02-30T10:00\" in column \"t\" is no day of the calendar",
+            refusal(record_of("t", {"2026-02-28T10:00", "2026-02-30T10:00"})));
+  expect_in("\"13:00:00 PM\" in column \"t\" is no",
+            refusal(record_of("t", {"11:00:00 AM", "13:00:00 PM", "14:00:00 PM"})));
+}
+
+// Promise: a date beside a clock in a column of its own is passed over, however cells are separated.
+TEST(MeasuredTable, PassesOverDatesBesideAClock) {
+  const Record two{{0.0, 20.0}, {900.0, 800.0}};
+  for (const std::string text : {"Datum;Uhrzeit;T [°C]\n02.03.2026;23:50:00;20\n03.03.2026;00:05:00;800\n",
+                                 "Date,Time,T [degC]\n2026-03-02,10:14:05,20\n2026-03-02,10:29:05,800\n",
+                                 "Date Time T/degC\n2026-03-02 10:14:05 20\n2026-03-02 10:29:05 800\n",
+                                 "Time,T [degC]\n2026-03-02 10:14:05,20\n2026-03-02 10:29:05,800\n"})
+    expect_same(layouts::read(text), two, text);
 }
 
 // Promise: blanks and apostrophes between thousands, and Fortran's powers, are read.

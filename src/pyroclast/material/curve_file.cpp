@@ -1,6 +1,7 @@
 #include "pyroclast/material/curve_file.hpp"
 
 #include <array>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -19,9 +20,11 @@ Curve curve_of_table(const MeasuredTable& table, const ColumnChoice& choice, con
   auto x = table.values(columns[0], abscissa);
   auto y = table.values(columns[1], value);
   require_ascending(table, columns[0], x, abscissa.name, abscissa);
+  const std::string start = is_of_time ? table.start_of(columns[0]) : "";
   try {
     return Curve::table(std::move(x), std::move(y), axis)
-        .described_as(fmt::format("table file {}", table.path().filename().string()));
+        .described_as(fmt::format("table file {}{}", table.path().filename().string(),
+                                  start.empty() ? "" : fmt::format(", times since {}", start)));
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", table.path().string(), error.what()));
   }

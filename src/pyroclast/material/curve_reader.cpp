@@ -184,7 +184,8 @@ std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& u
 std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& unit) const {
   const std::string file =
       forms.text("csv", "file beside the deck with a [measured table](measured-tables.md)");
-  const ColumnChoice choice = read_column_choice(forms, file, kCurveColumns, kCurveColumns);
+  ColumnChoice choice = read_column_choice(forms, file, kCurveColumns, kCurveColumns);
+  if (axis_ == time_axis()) choice.start = read_start(forms);
   if (file.empty() || !forms.ok()) return std::nullopt;
   forms.names_file("csv", folder_ / file);
   return try_at(forms, "csv", [&] {
@@ -254,12 +255,16 @@ std::optional<Curve> CurveReader::read_ramp(const Section& forms, const Unit& un
 bool CurveReader::covers(const Section& section, std::string_view key, const Curve& curve) const {
   const Interval given = curve.range();
   if (curve.holds(needed_)) return true;
+  const bool is_of_time = axis_ == time_axis();
   section.error(
-      key, fmt::format("is given from {} to {} {}, but the run needs it from {} to {} {}; curves are not "
+      key, fmt::format("is given from {} to {} {}{}, but the run needs it from {} to {} {}; curves are not "
                        "extrapolated{}",
-                       given.lower, given.upper, axis_.unit, needed_.lower, needed_.upper, axis_.unit,
-                       axis_ == time_axis() && given.lower > needed_.lower
-                           ? "; times count from the start of heating, where a record has the time 0"
+                       given.lower, given.upper, axis_.unit,
+                       is_of_time ? fmt::format(" ({})", curve.description()) : "", needed_.lower,
+                       needed_.upper, axis_.unit,
+                       is_of_time && given.lower > needed_.lower
+                           ? "; times count from the start of heating: where a record begins there, write "
+                             "start = \"first row\" beside csv"
                            : ""));
   return false;
 }

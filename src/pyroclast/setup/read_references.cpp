@@ -247,6 +247,12 @@ void read_table(const Section& s, std::string_view key, const MeasuredTable& tab
                             over.size(), kLeastRows));
   if (*reference.over.unit == unit::time)
     require_ascending(table, columns[0], over, reference.over.name, unit::time, true);
+  if (const std::string start = table.start_of(columns[0]);
+      choice.start.empty() && !start.empty() && !moment_of(start)->has_date())
+    s.warn(key,
+           fmt::format("times of {} count from its first row, {}, as of a clock: write start = \"first row\" "
+                       "where that is meant, or start = \"0:00:00\" where they count from the start already",
+                       table.path().filename().string(), start));
   const bool has_negative_strain =
       reference.over.name == "strain" && signs[0] > 0.0 && std::ranges::min(over) < 0.0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -310,7 +316,7 @@ std::string read_reference_name(const Section& s, const std::filesystem::path& f
 
 Reference read_reference(const Section& s, const std::filesystem::path& folder,
                          const std::vector<Drawn>& drawn) {
-  s.know({"file", "columns", "units", "of", "over", "sign", "name"});
+  s.know({"file", "columns", "units", "start", "of", "over", "sign", "name"});
   if (s.has("builtin"))
     return builtin(
         s, "builtin",
@@ -331,6 +337,7 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
   reference.name = read_reference_name(s, file);
   ColumnChoice choice = read_column_choice(s, file, kCurveColumns, kRangeColumns);
   choice.key = "file";
+  choice.start = read_start(s);
   const std::vector<double> signs = read_signs(s);
   if (!s.ok()) return reference;
   const char* wrong = "of";
@@ -341,6 +348,9 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
     reference.of = found.of;
     reference.over = found.over.front();
     reference.rows = found.rows;
+    wrong = "start";
+    if (!choice.start.empty() && *reference.over.unit != unit::time)
+      throw Error(fmt::format("has no meaning: \"{}\" is no time", reference.over.name));
     wrong = "file";
     read_table(s, "file", MeasuredTable::open(folder / file, kCurveColumns), choice, signs, reference);
     s.names_file("file", folder / file);

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "pyroclast/tables/moment.hpp"
 
 namespace pyroclast {
 namespace {
 
 constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212
 constexpr std::string_view kDigits = "0123456789";
-constexpr std::size_t kMostHourDigits = 6;
 
 bool are_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == text.npos;
@@ -54,15 +54,6 @@ std::optional<std::string> whole_part(std::string_view text, std::string_view ot
   return digits;
 }
 
-/// Tells whether a cell is day, month and year in either order, perhaps with a time behind them.
-bool is_date(std::string_view cell) {
-  for (const std::string_view sign : {"/", "-", "."}) {
-    const auto parts = parts_between(cell.substr(0, cell.find_first_of(" T")), sign);
-    if (parts.size() == 3 && std::ranges::all_of(parts, are_digits)) return true;
-  }
-  return false;
-}
-
 /// Returns the place of the letter before a power of ten, `npos` without one: e, or d as Fortran writes it
 /// behind a decimal sign or before a sign.
 std::size_t place_of_power(std::string_view number) {
@@ -73,28 +64,6 @@ std::size_t place_of_power(std::string_view number) {
   const std::string_view behind = number.substr(d + 1);
   const bool is_power = number.find_first_of(".,") < d || behind.starts_with('+') || behind.starts_with('-');
   return is_power ? d : number.npos;
-}
-
-struct ClockText {
-  std::vector<std::string_view> parts;
-  std::string_view fraction;  ///< digits behind the seconds
-};
-
-/// Returns the parts of a time: two or three, those behind the first of two digits and below 60; else none.
-std::optional<ClockText> clock_text(std::string_view cell) {
-  ClockText clock;
-  const std::size_t sign = cell.find_first_of(".,");
-  if (sign != cell.npos) {
-    clock.fraction = cell.substr(sign + 1);
-    if (!are_digits(clock.fraction)) return std::nullopt;
-  }
-  clock.parts = parts_between(cell.substr(0, sign), ":");
-  if (clock.parts.size() < 2 || clock.parts.size() > 3 || !std::ranges::all_of(clock.parts, are_digits))
-    return std::nullopt;
-  if (clock.parts[0].size() > kMostHourDigits) return std::nullopt;
-  for (std::size_t i = 1; i < clock.parts.size(); ++i)
-    if (clock.parts[i].size() != 2 || clock.parts[i][0] > '5') return std::nullopt;
-  return clock;
 }
 
 }  // namespace
@@ -152,39 +121,8 @@ CellKind kind_of_cell(std::string_view cell) {
   if (cell.empty()) return CellKind::empty;
   if (plain_number(cell, DecimalSign::point) || plain_number(cell, DecimalSign::comma))
     return CellKind::number;
-  if (clock_text(cell)) return CellKind::clock;
-  return is_date(cell) ? CellKind::date : CellKind::text;
-}
-
-std::optional<ClockForm> clock_form(std::string_view unit) {
-  std::string letters;
-  for (const std::string_view part : parts_between(unit, ":")) {
-    constexpr std::array<std::string_view, 4> kHours{"h", "hh", "H", "HH"};
-    constexpr std::array<std::string_view, 5> kMinutes{"m", "mm", "M", "MM", "min"};
-    constexpr std::array<std::string_view, 5> kSeconds{"s", "ss", "S", "SS", "sec"};
-    const auto is_of = [&](const auto& words) { return std::ranges::find(words, part) != words.end(); };
-    letters += is_of(kHours) ? 'h' : is_of(kMinutes) ? 'm' : is_of(kSeconds) ? 's' : '?';
-  }
-  if (letters == "hms") return ClockForm::unknown;
-  if (letters == "ms") return ClockForm::minutes_seconds;
-  return letters == "hm" ? std::optional(ClockForm::hours_minutes) : std::nullopt;
-}
-
-int clock_parts(std::string_view clock) {
-  return 1 + static_cast<int>(std::ranges::count(clock, ':'));
-}
-
-std::string clock_seconds(std::string_view clock, ClockForm form) {
-  const auto text = clock_text(clock);
-  constexpr long long kSixty = 60;
-  long long count = 0;
-  for (const std::string_view part : text->parts) {
-    long long number = 0;
-    std::from_chars(part.data(), part.data() + part.size(), number);
-    count = kSixty * count + number;
-  }
-  if (text->parts.size() == 2 && form == ClockForm::hours_minutes) count *= kSixty;
-  return text->fraction.empty() ? fmt::format("{}", count) : fmt::format("{}.{}", count, text->fraction);
+  if (const auto moment = moment_of(cell)) return moment->has_date() ? CellKind::stamp : CellKind::clock;
+  return begins_with_date(cell) ? CellKind::date : CellKind::text;
 }
 
 }  // namespace pyroclast

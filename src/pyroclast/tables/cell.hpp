@@ -8,8 +8,9 @@ namespace pyroclast {
 
 enum class DecimalSign { point, comma };
 
-/// Kind of a cell. A number counts as a number whatever its decimal sign.
-enum class CellKind { empty, text, number, clock, date };
+/// Kind of a cell. A number counts as a number whatever its decimal sign; a stamp is a date with a clock
+/// time.
+enum class CellKind { empty, text, number, clock, stamp, date };
 CellKind kind_of_cell(std::string_view cell);
 
 /// Returns a number with a decimal point and without other signs, as `std::from_chars` reads it; empty where
@@ -28,14 +29,5 @@ enum class SignEvidence {
   comma_or_point    ///< "1,234"
 };
 SignEvidence sign_evidence(std::string_view number);
-
-/// Meaning of the two parts of a time such as 01:30; three parts are hours, minutes and seconds.
-enum class ClockForm { unknown, minutes_seconds, hours_minutes };
-/// Returns the form that a unit such as "hh:mm:ss" or "mm:ss" means; empty where it is no form of a time.
-std::optional<ClockForm> clock_form(std::string_view unit);
-/// Returns the number of parts of a time.
-int clock_parts(std::string_view clock);
-/// Returns the seconds of a time as a plain number.
-std::string clock_seconds(std::string_view clock, ClockForm form);
 
 }  // namespace pyroclast

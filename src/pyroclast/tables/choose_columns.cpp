@@ -116,9 +116,13 @@ std::vector<std::size_t> MeasuredTable::columns_of_values(std::span<const AskedC
   const bool may_be_asked = std::ranges::any_of(asked, [&](const AskedColumn& one) {
     return said(one, number) != nullptr && !has(one.names[0].meaning);
   });
+  // Dates in a column of their own say no more than the clock beside them, which passes midnight.
+  const auto is_date = [&](std::size_t i) { return kind_of_cell(grid_.rows[0].cells[i]) == CellKind::date; };
+  const bool has_clock = std::ranges::any_of(
+      grid_.rows[0].cells, [](const std::string& cell) { return moment_of(cell).has_value(); });
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < columns_.size(); ++i)
-    if (may_be_asked || !is_number(i)) result.push_back(i);
+    if ((may_be_asked || !is_number(i)) && !(has_clock && is_date(i))) result.push_back(i);
   return result;
 }
 
@@ -277,7 +281,7 @@ std::string MeasuredTable::chosen_unit(std::size_t column, const std::string& st
                                        const AskedColumn& asked) const {
   const std::string said = unit_of(column, asked.unit);
   if (stated.empty() || !columns_[column].unit.empty()) {
-    if (!stated.empty() && stated != said)
+    if (!stated.empty() && meant_unit(stated, asked.unit) != meant_unit(said, asked.unit))
       refuse(path_, header_line_,
              fmt::format("{} is in \"{}\" by the file and in \"{}\" by the deck; write \"\" in its place in "
                          "`units`, or change the file",
@@ -308,8 +312,9 @@ std::vector<ChosenColumn> MeasuredTable::choose(const ColumnChoice& choice,
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::string stated = stated_unit(choice, i);
     const KnownName* name = said(asked[i], meanings(indices[i], vocabulary, stated));
-    result.push_back(
-        {indices[i], chosen_unit(indices[i], stated, asked[i]), name == nullptr ? 1.0 : name->factor, rows});
+    result.push_back({indices[i], chosen_unit(indices[i], stated, asked[i]),
+                      name == nullptr ? 1.0 : name->factor, rows,
+                      asked[i].unit == unit::time ? choice.start : ""});
     if (result.back().unit.empty())
       refuse(path_, header_line_,
              fmt::format("{} has no unit; write \"{} [{}]\" above it, or {}", column_name(indices[i]),

@@ -48,9 +48,11 @@ const ColumnMeaning retained{
     {"retained", "retention", "retain", "coarser", "oversize", "rückstand", "siebrückstand", "refus"},
     true};
 const ColumnMeaning time{
-    "time",
-    unit::time,
-    {"t", "time", "times", "elapsed", "duration", "zeit", "dauer", "temps", "minutes", "seconds"}};
+    "time", unit::time, {"t",        "time",     "times",        "elapsed",     "duration",
+                         "clock",    "date",     "datetime",     "timestamp",   "stamp",
+                         "zeit",     "uhrzeit",  "zeitpunkt",    "zeitstempel", "datum",
+                         "messzeit", "prüfzeit", "versuchszeit", "laufzeit",    "dauer",
+                         "temps",    "heure",    "horodatage",   "minutes",     "seconds"}};
 const ColumnMeaning temperature{
     "temperature",
     unit::temperature,

@@ -109,7 +109,8 @@ Fit fit(std::string_view line, char delimiter) {
   // "10 200,5" is rather two cells between blanks than a number with a blank between thousands
   const bool takes_blanks = delimiter == ';' || delimiter == '\t';
   result.values = static_cast<std::size_t>(std::ranges::count_if(*cells, [&](const std::string& cell) {
-    return is_value(cell) && (takes_blanks || cell.find(' ') == cell.npos);
+    return is_value(cell) &&
+           (takes_blanks || cell.find(' ') == cell.npos || kind_of_cell(cell) == CellKind::stamp);
   }));
   return result;
 }

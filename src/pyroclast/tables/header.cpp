@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "pyroclast/base/characters.hpp"
-#include "pyroclast/tables/cell.hpp"
+#include "pyroclast/tables/moment.hpp"
 #include "pyroclast/tables/table_lines.hpp"
 #include "pyroclast/units/spellings.hpp"
 #include "pyroclast/units/units.hpp"
@@ -14,7 +14,7 @@ namespace pyroclast {
 namespace {
 
 bool says_unit(std::string_view text) {
-  return clock_form(text) || is_unit(text);
+  return time_form(text) || is_unit(text);
 }
 
 bool is_no_unit(std::string_view text) {

@@ -86,37 +86,11 @@ std::string MeasuredTable::cell_place(std::size_t row, std::size_t column) const
   return fmt::format("{} in {}", as_written(grid_.rows[row].cells[column]), column_name(column));
 }
 
-bool MeasuredTable::holds_clock(std::size_t column) const {
-  return std::ranges::any_of(
-      grid_.rows, [&](const TableRow& row) { return kind_of_cell(row.cells[column]) == CellKind::clock; });
-}
-
-/// Finds the form of the times in a column: where one of them has three parts, times of two parts are minutes
-/// and seconds.
-ClockForm MeasuredTable::clock_form_of(const ChosenColumn& column) const {
-  constexpr int kHoursMinutesSeconds = 3;
-  const ClockForm form = clock_form(column.unit).value_or(ClockForm::unknown);
-  if (form != ClockForm::unknown) return form;
-  std::size_t short_row = rows();
-  for (std::size_t row = 0; row < rows(); ++row) {
-    const std::string& cell = grid_.rows[row].cells[column.index];
-    if (kind_of_cell(cell) != CellKind::clock) continue;
-    if (clock_parts(cell) == kHoursMinutesSeconds) return ClockForm::minutes_seconds;
-    short_row = std::min(short_row, row);
-  }
-  if (short_row < rows())
-    refuse(path_, line(short_row),
-           fmt::format("{} may be minutes and seconds or hours and minutes; write \"time [mm:ss]\" or \"time "
-                       "[hh:mm]\" above the column, or 00:{} or {}:00",
-                       cell_place(short_row, column.index), grid_.rows[short_row].cells[column.index],
-                       grid_.rows[short_row].cells[column.index]));
-  return form;
-}
-
 std::string MeasuredTable::unit_of(std::size_t column, const Unit& unit) const {
   const ColumnHeader& header = columns_[column];
+  if (unit == unit::time && tells_time(column) && !time_form(header.unit) && !is_unit(header.unit))
+    return "hh:mm:ss";  // behind a name may stand "local time" or "UTC"
   if (!header.unit.empty()) return header.unit;
-  if (unit == unit::time && holds_clock(column)) return "hh:mm:ss";
   if (!header.likely_unit.empty() && fits(column, header.likely_unit, unit)) return header.likely_unit;
   if (!header.unknown_unit.empty()) return header.unknown_unit;
   return unit == unit::dimensionless ? "1" : "";
@@ -124,7 +98,7 @@ std::string MeasuredTable::unit_of(std::size_t column, const Unit& unit) const {
 
 bool MeasuredTable::fits(std::size_t column, const std::string& stated, const Unit& unit) const {
   const std::string given = stated.empty() ? unit_of(column, unit) : stated;
-  if (clock_form(given)) return unit == unit::time;
+  if (time_form(given)) return unit == unit::time;
   try {
     unit_factors(meant_unit(given, unit), unit);
     return true;
@@ -156,11 +130,24 @@ std::function<double(std::string_view)> MeasuredTable::reader(const ChosenColumn
   }
 }
 
+/// Returns the time that counts as 0 in a column of numbers.
+double MeasuredTable::number_of_start(const ChosenColumn& column, double first, const Unit& unit) const {
+  if (column.start == kFirstRow) return first;
+  try {
+    return parse_quantity(column.start, unit);
+  } catch (const QuantityError& error) {
+    refuse(path_, header_line_,
+           fmt::format("start = {}; {} holds numbers in {}: write \"{}\", or a time such as \"{} {}\"",
+                       error.what(), column_name(column.index), column.unit, kFirstRow,
+                       grid_.rows[0].cells[column.index], column.unit));
+  }
+}
+
 std::vector<double> MeasuredTable::values(const ChosenColumn& column, const Unit& unit) const {
   const std::size_t index = column.index;
-  const bool is_clock = unit == unit::time && clock_form(column.unit);
-  const ClockForm form = is_clock ? clock_form_of(column) : ClockForm::unknown;
-  const auto read = reader(column, is_clock ? "s" : meant_unit(column.unit, unit), unit);
+  // A date with a time has one reading, whatever unit stands above it.
+  if (unit == unit::time && (time_form(column.unit) || tells_date(index))) return times(column).values;
+  const auto read = reader(column, meant_unit(column.unit, unit), unit);
   std::vector<double> result;
   for (std::size_t row = 0; row < std::min(rows(), column.rows); ++row) {
     const std::string& cell = grid_.rows[row].cells[index];
@@ -169,26 +156,28 @@ std::vector<double> MeasuredTable::values(const ChosenColumn& column, const Unit
       refuse(path_, line(row),
              fmt::format("{} is empty; delete the line or write a number", column_name(index)));
     if (kind == CellKind::date)
-      refuse(path_, line(row),
-             fmt::format(
-                 "{} is a date, of which the order of day and month is not certain; write times since the "
-                 "start, in s, min or h or as hh:mm:ss",
-                 cell_place(row, index)));
-    if (kind == CellKind::clock && !is_clock)
+      refuse(
+          path_, line(row),
+          fmt::format("{} is a date without a time of the day; write times since the start, in s, min or h "
+                      "or as hh:mm:ss, or dates with times such as 2026-03-02T10:14:05",
+                      cell_place(row, index)));
+    if (kind == CellKind::clock || kind == CellKind::stamp)
       refuse(path_, line(row),
              fmt::format(
                  "{} is a time, but the column is in \"{}\"; write its unit as \"hh:mm:ss\", \"mm:ss\" or "
                  "\"hh:mm\"",
                  cell_place(row, index), column.unit));
-    if (kind != (is_clock ? CellKind::clock : CellKind::number))
-      refuse(path_, line(row),
-             fmt::format("{} is no {}", cell_place(row, index), is_clock ? "time" : "number"));
+    if (kind != CellKind::number)
+      refuse(path_, line(row), fmt::format("{} is no number", cell_place(row, index)));
     try {
-      result.push_back(column.factor *
-                       read(is_clock ? clock_seconds(cell, form) : *plain_number(cell, grid_.decimal_sign)));
+      result.push_back(column.factor * read(*plain_number(cell, grid_.decimal_sign)));
     } catch (const QuantityError& error) {
       refuse(path_, line(row), fmt::format("{}: {}", column_name(index), error.what()));
     }
+  }
+  if (!column.start.empty()) {
+    const double start = number_of_start(column, result[0], unit);
+    for (double& value : result) value -= start;
   }
   return result;
 }
@@ -228,8 +217,7 @@ std::string told_of_clock(std::span<const double> times, std::size_t at, int lin
         period == kDay ? "passes midnight" : fmt::format("begins anew after {:g} h", period / kHour);
     return fmt::format(
         "the clock {} there; write times since the start of heating: add {:g} h from line {} on, and "
-        "subtract the "
-        "time of the start from all",
+        "subtract the time of the start from all",
         what, period / kHour, line);
   }
   return "";
@@ -270,8 +258,9 @@ void require_ascending(const MeasuredTable& table, const ChosenColumn& column, s
     refuse(table.path(), table.line(0),
            fmt::format(
                "the {} ({}) begins at {:.10g} s, {:.3g} years: it counts from a date, such as the year 1970 "
-               "or 1900; write times since the start of heating: subtract the time of the start from all",
-               name, table.column_name(column.index), values[0], values[0] / (365.25 * kDay)));
+               "or 1900; times count from the start of heating: write start = \"{}\" beside the file's name, "
+               "or the time of the start",
+               name, table.column_name(column.index), values[0], values[0] / (365.25 * kDay), kFirstRow));
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i - 1] < values[i]) continue;
     const bool is_same = values[i - 1] == values[i];
@@ -281,7 +270,7 @@ void require_ascending(const MeasuredTable& table, const ChosenColumn& column, s
                        table.column_name(column.index), is_same ? "stays the same" : "falls",
                        table.line(i - 1), table.line(i),
                        is_same ? "keep one of the lines, or write the numbers with more digits"
-                               : way_to_ascend(table, values, i, unit, clock_form(column.unit).has_value())));
+                               : way_to_ascend(table, values, i, unit, time_form(column.unit).has_value())));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "pyroclast/tables/column_meaning.hpp"
 #include "pyroclast/tables/dialect.hpp"
 #include "pyroclast/tables/header.hpp"
+#include "pyroclast/tables/moment.hpp"
 
 namespace pyroclast {
 
@@ -31,6 +33,9 @@ struct AskedColumn {
   bool is_optional = false;           ///< true where a table may lack it; such quantities come last
 };
 
+/// Word for the time of the first row, where a deck states the start of a record.
+inline constexpr std::string_view kFirstRow = "first row";
+
 /// Columns of a file that a deck chooses, and their units.
 struct ColumnChoice {
   /// Column, given by its name, or by its number from 1 where the number is not 0.
@@ -42,6 +47,7 @@ struct ColumnChoice {
   std::vector<TableColumn> columns;  ///< column of each quantity; empty where the table has no other columns
   std::vector<std::string> units;    ///< unit of each quantity, "" where the file says it; may be empty
   std::string key = "csv";           ///< key by which the deck names the file
+  std::string start = {};            ///< time that counts as 0, written as in the file; may be empty
 };
 
 /// Column that was chosen.
@@ -50,12 +56,13 @@ struct ChosenColumn {
   std::string unit;                                            ///< unit of its numbers
   double factor = 1.0;                                         ///< quantity over the column's number
   std::size_t rows = std::numeric_limits<std::size_t>::max();  ///< rows up to the end of the chosen columns
+  std::string start = {};  ///< time that counts as 0, of a column of times; may be empty
 };
 
 /// Table of numbers as people, loggers, spreadsheets and programs write it: cells between commas, semicolons,
 /// tabs or blanks, decimal points or commas, with a header or without, units in the header or in a row below
-/// it, quotes, comments, times as hh:mm:ss, LF, CRLF or CR, a byte order mark. A text that can be read in
-/// more than one way is refused.
+/// it, quotes, comments, times of a clock and a calendar, LF, CRLF or CR, a byte order mark. A text that can
+/// be read in more than one way is refused.
 ///
 /// All functions throw Error, which names file and line, the text that stands there and the text to write.
 class MeasuredTable {
@@ -95,8 +102,12 @@ class MeasuredTable {
   bool fits(std::size_t column, const std::string& stated, const Unit& unit) const;
   /// Returns the numbers, names and units of all columns, for messages.
   std::string list_of_columns() const;
-  /// Returns the values of a column in `unit.si`.
+  /// Returns the values of a column in `unit.si`. Times count from the start that the deck states. Without
+  /// one, dates and times of the day count from the first row, and other times as they are written.
   std::vector<double> values(const ChosenColumn& column, const Unit& unit) const;
+  /// Returns the time that counts as 0 in a column of times, as it is written; empty where none was taken
+  /// off.
+  std::string start_of(const ChosenColumn& column) const;
   /// Returns the name of a column for messages: its name in quotes, or its number.
   std::string column_name(std::size_t column) const;
 
@@ -105,8 +116,20 @@ class MeasuredTable {
 
   std::string cell_place(std::size_t row, std::size_t column) const;
   void read_header();
-  bool holds_clock(std::size_t column) const;
-  ClockForm clock_form_of(const ChosenColumn& column) const;
+  bool tells_time(std::size_t column) const;
+  bool tells_date(std::size_t column) const;
+  ClockForm clock_form_of(const ChosenColumn& column, const std::vector<Moment>& moments) const;
+  std::vector<Moment> moments_of(const ChosenColumn& column) const;
+  Moment stated_start(const ChosenColumn& column, const std::vector<Moment>& moments) const;
+  std::vector<std::int64_t> days_of(const ChosenColumn& column, const std::vector<Moment>& moments) const;
+  double number_of_start(const ChosenColumn& column, double first, const Unit& unit) const;
+
+  /// Times of a clock, s, and the text of the time that counts as 0.
+  struct Times {
+    std::vector<double> values;
+    std::string start;
+  };
+  Times times(const ChosenColumn& column) const;
   std::function<double(std::string_view)> reader(const ChosenColumn& column, std::string_view given,
                                                  const Unit& unit) const;
   std::size_t find(const ColumnChoice::TableColumn& column) const;

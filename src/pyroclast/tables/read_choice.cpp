@@ -60,4 +60,12 @@ ColumnChoice read_column_choice(const Section& section, const std::string& file,
   return choice;
 }
 
+std::string read_start(const Section& section) {
+  return section.text(
+      "start", "",
+      "time of the file that counts as 0, written as there (`\"10:14:05\"`, "
+      "`\"2026-03-02T10:14:05\"`) or a quantity (`\"300 s\"`), or `\"first row\"`; without it "
+      "dates and times of the day count from the first row, other times from 0");
+}
+
 }  // namespace pyroclast

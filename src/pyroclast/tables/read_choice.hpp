@@ -14,4 +14,7 @@ namespace pyroclast {
 ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t least,
                                 std::size_t most);
 
+/// Reads `start`, the time of a record that counts as 0; empty where the deck states none.
+std::string read_start(const Section& section);
+
 }  // namespace pyroclast
