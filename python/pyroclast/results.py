@@ -21,6 +21,7 @@ from .files import LARGEST, MESH, GrowingTable, Lock, Table, Writer, read_array,
 from .libraries import library
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
+from .writing import shell_path
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -58,14 +59,14 @@ def read(folder: str | Path) -> Results:
         return Results(place)
     if not place.is_dir():
         raise Error(f"{place}: is not a folder")
+    if runs := runs_in(place):
+        raise Error(f"{place}: holds no run, but folders of runs: {runs[0].relative_to(place)}"
+                    + (f" and {len(runs) - 1} more" if len(runs) > 1 else "")
+                    + f"; name one of them, or list all by `pyroclast report {shell_path(place)}`")
     if Lock(place).writer is Writer.THERE:
         raise Error(f"{place}: the run in it has only begun: there is no history yet")
     if any((place / name).exists() for name in ("specimen/specimen.json", "specimen.json")):
         raise Error(f"{place}: holds a specimen and no run; pyroclast.SpecimenFolder reads it")
-    runs = sorted({path.parent for path in place.glob("*/history.csv")})
-    if runs:
-        raise Error(f"{place}: holds no run, but folders of runs: {runs[0].name}"
-                    + (f" and {len(runs) - 1} more" if len(runs) > 1 else ""))
     raise Error(f"{place}: holds no run: there is neither history.csv nor summary.json")
 
 
@@ -77,6 +78,12 @@ def read_at_once(folder: str | Path) -> Results:
     run._known_end = run._end
     run.summary, run._frames, run.history  # noqa: B018 - they keep what they read
     return run
+
+
+def runs_in(folder: Path) -> list[Path]:
+    """Returns folders of runs in a folder, and of those of a study or of seeds in it (`runs`), by name."""
+    return sorted({path.parent for name in ("history.csv", "summary.json") for within in ("*", "runs/*")
+                   for path in folder.glob(f"{within}/{name}")})
 
 
 def is_of_run(folder: Path) -> bool:

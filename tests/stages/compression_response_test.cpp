@@ -1,5 +1,6 @@
 #include "pyroclast/stages/compression_response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -119,6 +120,35 @@ TEST(Response, TheFirstWaveTellsNoStrengthByAnyFall) {
   EXPECT_NE(report.warnings[0].find("f_c depends on how a peak is told: 30.00 MPa by the first fall of 2 %, "
                                     "36.00 MPa by one of 10 %"),
             std::string::npos);
+}
+
+// Promise: a fall at the foot of the curve, where the ends of a specimen are pressed flat, tells no strength.
+TEST(Response, AFallAtTheFootTellsNoStrength) {
+  for (const double toe : {0.05e6, 1e6, 4e6, 9e6}) {
+    CompressionCurve curve;
+    go_on(curve, toe, 2e-4);
+    go_on(curve, 0.8 * toe, 1e-4);  // by 20 %, good again within 3e-4 of strain
+    go_on(curve, 30e6, 2e-3);
+    go_on(curve, 20e6, 1e-3);
+    const auto report = compression_report(curve);
+    for (const char* name : {"f_c_MPa", "f_c_by_fall_of_2_percent_MPa", "f_c_by_fall_of_10_percent_MPa"})
+      EXPECT_DOUBLE_EQ(number(report, name), 30.0) << toe << name;
+    EXPECT_TRUE(report.warnings.empty()) << toe;
+  }
+}
+
+// Promise: the summary says why a strength by a fall is missing.
+TEST(Response, AMissingFallIsExplained) {
+  CompressionCurve curve;
+  go_on(curve, 30e6, 2e-3);
+  go_on(curve, 28e6, 5e-4);
+  go_on(curve, 60e6, 8e-3);
+  const auto report = compression_report(curve);
+  const auto because =
+      std::ranges::find(report.results, "f_c_by_fall_of_10_percent_none_because", &Result::name);
+  ASSERT_NE(because, report.results.end());
+  EXPECT_EQ(std::get<std::string>(because->value),
+            "the stress never fell by 10 % from above a third of f_c before the stage ended");
 }
 
 // Promise: a fall of 2 % and one of 10 % that tell the same still leave a doubt where f_c, by a lasting fall,

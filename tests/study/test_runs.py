@@ -145,6 +145,20 @@ z = "z"
         self.assertEqual(row["state"], "no value")
         self.assertIn("no number called 'z'", row["reason"])
 
+    def test_a_run_may_lack_an_output_but_not_all(self) -> None:
+        self.model.write_text("def line(x, seed):\n    return {'a': 1.0, 'b': float('nan')} if x < 0.6 else {}\n")
+        text = self.of_function('kind = "grid"', study='may_lack = ["b", "a"]').replace('z = "z"', 'a = "a"\nb = "b"')
+        study = self.study(text)
+        self.assertTrue(study.run(jobs=1))
+        self.assertEqual(states(study), ["done"] * 3 + ["no value"] * 2)
+        self.assertEqual(study.rows()[0]["reason"], "b: is not finite")
+        self.assertEqual(study.missing()["b"][0], "is not finite")
+        self.assertEqual(study.count_values(), 3)
+        must = self.study(text.replace('"b", "a"', '"a"'))
+        self.assertEqual(states(must), ["no value"] * 5)  # the same runs, judged by what is asked for now
+        with self.assertRaisesRegex(Error, "study.may_lack.* no output is called 'c'; there are a, b"):
+            self.study(text.replace('"b", "a"', '"c"'))
+
     def test_a_function_that_raises_is_its_points_affair(self) -> None:
         self.model.write_text("def line(x, seed):\n    return {'z': 1.0 / round(x)}\n")
         study = self.study(self.of_function('kind = "grid"'))

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import statistics
 import subprocess
 import tomllib
@@ -9,9 +10,14 @@ import unittest
 from unittest import mock
 
 import numpy as np
+import pyroclast
 from pyroclast.comparisons import compare_seeds
 from pyroclast.errors import Error
-from pyroclast.study import converge
+from pyroclast.report import write_page
+from pyroclast.study import converge, scatter
+from pyroclast.study.methods import ensemble
+from pyroclast.study.report import write_report
+from pyroclast.study.study import Study
 from scipy.stats import t, ttest_ind
 from study_files import CASES, PROGRAM, StudyTest
 
@@ -41,6 +47,9 @@ class Seeds(StudyTest):
         half = 4.302652729911275 * statistics.stdev(moduli) / 3**0.5  # Student's t of two degrees of freedom
         self.assertAlmostEqual(float(found["high_95"]), statistics.mean(moduli) + half, places=9)
         self.assertRegex(done.stdout, r"E_GPa +\d+\.?\d* ± \d")
+        self.assertIn("mean of 3 seeds ± half its 95 % interval (Student's t)", done.stdout)
+        for line in re.findall(r"(?m)^ {16}\w+ +([\d.]+) ±", done.stdout):
+            self.assertLessEqual(len(line.replace(".", "").lstrip("0")), 4, line)
         self.assertTrue((out / "figures/seeds.png").exists())
 
         strengths = sorted((float(row["f_c_MPa"]), int(row["seed"])) for row in rows if row["f_c_MPa"])
@@ -69,10 +78,50 @@ class Seeds(StudyTest):
         with open(self.folder / "runs/starter-seeds/table.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([(row["state"], row["f_c_MPa"]) for row in rows], [("no value", "")] * 2)
+        self.assertIn("none            f_c_MPa: the stage ended before a peak", done.stdout)
         self.assertTrue(all(row["E_GPa"] for row in rows))
         self.assertRegex(done.stdout, "(?m)^2 of 2 runs$")
         self.assertNotIn("without a value", done.stdout)
         self.assertRegex(done.stdout, "(?m)^warning         2 of 2 runs: no f_c: the stage ended before a peak")
+
+    def test_a_result_that_nobody_asked_for_fails_no_run(self):
+        done = self.run_deck("--seeds", "2", "--no-figures", *SMALL, "--set", "stages[1].stop_fraction_of_peak=0.96")
+        out = self.folder / "runs/starter-seeds"
+        with open(out / "table.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        name = "f_c_by_fall_of_10_percent_MPa"
+        lacking = [row for row in rows if not row[name]]
+        self.assertEqual([row["state"] for row in rows], ["done"] * 2)
+        self.assertTrue(lacking)
+        self.assertIn(f"{len(lacking)} of 2 seeds have none" if len(lacking) < 2 else f"none            {name}: the", done.stdout)
+        page = write_report(Study(out / "study.toml", program=PROGRAM)).read_text()
+        self.assertNotIn("gave no value; see below", page)
+        self.assertRegex(page, rf"{name} is missing in {len(lacking)} runs? of 2: the stress never fell by 10 % from above a third")
+
+        index = write_page([out]).read_text()
+        self.assertEqual(re.findall(r'data-name="(seed \d)', index), ["seed 1", "seed 2"])
+
+    def test_the_median_stands_among_its_seeds(self):
+        for run, deck, seed in (("runs/aaaabbbbcccc", "/there/mine.toml", 2), ("runs/bbbbccccdddd", "/there/mine.toml", 1),
+                                ("median", "mine.toml", 2), ("other", "mine.toml", 7)):
+            (self.folder / run).mkdir(parents=True)
+            (self.folder / run / "history.csv").write_text("stage,step,time_s\n")
+            (self.folder / run / "manifest.json").write_text(json.dumps({"deck": deck, "seed": seed}))
+        found = re.findall(r'data-name="([^"]*)"', write_page([self.folder]).read_text())
+        self.assertEqual(found, ["seed 1, bbbbcccc", "seed 2, aaaabbbb (median)", "other"])
+        with self.assertRaisesRegex(Error, "holds no run, but folders of runs: median and 3 more; .* `pyroclast report "):
+            pyroclast.read(self.folder)
+
+    def test_few_seeds_that_scatter_say_how_many_would_do(self):
+        three = ensemble.summary([3.0, 42.0, 78.0])
+        line = scatter._lines({"f_c_MPa": three}, 3)[1]
+        wanted = int(re.search(r"f_c_MPa  41 ± 93 .*; ± 10 % takes about (\d+) seeds$", line)[1])
+        for n, is_enough in ((wanted, True), (wanted - 1, False)):
+            half = t.ppf(0.975, n - 1) * statistics.stdev([3.0, 42.0, 78.0]) / n**0.5
+            self.assertEqual(half <= 0.1 * 41.0, is_enough, n)
+        self.assertNotIn("takes", scatter._lines({"E_GPa": ensemble.summary([30.0, 30.2, 30.1])}, 3)[1])
+        self.assertEqual(ensemble.seeds_for(0.1, 0.05), 4)
+        self.assertIsNone(ensemble.seeds_for(0.1, float("nan")))
 
     def test_a_deck_in_error_is_told_as_by_a_single_run(self):
         for words in (("--set", "blocks.cuont=60"), ("--set", "blocks.count=-1")):

@@ -31,7 +31,7 @@ from .outputs import Output, read_summary
 from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
-from .store import DONE, FAILED, NO_VALUE, RunResult, Store
+from .store import DONE, FAILED, NO_VALUE, RunResult, Store, judged
 from .work import Job, made
 
 NOT_RUN = "not run"
@@ -92,6 +92,7 @@ class Driver:
         self.study, self.store, self.program, self.functions = study, store, program, functions
         self.points = Points(study, code)
         self.plan: Plan = plan_of(study)
+        self._may_lack = {o.what for o in study.outputs if o.name in study.may_lack}
         self._take_in_earlier()
 
     def check(self) -> None:
@@ -127,8 +128,8 @@ class Driver:
 
     @property
     def expected(self) -> float:
-        """Wall time of a run, s: the median of those that are done; NaN without one."""
-        walls = [r.wall for r in self.store if r.state == DONE and r.wall > 0.0]
+        """Wall time of a run, s: the median of those that came to their end; NaN without one."""
+        walls = [r.wall for r in self.store if r.state in (DONE, NO_VALUE) and r.wall > 0.0]
         return statistics.median(walls) if walls else math.nan
 
     def run(self, executor: Executor, stopped: Callable[[], bool] = lambda: False,
@@ -170,7 +171,7 @@ class Driver:
         return [w for w in wanted if self._result(w) is None]
 
     def count_values(self) -> int:
-        """Runs that gave a value of every output."""
+        """Runs that gave a value of every output that they must have."""
         return sum(result is not None and result.state == DONE
                    for result in map(self._result, self._wanted(self.plan.propose(self._answers))))
 
@@ -203,6 +204,16 @@ class Driver:
             row["command"] = shlex.join(self._job(wanted).line(Path("FOLDER")))
             rows.append(row)
         return rows
+
+    def missing(self) -> dict[str, list[str]]:
+        """By output, why the runs that came to their end lack it."""
+        found: dict[str, list[str]] = {output.name: [] for output in self.study.outputs}
+        for result in map(self._result, self._wanted(self.plan.propose(self._answers))):
+            for output in self.study.outputs:
+                value, why = result.outputs.get(output.what, (None, "")) if result else (None, "")
+                if value is None and why:
+                    found[output.name].append(why)
+        return found
 
     def write_table(self) -> Path:
         """table.csv in the folder of the study, in the place of an earlier one."""
@@ -275,10 +286,11 @@ class Driver:
     def _result(self, wanted: Wanted) -> RunResult | None:
         """What is known of a run, with outputs that the study has only now; None where it has to be made for them."""
         result = self.store.get(*wanted.ids)
-        if result is None or result.state != DONE:
+        if result is None or result.state not in (DONE, NO_VALUE):
             return result
         lacking = [o for o in self.study.outputs if o.what not in result.outputs]
-        return self._with(result, lacking) if lacking else result
+        result = self._with(result, lacking) if lacking else result
+        return result and judged(result, (o.what for o in self.study.outputs), self._may_lack)
 
     def _with(self, result: RunResult, outputs: Sequence[Output]) -> RunResult | None:
         folder = self.store.runs / result.id
@@ -289,9 +301,7 @@ class Driver:
         for output in outputs:
             value, why = self._call(output.name, folder) if output.is_function else output.of(folder, summary)
             found[output.what] = (None if math.isnan(value) else value, why)
-        missing = [f"{what}: {why}" for what, (value, why) in found.items() if value is None]
-        result = replace(result, outputs=found, state=NO_VALUE if missing else DONE,
-                         reason="; ".join(missing) or result.reason)
+        result = judged(replace(result, outputs=found), found)
         self.store.put(result)
         return result
 

@@ -122,6 +122,7 @@ class StudySetup:
     outputs: tuple[Output, ...]
     targets: tuple[Target, ...] = ()
     correlations: tuple[tuple[str, str, float], ...] = ()
+    may_lack: tuple[str, ...] = ()  #: outputs by name without which a run counts as done
     keep: str = "summary"
     wall_limit: float = math.inf  #: of a run, s
     accept_version: int | None = None
@@ -175,6 +176,8 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
                            "column of the table tells them apart.", 0, None, 0) if own.has("accept_version") else None
     folder = own.text("folder", "Where runs and results go, taken from the place of this file; without it "
                       "STUDY-study beside STUDY.toml.", f"{file.stem}-study")
+    may_lack = own.texts("may_lack", "Outputs, by name, without which a run counts as done if it has another one.",
+                         is_optional=True)
     earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.",
                         is_optional=True)
 
@@ -191,9 +194,11 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
     targets = _targets(root, method.kind, outputs)
     correlations = _correlations(root, [p.name for p in parameters], method.kind)
     slurm = _slurm(root)
+    for name in sorted(set(may_lack) - {o.name for o in outputs}):
+        own.error("may_lack", f"no output is called {name!r}; there are {', '.join(o.name for o in outputs)}")
     _check_together(root, own, method, parameters, outputs, targets)
     return StudySetup(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
-                      tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), keep,
+                      tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), tuple(may_lack), keep,
                       wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm)
 
 

@@ -146,7 +146,8 @@ class _Ensemble(_Plan):
         if not answers.has_all():
             return None
         assert self.study.method.until is not None
-        return ensemble.widest(ensemble.summary(answers.y[o][0]) for o in self.outputs) < self.study.method.until
+        must = [o for o in self.outputs if o not in self.study.may_lack] or self.outputs
+        return ensemble.widest(ensemble.summary(answers.y[o][0]) for o in must) < self.study.method.until
 
     def findings(self, ask: Ask) -> dict[str, Any]:
         proposal = self.propose(ask)

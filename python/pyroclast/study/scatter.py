@@ -24,6 +24,7 @@ from .methods import ensemble
 from .study import Study
 
 _HEADLINE = ("f_c_MPa", "critical_temperature_degC")
+_SHARE = 0.1  # of a mean: half of an interval that is narrow enough for a table
 
 
 def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
@@ -45,12 +46,16 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
         say("stopped; to go on: the same command")
         return 130
     rows = study.rows()
-    found = {name: ensemble.summary(y) for name, y in values_of(rows, names).items() if has_scatter(y)}
+    values = values_of(rows, names)
+    found = {name: ensemble.summary(y) for name, y in values.items() if has_scatter(y)}
     if not found:
         reasons = sorted({str(row["reason"]) for row in rows})
         raise Error(f"no seed gave a result: {'; '.join(reasons[:3])}")
     for line in _lines(found, len(rows)):
         say(line)
+    for name, reasons in study.missing().items():
+        if reasons and not np.isfinite(values[name]).any():
+            say(f"none            {name}: {reasons[0]}")
     for line in study.warnings():
         say(f"warning         {line}")
     write_text(out / "scatter.csv", _table(found))
@@ -79,8 +84,10 @@ def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str],
     [study].
     """
     stated = dict(map(_change, changes))
+    headline = next((name for name in _HEADLINE if name in names), "")
     return Study(folder / "study.toml", program=options.program, title=title,
                  study={"deck": str(deck), "folder": ".", "seeds": options.seeds, "first_seed": options.seed, **keys,
+                        "may_lack": [name for name in names if name != headline],
                         **({"changes": stated} if stated else {})},
                  method={"kind": "ensemble"}, outputs={name: name for name in names})
 
@@ -105,7 +112,7 @@ def _change(text: str) -> tuple[str, Any]:
 
 
 def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:
-    lines = [f"result          mean of {seeds} seeds, 95 % interval of the mean, standard deviation of one specimen"]
+    lines = [f"result          mean of {seeds} seeds ± half its 95 % interval (Student's t), standard deviation of one specimen"]
     width = max(map(len, found))
     for name, s in found.items():
         digits = _digits(s)
@@ -113,16 +120,18 @@ def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:
         share = f" ({100.0 * s.variation:.1f} %)" if np.isfinite(s.variation) else ""
         spread = f"sd {s.sd:.2g}{share}" if s.n > 1 else ""
         missing = f"; {s.missing} of {seeds} seeds have none" if s.missing else ""
-        lines.append(f"                {name:<{width}}  {s.mean:.{digits}g} {interval}  {spread}{missing}")
+        wanted = ensemble.seeds_for(_SHARE, s.variation)
+        more = f"; ± {100.0 * _SHARE:.0f} % takes about {wanted} seeds" if wanted is not None and wanted > s.n else ""
+        lines.append(f"                {name:<{width}}  {s.mean:.{digits}g} {interval}  {spread}{more}{missing}")
     return lines
 
 
 def _digits(s: ensemble.Summary) -> int:
-    """Digits of a mean down to the first of its interval's half-width, and one more."""
+    """Digits of a mean down to the first of its interval's half-width, and one more: three or four."""
     half = 0.5 * (s.high - s.low)
     if not np.isfinite(half) or half <= 0.0 or s.mean == 0.0:
         return 4
-    return int(np.clip(2 + np.floor(np.log10(abs(s.mean))) - np.floor(np.log10(half)), 1, 6))
+    return int(np.clip(2 + np.floor(np.log10(abs(s.mean))) - np.floor(np.log10(half)), 3, 4))
 
 
 def _runs(study: Study, rows: Sequence[dict[str, Any]]) -> list[Results]:

@@ -10,10 +10,10 @@ import fcntl
 import json
 import math
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ NO_VALUE = "no value"
 FAILED = (CRASHED, TIMED_OUT, NOT_SETTLED, NOT_QUASI_STATIC, NO_VALUE)
 
 _AT_ONCE = 16  # files that are read at a time: on a disk, and more so on a network, one waits for each
+REASON_LENGTH = 300  # characters of a reason that are kept
 _said: set[str] = set()
 
 
@@ -39,6 +40,7 @@ class RunResult:
     """What came of a run.
 
     outputs: by what they were taken from (Output.what): the number, or None and why there is none.
+    state: as `judged` by all outputs that were taken.
     wall: of all attempts, s. version: physics version.
     """
 
@@ -60,6 +62,21 @@ class RunResult:
             return math.nan
         value = self.outputs.get(what, (None, ""))[0]
         return math.nan if value is None else value
+
+
+def judged(result: RunResult, outputs: Iterable[str], may_lack: Container[str] = ()) -> RunResult:
+    """Judges a run that came to its end by some of its outputs: it has no value where it lacks one of them that it must
+    have, or all of them. Returns it with its state, and with the reasons of all that it lacks.
+    """
+    if result.state not in (DONE, NO_VALUE):
+        return result
+    found = {what: result.outputs.get(what, (None, "was not taken")) for what in outputs}
+    missing = {what: why for what, (value, why) in found.items() if value is None}
+    is_done = len(missing) < max(len(found), 1) and all(what in may_lack for what in missing)
+    reason = "; ".join(f"{what}: {why}" for what, why in missing.items())[:REASON_LENGTH]
+    if not missing and result.state == DONE:
+        reason = result.reason  # a stage that did not end as the deck asks
+    return replace(result, state=DONE if is_done else NO_VALUE, reason=reason)
 
 
 def result_file(runs: Path, run: str) -> Path:

@@ -134,7 +134,7 @@ class Study:
         return self._driver().findings()
 
     def count_values(self) -> int:
-        """Runs that gave a value of every output."""
+        """Runs that gave a value of every output that they must have."""
         return self._driver().count_values()
 
     def warnings(self) -> list[str]:
@@ -178,6 +178,10 @@ class Study:
         if self.setup.runner.kind != "pyroclast":
             return None
         return self._driver().points.seconds_of_run(self.setup.seeds[0])
+
+    def missing(self) -> dict[str, list[str]]:
+        """By output, why the runs that came to their end lack it."""
+        return self._driver().missing()
 
     def write_best(self) -> Path | None:
         """best.toml in the folder of the study: the deck with the parameters that come nearest to the targets, of

@@ -23,8 +23,8 @@ from ..writing import make_folder, refuse_link
 from .hashes import require_unchanged
 from .outputs import Output, read_summary
 from .start import FOLDER, environment, python
-from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, RunResult, begun_file,
-                    read_result, result_file, write_result)
+from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, REASON_LENGTH, TIMED_OUT, RunResult,
+                    begun_file, judged, read_result, result_file, write_result)
 
 MOST_IN_VAIN = 10
 """Attempts, one after the other, that were ended from outside before they kept anything new."""
@@ -35,7 +35,6 @@ PATIENCE = 30.0
 _LEAST_ROOM = 1e6  # bytes; with less, a process that fails without a word has probably no room to write one
 _LARGE = ("history.csv", "specimen", "fields", "figures", "checkpoints", "frames.json")
 _PR_SET_PDEATHSIG = 1
-_REASON_LENGTH = 300
 _REASON_LINES = 3  # of what a process wrote last: an error, and what it says of it
 _libc = ctypes.CDLL(None)  # before a fork: a child may not import
 
@@ -216,17 +215,14 @@ def collected(job: Job, runs: Path) -> RunResult:
 
 def _concluded(result: RunResult, reason: str, job: Job, runs: Path, summary: dict[str, Any] | None) -> RunResult:
     """With its outputs, written down, its folder thinned. The result that there is where another process was first."""
-    state, outputs = result.state, {}
-    if summary is not None and state == DONE:
+    outputs = {}
+    if summary is not None and result.state == DONE:
         for what in job.outputs:
             value, why = Output("", what).of(runs / job.id, summary)
             outputs[what] = (None if math.isnan(value) else value, why)
-        missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
-        if missing:
-            state, reason = NO_VALUE, "; ".join(missing)
     known = known_result(job, runs)
     if known is None:
-        known = replace(result, state=state, reason=reason[:_REASON_LENGTH], outputs=outputs)
+        known = judged(replace(result, reason=reason[:REASON_LENGTH], outputs=outputs), outputs)
         write_result(result_file(runs, job.id), known)  # before what it was taken from is gone
     _tidy(job, runs)
     return known
@@ -275,7 +271,7 @@ def thin(folder: Path, keep: str) -> None:
 def known_result(job: Job, runs: Path) -> RunResult | None:
     """What came of a run; None where it has to be made, be it for further outputs."""
     result = read_result(result_file(runs, job.id))
-    is_lacking = result is not None and result.state == DONE and not set(job.outputs) <= set(result.outputs)
+    is_lacking = result is not None and result.state in (DONE, NO_VALUE) and not set(job.outputs) <= set(result.outputs)
     return None if is_lacking else result
 
 

@@ -16,6 +16,7 @@ constexpr int kStretches = 12;  // number of stretches; the last one ends at 88 
 constexpr double kStretchStep = 0.05;  // distance of stretches, over f_c
 constexpr double kFewestPoints = 3.0;  // fewest points on a line that is fitted
 constexpr PeakRule kSmallFall{.fall = 0.02, .lasting = 0.0}, kLargeFall{.fall = 0.1, .lasting = 0.0};
+constexpr double kFoot = 1.0 / 3.0;  // stress below which a fall belongs to a toe, over f_c
 constexpr double kMoves = 0.05;  // difference of the strengths by two falls that is worth a warning, over f_c
 constexpr double kInertiaCountsFrom = 0.1;                  // stress from which inertia counts, over f_c
 constexpr double kUnloadingFrom = 0.9, kUnloadingTo = 0.1;  // range of the fit, over the first stress
@@ -26,16 +27,17 @@ std::size_t largest_of(const CompressionCurve& curve) {
 }
 
 /// Returns the point at which a rule finds a peak, among the points after the first wave.
+/// \param foot     stress up to which the points are left out, Pa
 /// \param modulus  where it is not 0, a fall must be deeper than the stress that the platen adds to a body of
 ///                 this modulus, Pa, while a wave passes once
 std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_until, PeakRule rule,
-                                   double modulus = 0.0) {
+                                   double foot = 0.0, double modulus = 0.0) {
   Peak peak;
   std::optional<std::size_t> at;
   const double added = modulus * waves_until / kPassages;  // at a strain rate of 1/s, Pa
   for (std::size_t i = 0; i < curve.count() && !peak.is_found(); ++i) {
     const double time = curve.time[i] - curve.time.front();
-    if (time < waves_until) continue;
+    if (time < waves_until || (peak.size() == 0.0 && curve.stress[i] < foot)) continue;
     if (time > 0.0) rule.least = added * (curve.strain[i] - curve.strain.front()) / time;
     const double before = peak.size();
     peak.take(curve.strain[i], curve.stress[i], rule);
@@ -133,6 +135,7 @@ void find_none(CompressionResponse& r, const std::string& because) {
   r.strength = {std::nullopt, because};
   r.modulus = {std::nullopt, "there is no f_c"};
   r.inelastic_strain = {std::nullopt, "there is no f_c"};
+  r.by_small_fall = r.by_large_fall = {std::nullopt, because};
 }
 
 Result::Value value_of(const Finding& finding, double factor) {
@@ -224,9 +227,13 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
         r, fmt::format("the specimen bore no compression: the largest stress is {:.3g} MPa", largest * 1e-6));
     return r;
   }
-  const auto stress_of = [&](const PeakRule& rule) -> std::optional<double> {
-    const auto at = peak_of(curve, waves_until, rule, r.modulus.value.value_or(0.0));
-    return at ? std::optional(curve.stress[*at]) : std::nullopt;
+  const auto by_fall = [&](const PeakRule& rule) -> Finding {
+    const double foot = kFoot * curve.stress[r.peak];
+    if (const auto at = peak_of(curve, waves_until, rule, foot, r.modulus.value.value_or(0.0)))
+      return {curve.stress[*at], ""};
+    return {std::nullopt,
+            fmt::format("the stress never fell by {:g} % from above a third of {} before the stage ended",
+                        100.0 * rule.fall, r.strength ? "f_c" : "the largest")};
   };
   const double time = curve.time[r.largest] - curve.time.front();
   if (time < waves_until && falls_behind(curve, r.largest)) {
@@ -244,8 +251,8 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
     r.strength.none_because = none_because(curve, r.largest);
   }
   find_modulus(curve, r);
-  r.by_small_fall = stress_of(kSmallFall);
-  r.by_large_fall = stress_of(kLargeFall);
+  r.by_small_fall = by_fall(kSmallFall);
+  r.by_large_fall = by_fall(kLargeFall);
   find_inelastic_strain(curve, r);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   if (r.modulus && !inertia.in_modulus)
@@ -264,7 +271,8 @@ void tell_doubts(const CompressionCurve& curve, const CompressionResponse& r, St
     report.lines.push_back(fmt::format("rises again behind f_c, to {:.2f} MPa ({:+.0f} %) at strain {:.5f}",
                                        largest * 1e-6, 100.0 * (largest / strength - 1.0),
                                        curve.strain[r.largest]));
-  const double by_small = r.by_small_fall.value_or(strength), by_large = r.by_large_fall.value_or(largest);
+  const double by_small = r.by_small_fall.value.value_or(strength);
+  const double by_large = r.by_large_fall.value.value_or(largest);
   const auto [least, most] = std::minmax({by_small, by_large, strength});
   if (most - least <= kMoves * strength) return;
   const bool is_between = by_small <= strength && strength <= by_large;
@@ -283,9 +291,6 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
   const CompressionResponse r = compression_response(curve, aim.waves_until);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   const bool has_points = curve.count() > 0;
-  const auto megapascals = [](const std::optional<double>& stress) {
-    return value_if(stress.has_value(), stress.value_or(0.0) * 1e-6);
-  };
   report.results = {
       {"E_GPa", value_of(r.modulus, 1e-9)},
       {"E_none_because", reason_of(r.modulus)},
@@ -293,8 +298,10 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
       {"f_c_MPa", value_of(r.strength, 1e-6)},
       {"f_c_none_because", reason_of(r.strength)},
       {"strain_at_peak", value_if(r.strength.value.has_value(), r.strength ? curve.strain[r.peak] : 0.0)},
-      {"f_c_by_fall_of_2_percent_MPa", megapascals(r.by_small_fall)},
-      {"f_c_by_fall_of_10_percent_MPa", megapascals(r.by_large_fall)},
+      {"f_c_by_fall_of_2_percent_MPa", value_of(r.by_small_fall, 1e-6)},
+      {"f_c_by_fall_of_2_percent_none_because", reason_of(r.by_small_fall)},
+      {"f_c_by_fall_of_10_percent_MPa", value_of(r.by_large_fall, 1e-6)},
+      {"f_c_by_fall_of_10_percent_none_because", reason_of(r.by_large_fall)},
       {"stress_max_MPa", value_if(has_points, has_points ? curve.stress[r.largest] * 1e-6 : 0.0)},
       {"strain_at_stress_max", value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
       {"strain_ic", value_of(r.inelastic_strain, 1.0)},

@@ -80,8 +80,9 @@ struct CompressionResponse {
   std::size_t largest = 0;  ///< point of the largest stress, whenever it came
   /// Largest stress before the first fall by 2 % and by 10 %, lasting or not, Pa. They show how far f_c
   /// depends on the rule. The first wave shakes the curve for longer than it runs, by no more than the stress
-  /// that the platen adds during one passage: shallower falls do not count.
-  std::optional<double> by_small_fall, by_large_fall;
+  /// that the platen adds during one passage: shallower falls do not count, nor do falls before the stress
+  /// first comes to a third of f_c, where the ends of the specimen are pressed flat.
+  Finding by_small_fall, by_large_fall;
   /// E: slope of the line fitted to the points from 5 % to 1/3 of f_c, Pa; of the largest stress where there
   /// is no f_c because the stress never fell. The curve begins with a toe where it is over a tenth steeper
   /// from 1/3 to 2/3. E is then the slope of the steepest stretch of the same width.

@@ -17,7 +17,7 @@ from pathlib import Path
 from ...errors import Error
 from ...writing import make_folder
 from ..start import python
-from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, RunResult
+from ..store import CRASHED, DONE, TIMED_OUT, RunResult, judged
 from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
 
 _LOOK = 0.2  # s between two looks at wall limits and at what asks to stop
@@ -129,6 +129,7 @@ class _Server:
 
 def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> RunResult:
     outputs: dict[str, tuple[float | None, str]] = {}
+    state, reason = DONE, ""
     if isinstance(said, str):
         state, reason = CRASHED, said
     else:
@@ -139,10 +140,9 @@ def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> RunRe
                 outputs[what] = (None, why)
             else:
                 outputs[what] = (value, "")
-        missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
-        state, reason = (NO_VALUE, "; ".join(missing)) if missing else (DONE, "")
-    return RunResult(job.id, job.seed, state, reason, outputs, job.values, socket.gethostname(),
-                     time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()), round(wall, 6), 1, job.version)
+    result = RunResult(job.id, job.seed, state, reason, outputs, job.values, socket.gethostname(),
+                       time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()), round(wall, 6), 1, job.version)
+    return judged(result, outputs)
 
 
 def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None], stopped: Callable[[], bool]) -> None:

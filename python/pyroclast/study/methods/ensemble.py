@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 
+_MOST_SEEDS = 1_000_000
+
+
 @dataclass(frozen=True)
 class Summary:
     """One output over the seeds. NaN where there are too few of them."""
@@ -31,17 +34,38 @@ class Summary:
 
 def summary(values: ArrayLike, level: float = 0.95, percentiles: Sequence[float] = (5, 50, 95)) -> Summary:
     """Of the values (seeds,), NaN where a run gave none. level: of the confidence interval."""
-    from scipy.stats import t
-
     given = np.asarray(values, float)
     found = given[np.isfinite(given)]
     n = len(found)
     mean = float(found.mean()) if n else float("nan")
     sd = float(found.std(ddof=1)) if n > 1 else float("nan")
-    half = float(t.ppf(0.5 * (1.0 + level), n - 1)) * sd / np.sqrt(n) if n > 1 else float("nan")
+    half = _half_width(sd, n, level) if n > 1 else float("nan")
     places = {float(p): float(np.percentile(found, p)) if n else float("nan") for p in percentiles}
     variation = sd / abs(mean) if mean != 0.0 else float("nan")
     return Summary(n, len(given) - n, mean, sd, variation, mean - half, mean + half, places)
+
+
+def seeds_for(share: float, variation: float, level: float = 0.95) -> int | None:
+    """Returns how many seeds give the mean ± a share of it (Student's t), where single runs scatter by a coefficient of
+    variation. None where that is not known, and beyond a million. level: of the confidence interval of the mean.
+    """
+    least, most = 2, _MOST_SEEDS
+    if not _half_width(variation, most, level) <= share:
+        return None
+    while least < most:
+        middle = (least + most) // 2
+        if _half_width(variation, middle, level) > share:
+            least = middle + 1
+        else:
+            most = middle
+    return most
+
+
+def _half_width(sd: float, n: int, level: float) -> float:
+    """Of the confidence interval of a mean of n values."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 * (1.0 + level), n - 1)) * sd / float(np.sqrt(n))
 
 
 def widest(summaries: Iterable[Summary]) -> float:

@@ -19,6 +19,7 @@ from .seen import Array, Seen, between, number, numbers, percent
 
 _MEANING = ("Each run has its own random specimen. The sd is that of single runs; the 95 % interval says where the "
             "mean of very many seeds would lie (Student's t).")
+_SHARE = 0.1  # of the mean: half of an interval that is narrow enough
 _CAPTION = ("Left: the runs in the order of their values, against the share of runs below them, and a normal "
             "distribution of the same mean and sd. Right: the mean of the first runs and its 95 % interval, over how "
             "many they are. Vermilion: the mean of all and its 95 % interval.")
@@ -29,7 +30,8 @@ def sections(seen: Seen) -> list[Section]:
     for output in seen.setup.outputs:
         summary = seen.of_outputs().get(output.name)
         if summary is None or not summary.get("n"):
-            why = (summary or {}).get("none_because", "no run has a value")
+            reasons = seen.missing[output.name]
+            why = (summary or {}).get("none_because", reasons[0] if reasons else "no run has a value")
             found.append(nothing(output_label(output), str(why)))
             continue
         values = numbers(row[output.name] for row in seen.rows)
@@ -47,9 +49,11 @@ def _sentence(summary: dict[str, Any]) -> str:
     relative = f" (± {percent(half / abs(summary['mean']))})" if summary["mean"] else ""
     lost = summary["missing"]
     missing = f" {lost} {'runs' if lost > 1 else 'run'} gave no value." if lost else ""
+    wanted = ensemble.seeds_for(_SHARE, summary["variation"] or np.nan)
+    more = f" If they go on so, {wanted} seeds give the mean ± {percent(_SHARE)}." if wanted and wanted > summary["n"] else ""
     return (f"The mean of {summary['n']} seeds is {number(summary['mean'])}, 95 % interval "
             f"{between(summary['low'], summary['high'])}{relative}. Single runs scatter by "
-            f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{missing}")
+            f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{more}{missing}")
 
 
 def _table(seen: Seen) -> PageTable:

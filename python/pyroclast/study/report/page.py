@@ -93,6 +93,10 @@ def _warnings(seen: Seen) -> Markup:
         said.append(f"Nothing could be found yet: {seen.none_because}")
     if failed := sum(row["state"] not in (DONE, NOT_RUN) for row in seen.rows):
         said.append(f"{_counted(failed, 'run')} of {len(seen.rows)} gave no value; see below.")
+    for name in seen.setup.may_lack:
+        if reasons := seen.missing[name]:
+            said.append(f"{name} is missing in {_counted(len(reasons), 'run')} of {len(seen.rows)}: "
+                        f"{Counter(reasons).most_common(1)[0][0]}.")
     if len(versions := _versions(seen)) > 1:
         said.append(f"The runs are of several physics versions: {', '.join(versions)}.")
     return together(*(element("p", text, class_="warn") for text in said))
@@ -203,7 +207,7 @@ def _again(seen: Seen) -> Markup:
         return element("p", "There is no run yet.")
     row = next((row for row in seen.rows if row["state"] == DONE), seen.rows[0])
     values = ", ".join(f"{p.name} = {value_text(p, row[p.column])}" for p in seen.setup.parameters)
-    outputs = ", ".join(f"{o.name} = {number(row[o.name], 6)}" for o in seen.setup.outputs)
+    outputs = ", ".join(f"{o.name} = {number(row[o.name])}" for o in seen.setup.outputs)
     return together(element("p", f"Run {row['run'][:12]}: {values + ', ' if values else ''}seed {row['seed']}. "
                                  + (f"It gave {outputs}." if row["state"] == DONE else f"It is {row['state']}.")
                                  + " table.csv has such a line for each run; FOLDER is where its results shall go."),

@@ -24,7 +24,8 @@ class Seen:
     """A study as it stands.
 
     asked: all points that the method asked for, (points, parameters) in the unit cube. rows: a line for each run, as in
-        the table. findings: None where there are none; `none_because` says why.
+        the table. findings: None where there are none; `none_because` says why. missing: by output, why the runs that
+        came to their end lack it.
     """
 
     setup: StudySetup
@@ -33,6 +34,7 @@ class Seen:
     rows: list[dict[str, Any]]
     findings: dict[str, Any] | None
     none_because: str
+    missing: dict[str, list[str]]
 
     @property
     def is_complete(self) -> bool:
@@ -75,7 +77,8 @@ def seen(study: Study) -> Seen:
     driver = study._driver()
     findings, none_because = _findings(driver.findings)
     asked = driver.plan.propose(driver._answers).points
-    return Seen(study.setup, driver.forecast(), asked, driver.rows(), findings, none_because)
+    return Seen(study.setup, driver.forecast(), asked, driver.rows(), findings, none_because,
+                driver.missing())
 
 
 def _findings(find: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any] | None, str]:
