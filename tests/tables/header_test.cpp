@@ -46,6 +46,12 @@ TEST(Header, UnitsOfStrainAreReadAsWritten) {
   EXPECT_DOUBLE_EQ(strains("Strain ‰").at(1), 5e-4);
   EXPECT_DOUBLE_EQ(strains("Strain (in ‰)").at(1), 5e-4);
   EXPECT_DOUBLE_EQ(strains("Strain", {"‰", ""}).at(1), 5e-4);
+  for (const std::string header : {"Strain permille", "Strain per mille", "Strain ‰ (LVDT 1)", "‰ strain",
+                                   "strain 1e-3", "Dehnung Promille", "strain_permille (mean)"})
+    EXPECT_DOUBLE_EQ(strains(header).at(1), 5e-4) << header;
+  for (const std::string header :
+       {"microstrain", "micro-strain", "µε", "DMS 1 microstrain", "strain µε (DMS 1)"})
+    EXPECT_DOUBLE_EQ(strains(header).at(1), 5e-7) << header;
 }
 
 // Promise: a text in brackets that looks like a unit is never passed over.

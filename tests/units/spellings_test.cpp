@@ -57,13 +57,32 @@ TEST(Spellings, EachIsAUnitOfItsKind) {
 
 // Promise: shares are read as people write them.
 TEST(Spellings, SharesAreReadAsTheyAreWritten) {
-  for (const char* text :
-       {"300 ‰", "300 permille", "300 per mille", "30 %", "30 wt%", "30 Vol.-%", "30 mass-%", "30 per cent",
-        "3e5 microstrain", "3e5 µε", "3e5 \u03BCε", "3e5 με", "0.3"})
+  for (const char* text : {"300 ‰",
+                           "300 permille",
+                           "300 per mille",
+                           "30 %",
+                           "30 wt%",
+                           "30 Vol.-%",
+                           "30 mass-%",
+                           "30 per cent",
+                           "3e5 microstrain",
+                           "3e5 µε",
+                           "3e5 \u03BCε",
+                           "3e5 με",
+                           "0.3",
+                           "0.3 -",
+                           "0.3 [-]",
+                           "300 [‰]",
+                           "3e5 [µε]",
+                           "300 [1e-3]",
+                           "3e5 [ \u03BCm/m ]",
+                           "30 [%]"})
     EXPECT_DOUBLE_EQ(parse_quantity(text, unit::dimensionless), 0.3) << text;
   for (const char* text : {"3 mstrain", "3 ‰x", "3 kpermille", "3 10^-3", "3 ε"})
     EXPECT_THROW(parse_quantity(text, unit::dimensionless), QuantityError) << text;
-  EXPECT_THROW(parse_quantity("3 ‰", unit::stress), QuantityError);
+  for (const char* text : {"3 ‰", "3 -", "3 [-]", "3 [‰]", "3 []", "3 [MPa"})
+    EXPECT_THROW(parse_quantity(text, unit::stress), QuantityError) << text;
+  EXPECT_DOUBLE_EQ(parse_quantity("3 [MPa]", unit::stress), 3e6);
 }
 
 TEST(Spellings, WhatIsNearNothingIsNotGuessed) {

@@ -111,8 +111,14 @@ std::optional<ColumnHeader> with_slash(std::string_view cell) {
 }
 
 /// Returns the unit that a name seems to end with: behind an underscore, a comma or "in", and behind a blank
-/// where it has a sign that names have not, as in "strain ‰".
+/// where it has a sign that names have not, as in "strain ‰", or means a share, as in "strain permille". A
+/// share may also begin a name, as in "% passing", or be all of it.
 std::string likely_unit(std::string_view cell) {
+  if (const auto bracket = brackets_of(cell);
+      !bracket.empty() && bracket[0].end == cell.size() && bracket[0].begin > 0 && is_remark(bracket[0].text))
+    cell = without_blanks(cell.substr(0, bracket[0].begin));
+  if (const std::string_view share = share_unit(cell); !share.empty() && !is_digit(cell.front()))
+    return std::string(share);
   for (const std::string_view mark : {"_", ",", " in "}) {
     const std::size_t at = cell.rfind(mark);
     if (at == cell.npos || at == 0) continue;
@@ -126,7 +132,10 @@ std::string likely_unit(std::string_view cell) {
                             [&](std::string_view sign) { return unit.find(sign) != unit.npos; });
     const bool is_condition = at > 0 && is_digit(cell[at - 1]);  // "strain at 50 %"
     if (at > 0 && !is_condition && has_sign && is_unit(unit)) return std::string(unit);
+    if (at > 0 && !(is_condition && has_sign) && !share_unit(unit).empty()) return std::string(unit);
   }
+  for (const std::string_view begin : {"% ", "‰ ", "percent ", "Percent ", "permille "})
+    if (cell.starts_with(begin)) return std::string(share_unit(begin));
   return "";
 }
 

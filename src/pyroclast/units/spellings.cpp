@@ -120,8 +120,8 @@ const std::vector<ShareUnit>& shares() {
        {"‰", "permille", "permil", "promille", "o/oo", "0/00", "°/oo", "%o", "10^-3", "10**-3", "10-3", "e-3",
         "e-03", "1e-3", "1e-03"}},
       {"um/m",
-       {"microstrain", "microstrains", "ustrain", "µstrain", "ustrains", "µstrains", "µε", "uε", "µe", "ue",
-        "10^-6", "10**-6", "10-6", "e-6", "e-06", "1e-6", "1e-06"}}};
+       {"microstrain", "microstrains", "micro-strain", "ustrain", "µstrain", "ustrains", "µstrains", "µε",
+        "uε", "µe", "ue", "10^-6", "10**-6", "10-6", "e-6", "e-06", "1e-6", "1e-06"}}};
   return all;
 }
 

@@ -333,7 +333,10 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
         Kind::no_number, text,
         "not one number; write numbers with a decimal point and without separators; " + requirement(unit));
   }
-  return {number, written, trimmed(rest)};
+  rest = trimmed(rest);
+  if (rest.starts_with('[') && rest.ends_with(']')) rest = trimmed(rest.substr(1, rest.size() - 2));
+  if (unit == unit::dimensionless && rest == "-") rest = "";
+  return {number, written, rest};
 }
 
 /// Returns the temperature scale that people mean by a letter, which here stands for coulomb or farad; empty
