@@ -75,6 +75,38 @@ class Concrete(unittest.TestCase):
         self.assertIn("0.413 of a section: all stones larger than --d_min 4 mm", done.stdout)
         self.pyroclast("check", "mine.toml", "--set", "blocks.count=300")
 
+    def test_a_sieve_curve_is_read_from_a_file_as_it_is_typed(self):
+        words = (*LIMESTONE, "--stones", "1800 kg/m3", "--d_min", "4 mm", "--passing")
+        self.concrete(*words, "4 mm=38 %", "8 mm=55 %", "20 mm=100 %")
+        typed = self.deck()["aggregates"]
+        for table in ("Sieve [mm],Passing [%]\n4,38\n8,55\n20,100\n",
+                      "\ufeffSiebweite [mm];Durchgang [M.-%]\n31,5;100,0\n20;100,0\n8;55,0\n4;38,0\n",
+                      "size_mm,% passing\n4,38\n8,55\n20,100\n", "d (mm);finer\n4;0,38\n8;0,55\n20;1\n",
+                      "sieve [mm],passing\n4,38\n8,55\n20,100\n",
+                      "Sieve [mm],Cumulative retained [%]\n20,0\n8,45\n4,62\n",
+                      "Siebweite [mm];Rückstand kumulativ [%]\n20;0\n8;45\n4;62\n",
+                      "Sieve [mm],mass [g],retained [%],cum. retained [%],passing [%]\n"
+                      "20,0,0,0,100\n8,450,45,45,55\n4,170,17,62,38\n"):
+            with self.subTest(table):
+                (self.folder / "mine.toml").unlink()
+                (self.folder / "mine-calibrate.toml").unlink()
+                (self.folder / "sieves.csv").write_text(table, encoding="utf-8")
+                self.concrete(*words, "sieves.csv")
+                self.assertEqual(self.deck()["aggregates"], typed)
+
+    def test_a_sieve_curve_that_cannot_be_meant_is_refused(self):
+        words = (*LIMESTONE, "--stones", "1800 kg/m3", "--d_min", "4 mm", "--passing", "sieves.csv")
+        for table, part in (("Sieve [mm],Retained [%]\n20,0\n8,45\n4,17\n", "write the shares that pass"),
+                            ("Sieve [mm],Passing [%]\n4,38\n8,55\n20,97\n", "to 100 % at the largest"),
+                            ("Sieve [mm],Passing [%]\n4,38\n8,25\n20,100\n", "must ascend with the size"),
+                            ("Sieve [kg],Passing [%]\n4,38\n20,100\n", "sieves.csv:1"),
+                            ("Sieve [mm],Passing [%]\npan,0\n20,100\n", "sieves.csv")):
+            with self.subTest(table):
+                (self.folder / "sieves.csv").write_text(table)
+                self.assertIn(part, self.concrete(*words, code=1).stderr)
+                self.assertFalse((self.folder / "mine.toml").exists())
+        self.assertIn("there is no such file", self.concrete(*words[:-1], "none.csv", code=1).stderr)
+
     def test_a_hot_test_takes_mortar_and_contacts_from_the_calibrated_deck(self):
         self.concrete(*LIMESTONE, *FULLER, "--blocks", "1500", "--width", "100 mm")
         text = (self.folder / "mine.toml").read_text()

@@ -130,7 +130,7 @@ class NamesOfColumns(Tables):
                 ('fraction = 0.3\nminimum_gap = "0.5 mm"\npassing = { csv = "a.csv" }\npassing_by = "area"',
                  "Sieve,Opening [mm],Passing [%]\n5,4,10\n7,16,100\n", ('columns = ["Opening", "Passing"]',)),
                 ('fraction = 0.3\nminimum_gap = "0.5 mm"\npassing = { csv = "a.csv" }\npassing_by = "area"',
-                 "Opening [mm],cumulative retained [%]\n4,0\n16,100\n", ("write the shares that pass",))):
+                 "Opening [mm],retained [%]\n4,0\n16,100\n", ("write the shares that pass",))):
             with self.subTest(table):
                 self.refused(self.check(STONES.format(aggregates=keys), a_csv=table), "aggregates.", *parts)
 

@@ -98,7 +98,7 @@ struct ConcreteOptions {
   // quantities as typed; empty where they are not stated
   std::string strength, modulus, rock, fraction, stones, d_max, hot;
   std::string d_min = "4.75 mm", width, height;
-  std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %"
+  std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %", or a file
   std::int64_t blocks = 0;           ///< 0: by the largest aggregate
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
   std::filesystem::path out;

@@ -22,6 +22,7 @@
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/setup.hpp"
+#include "pyroclast/setup/sieve_curve.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/specimen/grading_curve.hpp"
 #include "pyroclast/units/units.hpp"
@@ -85,8 +86,15 @@ double quantity_of(const char* option, const std::string& text, const Unit& unit
   return value;
 }
 
-/// Reads points of a grading such as "8 mm=45 %".
+/// Reads points of a grading such as "8 mm=45 %", or the name of a file with a sieve analysis.
 specimen::GradingCurve passing_of(const std::vector<std::string>& texts) {
+  if (texts.size() == 1 && texts[0].find('=') == std::string::npos) {
+    if (!std::filesystem::exists(texts[0]))
+      throw Error(fmt::format(
+          "--passing \"{}\": there is no such file; state one, or sizes and shares such as '8 mm=45 %'",
+          texts[0]));
+    return sieve_curve(MeasuredTable::open(texts[0], kSieveColumns), {texts[0], {}, {}});
+  }
   std::vector<std::pair<double, double>> points;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
@@ -106,7 +114,7 @@ specimen::GradingCurve passing_of(const std::vector<std::string>& texts) {
     curve.sizes.push_back(size);
     curve.shares.push_back(share);
   }
-  return curve;
+  return points.size() < 2 ? curve : checked_curve(std::move(curve));
 }
 
 Asked asked_of(const ConcreteOptions& o) {
@@ -531,7 +539,7 @@ int write_concrete(const ConcreteOptions& options) {
     return 0;
   }
   fmt::print(
-      "first guesses   E of the mortar {:g} GPa, strengths {:g} times the paper's; {} blocks\nNext:\n"
+      "first guesses   E of the mortar {:.4g} GPa, strengths {:.4g} times the paper's; {} blocks\nNext:\n"
       "  pyroclast study run {}\n",
       1e-9 * found.mortar_modulus, found.factor, found.blocks, shell_path(beside("calibrate")));
   if (asked.hot)

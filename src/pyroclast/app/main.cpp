@@ -284,7 +284,7 @@ int command_line(int argc, char** argv) {
   concrete
       ->add_option("--passing", concrete_options.passing,
                    "Share that passes each sieve, by mass, in the place of --d_max: --passing '4 mm=38 %' '8 "
-                   "mm=55 %' '20 mm=100 %'")
+                   "mm=55 %' '20 mm=100 %', or a file with two columns: --passing sieves.csv")
       ->take_all();
   concrete
       ->add_option("--d_min", concrete_options.d_min,

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/setup/sieve_curve.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grading_curve.hpp"
 #include "pyroclast/specimen/grain.hpp"
@@ -31,9 +32,6 @@ constexpr int kPlacementAttempts = 100'000;
 
 /// Smallest side of a test specimen over the largest aggregate (EN 12390-1 asks for 3.5).
 constexpr double kFewestAggregatesAcross = 3.0;
-
-/// Largest difference from 1 of the last share of a sieve analysis, as percents leave it.
-constexpr double kAllPass = 1e-9;
 
 constexpr Meaning kPhase = "their material, a table of [materials]";
 
@@ -74,48 +72,32 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
       "passing", {.value = "list of points [size, share], or { csv = file }", .name = "passing"},
       "grading that was measured, in the place of Fuller's curve: the share that passes each sieve, 100 % "
       "the largest; straight between sieves, and rescaled to the stones larger than d_min");
-  specimen::GradingCurve curve;
-  const auto complain = [&](const std::string& what) {
-    s.error("passing", what);
-    return std::nullopt;
-  };
-  if (s.is_table("passing")) {
-    const std::array<AskedColumn, 2> asked{{{"size", unit::length, {{&meaning::sieve}}},
-                                            {"passing", unit::dimensionless, {{&meaning::passing}}}}};
-    const auto read =
-        read_named_table(s.section("passing", "a sieve analysis: sizes, and the shares that pass"), folder,
-                         asked, {&meaning::retained, &meaning::radius});
-    if (!read) return std::nullopt;
-    try {
-      curve.sizes = read->table.values(read->columns[0], unit::length);
-      curve.shares = read->table.values(read->columns[1], unit::dimensionless);
-    } catch (const Error& error) {
-      return complain(error.what());
+  const char* wrong = "csv";
+  const Section* at = &s;
+  std::optional<Section> named;
+  try {
+    if (s.is_table("passing")) {
+      named = s.section("passing", "a sieve analysis: sizes, and the shares that pass");
+      at = &*named;
+      const std::string file = named->text("csv", "[measured table](measured-tables.md) beside the deck");
+      const ColumnChoice choice = read_column_choice(*named, file, kSieveColumns, kSieveColumns);
+      if (!named->ok() || file.empty()) return std::nullopt;
+      const auto curve = sieve_curve(MeasuredTable::open(folder / file, kSieveColumns), choice);
+      named->names_file("csv", folder / file);
+      return curve;
     }
-  } else {
+    wrong = "passing";
+    specimen::GradingCurve curve;
     for (const auto& [size, share] : s.points("passing", unit::length, unit::dimensionless, "")) {
       curve.sizes.push_back(size);
       curve.shares.push_back(share);
     }
+    if (!s.ok() || curve.sizes.empty()) return std::nullopt;
+    return checked_curve(std::move(curve));
+  } catch (const Error& error) {
+    at->error(wrong, error.what());
+    return std::nullopt;
   }
-  if (!s.ok() || curve.sizes.empty()) return std::nullopt;
-  if (curve.sizes.front() > curve.sizes.back()) {  // laboratories list sieves so
-    std::ranges::reverse(curve.sizes);
-    std::ranges::reverse(curve.shares);
-  }
-  if (curve.sizes.size() < 2 || curve.sizes.front() < 0.0 ||
-      std::ranges::adjacent_find(curve.sizes, std::ranges::greater_equal()) != curve.sizes.end())
-    return complain("must have two sizes or more, which ascend or descend, none below 0");
-  if (curve.shares.back() > 1.0 + kAllPass)
-    return complain(
-        fmt::format("reaches {:.6g}, but where all passes the share is 1, or 100 %: the unit is "
-                    "missing",
-                    curve.shares.back()));
-  if (!std::ranges::is_sorted(curve.shares) || curve.shares.front() < 0.0 ||
-      curve.shares.back() < 1.0 - kAllPass)
-    return complain("must ascend with the size, from 0 % or more to 100 % at the largest");
-  curve.shares.back() = 1.0;
-  return curve;
 }
 
 void read_measured_grading(const Section& s, const std::filesystem::path& folder, const DeckSpace& space,
