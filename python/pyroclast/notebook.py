@@ -159,4 +159,4 @@ def _rows(number: int, stage: Mapping[str, Any]) -> str:
 
 
 def _shown(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -120,7 +120,7 @@ def _stages(run: Results) -> list[dict[str, Any]]:
 def _shown(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _steps(run: Results, body: dict[str, Any] | None) -> list[tuple[str, str]]:

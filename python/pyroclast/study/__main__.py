@@ -18,6 +18,7 @@ from .command_line import parser
 from .driver import NOT_RUN, WITH_A_BEST, duration
 from .executors.commands import Commands
 from .file import reference, schema
+from .parameters import Value
 from .study import Study
 
 _INTRODUCTION = """# Study reference
@@ -91,7 +92,7 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         complain(error)
         return False
     values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
-    say("best point      " + ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
+    say("best point      " + ", ".join(f"{p.name} = {_shown(v)} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
     units = {output.name: "" if output.unit == "1" else f" {output.unit}" for output in setup.outputs}
     far = []
     for target, y in zip(setup.targets, found["best"]["y"]):
@@ -107,10 +108,14 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         for line in far:
             say(f"warning         {line}")
         return True
-    at_end = [f"{p.name} = {v:g}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
+    at_end = [f"{p.name} = {_shown(v)}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
     end = [f"{' and '.join(at_end)}: at the end of the range"] if at_end else []
     complain(f"the targets are not met: {'; '.join([found['finished'], *end, *far])}")
     return False
+
+
+def _shown(value: Value) -> str:
+    return f"{value:d}" if isinstance(value, int) else f"{value:.4g}"
 
 
 def _checked(study: Study) -> None:
