@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/shown.hpp"
@@ -47,12 +48,6 @@ std::optional<Curve> try_at(const Section& section, std::string_view key, const 
 
 std::string path_of(const Section& section, std::string_view key) {
   return section.path().empty() ? std::string(key) : fmt::format("{}.{}", section.path(), key);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 /// Returns a ratio that has only a share of the loss of `ratio`.
@@ -121,12 +116,12 @@ std::optional<Curve> CurveReader::read_forms(const Section& forms, const Unit& u
   for (const std::string& form : allowed)
     if (forms.has(form)) given.push_back(form);
   if (given.empty()) {
-    forms.error(fmt::format("a curve needs one of the keys {}", joined(allowed)));
+    forms.error(fmt::format("a curve needs one of the keys {}", fmt::join(allowed, ", ")));
     return std::nullopt;
   }
   for (std::size_t i = 1; i < given.size(); ++i)
     forms.error(given[i], fmt::format("has no meaning beside \"{}\": a curve has one of {}", given[0],
-                                      joined(allowed)));
+                                      fmt::join(allowed, ", ")));
   return read_form(forms, given[0], unit);
 }
 

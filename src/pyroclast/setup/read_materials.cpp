@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/nearest.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/plugin/code_permission.hpp"
@@ -321,10 +322,6 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
   return m;
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  return fmt::format("\"{}\"", fmt::join(names, "\", \""));
-}
-
 constexpr const char* kBetweenStones = "between_stones";
 
 /// Returns the two phases that the name of an interface, `a_b`, joins; empty where it names no two phases.
@@ -349,7 +346,7 @@ std::vector<std::string> read_between_stones(const Section& s, const std::vector
       s.error(kBetweenStones, of_stones.empty()
                                   ? "has no meaning here: which block belongs to which stone is not known"
                                   : fmt::format("\"{}\" is no phase of stones; such phases are {}", phase,
-                                                list_of(of_stones)));
+                                                quoted_list(of_stones)));
   return list;
 }
 
@@ -367,7 +364,7 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
     if (pair.empty() && !joins_stones)
       s.error(
           fmt::format("names no two phases of the specimen, as a_b, and has no \"between\"; phases are {}",
-                      list_of(phases)));
+                      quoted_list(phases)));
     return pair;
   }
   std::vector<std::array<std::string, 2>> pairs;
@@ -376,7 +373,7 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
   for (const auto& phase : list)
     if (std::ranges::find(phases, phase) == phases.end())
       s.error("between",
-              fmt::format("\"{}\" is no phase of the specimen; phases are {}", phase, list_of(phases)));
+              fmt::format("\"{}\" is no phase of the specimen; phases are {}", phase, quoted_list(phases)));
   return pairs;
 }
 
@@ -604,9 +601,9 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
                               "weight w of the inclusions in the strain of the concrete; without this key "
                               "from the specimen's share of inclusions, by Mori and Tanaka, and Levin");
   if (phases.size() > 2)
-    s->error(
-        "inclusion_ratio",
-        fmt::format("is for a matrix and one kind of inclusions, but the phases are {}", list_of(phases)));
+    s->error("inclusion_ratio",
+             fmt::format("is for a matrix and one kind of inclusions, but the phases are {}",
+                         quoted_list(phases)));
   return concrete;
 }
 

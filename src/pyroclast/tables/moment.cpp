@@ -11,9 +11,8 @@
 namespace pyroclast {
 namespace {
 
-constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212
+constexpr std::string_view kMinusSign = "\xE2\x88\x92";  // U+2212
 constexpr std::int64_t kSixty = 60;
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 constexpr std::size_t kFractionDigits = 9;
 constexpr std::size_t kMostHourDigits = 6;
 
@@ -56,7 +55,7 @@ class Cursor {
   std::string_view rest_;
 };
 
-int number(std::string_view digits) {
+int number_of(std::string_view digits) {
   int value = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), value);
   return value;
@@ -67,7 +66,7 @@ bool read_date(Cursor& text, Moment& moment) {
   constexpr std::size_t kYear = 4, kCompact = 8;
   Cursor ahead = text;
   if (const auto all = ahead.digits(kCompact, kCompact); all && ahead.next() == 'T') {
-    moment.date = {number(all->substr(0, 4)), number(all->substr(4, 2)), number(all->substr(6))};
+    moment.date = {number_of(all->substr(0, 4)), number_of(all->substr(4, 2)), number_of(all->substr(6))};
     moment.sign = 'T';
     moment.is_year_first = true;
     text = ahead;
@@ -84,7 +83,7 @@ bool read_date(Cursor& text, Moment& moment) {
   if (!second || !ahead.take(between)) return false;
   const auto third = ahead.digits(1, first->size() == kYear ? 2 : kYear);
   if (!third || third->size() == 3) return false;
-  moment.date = {number(*first), number(*second), number(*third)};
+  moment.date = {number_of(*first), number_of(*second), number_of(*third)};
   moment.sign = sign;
   moment.is_year_first = first->size() == kYear;
   text = ahead;
@@ -98,15 +97,15 @@ bool read_clock(Cursor& text, Moment& moment) {
     const auto all = text.digits(4, 6);
     if (!all || all->size() == 5) return false;
     moment.parts = static_cast<int>(all->size() / 2);
-    for (std::size_t i = 0; i < all->size() / 2; ++i) parts[i] = number(all->substr(2 * i, 2));
+    for (std::size_t i = 0; i < all->size() / 2; ++i) parts[i] = number_of(all->substr(2 * i, 2));
   } else {
     const auto hours = text.digits(1, moment.has_date() ? 2 : kMostHourDigits);
     if (!hours) return false;
-    parts[0] = number(*hours);
+    parts[0] = number_of(*hours);
     for (moment.parts = 1; moment.parts < 3 && text.take(":"); ++moment.parts) {
       const auto part = text.digits(2, 2);
       if (!part) return false;
-      parts[static_cast<std::size_t>(moment.parts)] = number(*part);
+      parts[static_cast<std::size_t>(moment.parts)] = number_of(*part);
     }
     if (moment.parts < 2) return false;
   }
@@ -120,7 +119,7 @@ bool read_clock(Cursor& text, Moment& moment) {
     if (!behind) return false;
     std::string digits(behind->substr(0, kFractionDigits));
     digits.resize(kFractionDigits, '0');
-    moment.fraction = number(digits);
+    moment.fraction = number_of(digits);
   }
   return true;
 }
@@ -152,21 +151,21 @@ bool read_offset(Cursor& text, Moment& moment) {
     return true;
   }
   const bool is_east = ahead.take("+");
-  if (!is_east && !ahead.take("-") && !ahead.take(kMinus)) return true;
+  if (!is_east && !ahead.take("-") && !ahead.take(kMinusSign)) return true;
   Cursor compact = ahead;
   int hours = 0, minutes = 0;
   if (const auto four = compact.digits(4, 4)) {
-    hours = number(four->substr(0, 2));
-    minutes = number(four->substr(2));
+    hours = number_of(four->substr(0, 2));
+    minutes = number_of(four->substr(2));
     ahead = compact;
   } else {
     const auto two = ahead.digits(2, 2);
     if (!two) return false;
-    hours = number(*two);
+    hours = number_of(*two);
     if (ahead.take(":")) {
       const auto behind = ahead.digits(2, 2);
       if (!behind) return false;
-      minutes = number(*behind);
+      minutes = number_of(*behind);
     }
   }
   if (hours > 23 || minutes > 59) return false;
@@ -236,7 +235,7 @@ bool Moment::is_like(const Moment& other) const {
 
 std::int64_t Moment::nanoseconds(ClockForm form) const {
   const bool is_of_minutes = parts == 2 && (has_date() || is_of_day || form == ClockForm::hours_minutes);
-  return (is_of_minutes ? kSixty : 1) * count * kSecond + fraction - offset * kSecond;
+  return (is_of_minutes ? kSixty : 1) * count * kSecondInNs + fraction - offset * kSecondInNs;
 }
 
 std::optional<std::int64_t> Moment::day(DateOrder order) const {

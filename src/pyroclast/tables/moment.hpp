@@ -7,6 +7,9 @@
 
 namespace pyroclast {
 
+/// Nanoseconds of a second.
+inline constexpr std::int64_t kSecondInNs = 1'000'000'000;
+
 /// Meaning of the two parts of a time such as 01:30; three parts are hours, minutes and seconds.
 enum class ClockForm { unknown, minutes_seconds, hours_minutes };
 enum class DateOrder { year_month_day, day_month_year, month_day_year };

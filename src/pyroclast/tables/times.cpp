@@ -16,7 +16,7 @@
 namespace pyroclast {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000, kHour = 3600 * kSecond, kDay = 24 * kHour;  // ns
+constexpr std::int64_t kHourInNs = 3600 * kSecondInNs, kDayInNs = 24 * kHourInNs;  // ns
 constexpr std::int64_t kMostDays = 36525;  ///< days that a record may last
 
 std::string_view letters_of(DateOrder order) {
@@ -27,10 +27,10 @@ std::string_view letters_of(DateOrder order) {
 /// Adds a day from each row on at which a clock passes midnight: with the day added the times go on within
 /// two of their longest steps, or within an hour. Other falls stay.
 void pass_midnights(std::vector<std::int64_t>& times) {
-  std::int64_t longest = kHour / 2, added = 0;
+  std::int64_t longest = kHourInNs / 2, added = 0;
   for (std::size_t i = 1; i < times.size(); ++i) {
     const std::int64_t step = times[i] + added - times[i - 1];
-    if (step < 0 && step + kDay <= 2 * longest) added += kDay;
+    if (step < 0 && step + kDayInNs <= 2 * longest) added += kDayInNs;
     times[i] += added;
     longest = std::max(longest, times[i] - times[i - 1]);
   }
@@ -39,9 +39,9 @@ void pass_midnights(std::vector<std::int64_t>& times) {
 /// Returns the time of a clock on the day on which it lies in a record or, if on none, next to it. Without a
 /// midnight in the record it may lie long before: times that count from a start have the start 0:00:00.
 std::int64_t on_its_day(std::int64_t time, std::int64_t first, std::int64_t last) {
-  const bool passes_midnight = last >= kDay;
-  if (time < first && passes_midnight && time + kDay - last < first - time) return time + kDay;
-  return time > last && first + kDay - time < time - last ? time - kDay : time;
+  const bool passes_midnight = last >= kDayInNs;
+  if (time < first && passes_midnight && time + kDayInNs - last < first - time) return time + kDayInNs;
+  return time > last && first + kDayInNs - time < time - last ? time - kDayInNs : time;
 }
 
 }  // namespace
@@ -174,15 +174,15 @@ MeasuredTable::Times MeasuredTable::times(const ChosenColumn& column) const {
   bool is_of_day = column.start == kFirstRow;
   if (moments[0].has_date()) {
     const auto days = days_of(column, moments);
-    for (std::size_t i = 0; i < count; ++i) at[i] += days[i] * kDay;
-    if (start) *start += days[count] * kDay;
+    for (std::size_t i = 0; i < count; ++i) at[i] += days[i] * kDayInNs;
+    if (start) *start += days[count] * kDayInNs;
     is_of_day = true;
   } else if (form != ClockForm::minutes_seconds || moments[0].parts == 3 || moments[0].is_of_day) {
-    const bool is_of_clock = std::ranges::all_of(at, [](std::int64_t time) { return time < kDay; });
+    const bool is_of_clock = std::ranges::all_of(at, [](std::int64_t time) { return time < kDayInNs; });
     if (is_of_clock) pass_midnights(at);
     // A clock that began within an hour before is rather that of the record.
-    is_of_day =
-        is_of_day || moments[0].is_of_day || (is_of_clock && (at.front() >= kHour || at.back() >= kDay));
+    is_of_day = is_of_day || moments[0].is_of_day ||
+                (is_of_clock && (at.front() >= kHourInNs || at.back() >= kDayInNs));
     if (start) start = on_its_day(*start, at.front(), at.back());
   }
   if (start && *start > at.back())
@@ -193,7 +193,7 @@ MeasuredTable::Times MeasuredTable::times(const ChosenColumn& column) const {
   if (!start && is_of_day) start = at.front();
   result.start = is_stated ? column.start : is_of_day ? first : "";
   for (const std::int64_t time : at)
-    result.values.push_back(static_cast<double>(time - start.value_or(0)) / kSecond);
+    result.values.push_back(static_cast<double>(time - start.value_or(0)) / kSecondInNs);
   return result;
 }
 
