@@ -14,11 +14,27 @@ from sphinx.builders.html import StandaloneHTMLBuilder
 from sphinx.environment.adapters.toctree import TocTree
 from sphinx.writers.html import HTMLTranslator
 
+_CITATION = (pathlib.Path(__file__).resolve().parents[1] / "CITATION.cff").read_text("utf-8")
+
+
+def _of_citation(key: str) -> str:
+    """Returns a value of CITATION.cff, empty where the key is not there."""
+    found = re.search(rf"^{key}: *[\"']?([^\"'\n]+)", _CITATION, re.MULTILINE)
+    return found[1].strip() if found else ""
+
+
 project = "Pyroclast"
+release = version = _of_citation("version")
 author = "the Pyroclast authors"
 copyright = author  # pylint: disable=redefined-builtin
 extensions = ["myst_parser", "sphinx_copybutton", "sphinxcontrib.bibtex", "sphinx.ext.autodoc"]
-myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "substitution"]
+_HOME = _of_citation("repository-code")
+myst_substitutions = {
+    "version": version,
+    "home": f"The project lives at <{_HOME}>." if _HOME else
+    "This copy names no public address of the project. Ask those who gave you the program.",
+}
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 myst_dmath_allow_digits = False
@@ -35,6 +51,7 @@ html_show_sphinx = False
 html_math_renderer = "mathml"
 copybutton_exclude = ".linenos, .gp, .go"
 suppress_warnings = ["myst.header"]  # a table's page begins with the table
+highlight_language = "python"  # of examples in docstrings; every block of a page names its own
 smartquotes = False  # --set is no dash
 default_role = "code"
 nitpick_ignore_regex = [(r"py:.*", r".*")]  # types of signatures, such as np.ndarray: no inventory is fetched
@@ -48,6 +65,7 @@ latex_show_urls = "no"
 
 _IMPORT = "@import url(/javascript/normalize.css/normalize.css);"
 _NORMALIZE = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css")
+_MODULE = 'import Gumshoe from "./gumshoe-patched.js";\n'
 _DARK = re.compile(r'body\[data-theme="dark"\] (\{[^{}]*--color[^{}]*\})')
 _TAG = re.compile(r"\s*\\tag\{([^}]*)\}")
 _PARAMETER = re.compile(r"^((?:\w+, )*\w+): ")
@@ -121,10 +139,18 @@ def _list_parameters(app: Sphinx, what: str, name: str, of: object, options: obj
 
 
 def _complete_theme(app: Sphinx, error: Exception | None) -> None:
-    """Debian 12's furo fetches one style from the root of the host, and does not follow the dark mode of the system."""
-    style = pathlib.Path(app.outdir) / "_static" / "styles" / "furo.css"
+    """Debian's furo fetches one style from the root of the host, does not follow the dark mode of the system, and
+    imports a script into another, which a browser takes neither as a plain script nor from a file.
+    """
     if error or app.builder.format != "html":
         return
+    static = pathlib.Path(app.outdir) / "_static"
+    script = static / "scripts" / "furo.js"
+    text = script.read_text("utf-8")
+    if text.startswith(_MODULE):
+        spy = (script.parent / "gumshoe-patched.js").read_text("utf-8")
+        script.write_text(spy + text[len(_MODULE):], "utf-8")
+    style = static / "styles" / "furo.css"
     text = style.read_text("utf-8")
     if _IMPORT in text:
         text = text.replace(_IMPORT, _NORMALIZE.read_text("utf-8"))

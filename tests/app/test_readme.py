@@ -12,8 +12,9 @@ ROOT = pathlib.Path(__file__).parents[2]
 
 
 def commands() -> list[str]:
-    """Lines of the README's blocks of shell commands."""
-    blocks = re.findall(r"^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
+    """Lines of the blocks of shell commands in the README's part "Use it"."""
+    part = (ROOT / "README.md").read_text().partition("\n## Use it\n")[2].partition("\n## ")[0]
+    blocks = re.findall(r"^```sh\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
     return [line for block in blocks for line in block.splitlines() if line.strip()]
 
 
