@@ -697,6 +697,25 @@ class Lists(StudyTest):
             self.assertEqual({row["state"] for row in study.rows()}, {"done"})
             shutil.rmtree(study.setup.folder)
 
+    def test_its_script_makes_all_runs_as_tasks_of_a_slurm_array(self) -> None:
+        study = self.study(self.of_function('kind = "lhs"\nsamples = 5', rest="""
+[slurm]
+slots = 3
+time = "90 s"
+points_per_task = 2
+options = ["--partition=long", "--wrap=true"]
+"""))
+        self.assertFalse(study.run("commands"))
+        script = (study.setup.folder / "commands.sbatch").read_text()
+        asked = re.findall(r"^#SBATCH (.*)$", script, re.MULTILINE)
+        self.assertEqual(asked, ["--array=1-3%3", "--time=1:30", "--ntasks=1", "--cpus-per-task=1", "--partition=long"])
+        self.assertIn("# left out, as it may run a program: --wrap=true", script)
+        for task in ("1", "2", "3"):
+            self.assertEqual(len(list(study.setup.folder.glob("runs/*/summary.json"))), 2 * (int(task) - 1))
+            subprocess.run(["sh"], input=script, text=True, check=True, env=os.environ | {"SLURM_ARRAY_TASK_ID": task})
+        self.assertTrue(study.run("commands"))
+        self.assertFalse((study.setup.folder / "commands.sbatch").exists())
+
 
 TWO_AS_ONE = '''
 def model(seed, a, b, c, d):

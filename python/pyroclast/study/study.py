@@ -100,7 +100,7 @@ class Study:
         if name == "local":
             return Local(jobs or free_cores())
         if name == "commands":
-            return Commands(self.setup.folder / "commands.txt")
+            return Commands(self.setup.folder / "commands.txt", self.setup.slurm)
         if name == "slurm":
             return Slurm(self.setup.slurm if jobs is None else replace(self.setup.slurm, slots=jobs))
         raise Error(f"executor {name!r}: must be one of {', '.join(EXECUTORS)}")
