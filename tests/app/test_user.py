@@ -967,8 +967,9 @@ class Running(UserTest):
         self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
         line, rest = (self.folder / "mine.toml").read_text().split("\n", 1)
         self.assertEqual(rest, STARTER)
-        schema = json.loads(pathlib.Path(line.removeprefix("#:schema ")).read_text())
-        self.assertIn("specimen", schema["properties"])
+        schema = self.folder / line.removeprefix("#:schema ")
+        schema.write_text(self.pyroclast("keys", "--schema").stdout)
+        self.assertIn("specimen", json.loads(schema.read_text())["properties"])
         check = self.pyroclast("check", "mine.toml")
         self.assertEqual(check.returncode, 0, check.stderr)
         for word in ("zones", "contacts", "shortest edge", "time step", "set by gridpoint", "E about", "memory"):

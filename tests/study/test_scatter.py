@@ -68,6 +68,15 @@ class Seeds(StudyTest):
         self.assertEqual(len(after), 4)
         self.assertEqual({file: after[file] for file in before}, before)
 
+    def test_a_dry_run_tells_the_time_of_all_seeds_and_leaves_nothing(self):
+        before = sorted(self.folder.rglob("*"))
+        said = self.run_deck("--seeds", "3", "--dry-run", *SMALL).stdout
+        self.assertRegex(said, r"runs +3, 0 of them done: 3 left")
+        self.assertRegex(said, r"time +\d+ \w+ a run, \d+ \w+ of one core in all")
+        self.run_deck("--seeds", "3", "--dry-run", "--out", "kept/seeds", *SMALL)
+        self.assertRegex(self.run_deck("--dry-run", *SMALL).stdout, r"run +2 stages, about .* steps; about \d+ \w+")
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
     def test_runs_of_heat_alone_have_no_curves_of_stress(self):
         wall = mock.Mock(moves=False, folder="runs/wall")
         with self.assertRaisesRegex(Error, "runs/wall is a run of heat alone, .* `pyroclast report RUN"):
@@ -176,6 +185,7 @@ class Converge(StudyTest):
         words = [PROGRAM, "converge", CASES / "starter.toml", "--seeds", "2", *SMALL]
         ahead = subprocess.run([*words, "--dry-run"], cwd=self.folder, capture_output=True, text=True, check=True).stdout
         self.assertEqual(len(ahead.splitlines()), 3 if "double" not in ahead else 4)
+        self.assertFalse((self.folder / "runs").exists())
         done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=True).stdout
         self.assertRegex(done, r"half the rate +[+-]\d")
         with open(self.folder / "runs/starter-converge/converge.csv", newline="", encoding="utf-8") as file:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import collections
 import math
-import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,6 +17,7 @@ from .command_line import parser
 from .driver import NOT_RUN, WITH_A_BEST, duration
 from .executors.commands import Commands
 from .file import reference, schema
+from .foresight import foresee
 from .parameters import Value
 from .study import Study
 
@@ -29,7 +29,6 @@ means: the key may be left out, and nothing takes its place.
 
 """
 _FAR = 30.0  # distance of an output from its target, over the smaller of both, that tells of another unit
-_DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
 
 
 def main(words: list[str]) -> int:
@@ -58,7 +57,9 @@ def _run(options: argparse.Namespace) -> int:
     if options.keep:
         study.setup = replace(study.setup, keep=options.keep)
     if options.dry_run:
-        return _foresee(study)
+        _checked(study)
+        foresee(study, say)
+        return 0
     if options.again:
         study.forget_failures()
     say = _speech(options)
@@ -66,7 +67,8 @@ def _run(options: argparse.Namespace) -> int:
     is_complete = study.run(executor, say=say)
     table = study.setup.folder / "table.csv"
     if isinstance(executor, Commands) and executor.written:
-        say(f"{executor.written} commands are in {executor.file}; when they are done, the same command takes them in")
+        say(f"{executor.written} commands are in {executor.file}, and for Slurm in {executor.script}; when they are done, "
+            "the same command takes them in")
         return 0
     if not is_complete:
         say(f"stopped; to go on: pyroclast study run {shell_path(options.study)}")
@@ -121,28 +123,6 @@ def _shown(value: Value) -> str:
 def _checked(study: Study) -> None:
     for warning in study.check():
         complain(warning, "warning")
-
-
-def _foresee(study: Study) -> int:
-    _checked(study)
-    seen = study.forecast()
-    setup = study.setup
-    more = "" if seen.is_complete else " to begin with; more may follow"
-    say(f"points          {seen.points}{more}")
-    say(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
-    if not seen.left:
-        return 0
-    seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
-    if seconds is None:
-        say("time            not known before one run is done")
-    else:
-        say(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
-    if setup.runner.kind == "pyroclast":
-        there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
-        say(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
-              f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
-              f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
-    return 0
 
 
 def _check(options: argparse.Namespace) -> int:

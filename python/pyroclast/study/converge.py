@@ -20,6 +20,7 @@ from ..decks import toml
 from ..errors import Error
 from ..writing import make_folder, write_text
 from .driver import duration
+from .foresight import folder_of_runs
 from .parameters import scaled, value_at
 from .scatter import deck_text, has_scatter, result_names, study_of_seeds, values_of
 
@@ -42,7 +43,11 @@ class Variant:
 def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     """Makes the runs that are missing and says the table. Raises Error for a deck in error."""
     deck = Path(options.study).resolve()
-    out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-converge"))
+    with folder_of_runs(Path(options.out or Path("runs") / f"{deck.stem}-converge"), not options.dry_run) as out:
+        return _run_in(out, deck, options, say)
+
+
+def _run_in(out: Path, deck: Path, options: argparse.Namespace, say: Callable[[str], None]) -> int:
     given = list(options.set or [])
     text = deck_text(deck, given)
     variants = [Variant(_AS_IT_STANDS, ()), *variants_of(tomllib.loads(_core.written(text)))]

@@ -19,7 +19,8 @@ from ..comparisons import compare_seeds
 from ..errors import Error
 from ..results import Results
 from ..style import save
-from ..writing import make_folder, write_text
+from ..writing import write_text
+from .foresight import folder_of_runs, foresee
 from .methods import ensemble
 from .study import Study
 
@@ -33,7 +34,11 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     Raises Error for a deck in error, and where no run gave a value.
     """
     deck = Path(options.study).resolve()
-    out = make_folder(Path(options.out or Path("runs") / f"{deck.stem}-seeds"))
+    with folder_of_runs(Path(options.out or Path("runs") / f"{deck.stem}-seeds"), not options.dry_run) as out:
+        return _run_in(out, deck, options, say)
+
+
+def _run_in(out: Path, deck: Path, options: argparse.Namespace, say: Callable[[str], None]) -> int:
     changes = options.set or []
     names = result_names(deck_text(deck, changes))
     if not names:
@@ -42,6 +47,9 @@ def run(options: argparse.Namespace, say: Callable[[str], None]) -> int:
     study = study_of_seeds(deck, out, f"Scatter of {deck.stem}", changes, names, options, keep="history")
     for warning in study.check():
         say(f"warning         {warning}")
+    if options.dry_run:
+        foresee(study, say)
+        return 0
     if not study.run(jobs=options.jobs, say=say):
         say("stopped; to go on: the same command")
         return 130

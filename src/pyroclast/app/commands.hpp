@@ -31,6 +31,7 @@ struct RunOptions {
   bool figures = true;
   bool page = true;  ///< false: no page of the run at its end
   bool watch = false;
+  bool dry_run = false;              ///< true to tell what the run takes, and not to run
   int threads = 0;                   ///< most threads; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best available
   std::optional<std::int64_t> seed;  ///< seed in place of the deck's
@@ -129,8 +130,9 @@ struct KeysOptions {
 int print_keys(const KeysOptions& options);
 /// Returns all keys that a deck may have, from the file that the build left where it is there.
 DeckSchema known_deck_schema();
-/// Returns the JSON Schema of decks that the build left; empty where there is none.
-std::filesystem::path editor_schema_file();
+/// First line of a deck that a command writes. An editor finds the schema where `keys --schema` was saved
+/// beside the deck; the line holds on any machine.
+inline constexpr std::string_view kSchemaLine = "#:schema ./deck.schema.json\n";
 int print_laws();
 
 /// Draws figures of present results, by the command of the Python package: `run`, `compare`, `levels` ...

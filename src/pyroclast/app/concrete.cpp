@@ -293,9 +293,8 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
   };
   const auto quoted = [](std::string text) { return fmt::format("\"{}\"", text); };
   const std::string calibrate = fmt::format("{}-calibrate.toml", o.out.stem().string());
-  const auto schema = editor_schema_file();
   std::map<std::string, std::string> v{
-      {"SCHEMA", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string())},
+      {"SCHEMA", std::string(kSchemaLine)},
       {"ADVICE",
        is_guess
            ? fmt::format(

@@ -43,10 +43,6 @@ DeckSchema known_deck_schema() {
   return file.empty() ? deck_schema() : schema_of(read_file(file));
 }
 
-std::filesystem::path editor_schema_file() {
-  return file_of_build("deck.schema.json");
-}
-
 int print_keys(const KeysOptions& options) {
   const DeckSchema schema = options.survey ? deck_schema() : known_deck_schema();
   if (options.schema)

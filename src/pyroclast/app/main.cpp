@@ -156,6 +156,9 @@ int command_line(int argc, char** argv) {
                   "the curves "
                   "with their band, and the pictures of the median specimen")
       ->check(whole_number(1, 100000));
+  run->add_flag("--dry-run", options.dry_run,
+                "Tell the time, memory and disk of the run, as `check` does, and with --seeds those of all "
+                "specimens; run nothing");
   run->add_flag_callback(
       "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
       "Write no fields, as [output] fields = false; then figures show the history only");
@@ -335,10 +338,10 @@ int command_line(int argc, char** argv) {
     throw Error(app::what_is_wrong(cli, error, std::vector<std::string>(argv + 1, argv + argc)));
   }
   if (*run && options.seeds > 1) app::scatter(options);
-  if (*run) return app::run(options);
+  if (*run && !options.dry_run) return app::run(options);
   if (*resume) return app::resume(resume_options);
   const int code = [&] {
-    if (*check) return app::check(options);
+    if (*check || *run) return app::check(options);
     if (*specimen) return app::make_specimen(options);
     if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
     if (*properties) return app::plot_properties(properties_options);

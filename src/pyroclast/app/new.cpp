@@ -26,10 +26,7 @@ int make_deck(const std::string& name, const std::string& from) {
   if (std::filesystem::exists(file))
     throw Error(
         fmt::format("{}: exists already, so it is not overwritten; choose another name", file.string()));
-  const auto schema = editor_schema_file();  // an editor that finds none there does without
-  write_text_file(
-      file,
-      fmt::format("{}{}", schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string()), found->text));
+  write_text_file(file, fmt::format("{}{}", kSchemaLine, found->text));
   say(fmt::format("{0} is written. Next:\n  pyroclast check {1}\n  pyroclast run {1}\n", file.string(),
                   shell_path(file)));
   return 0;

@@ -26,9 +26,18 @@ bool Progress::is_long_silent() {
   return true;
 }
 
-std::string Progress::left(double done) const {
+void Progress::begin_stage(std::optional<double> steps_after) {
+  stage_start_ = Clock::now();
+  steps_after_ = steps_after;
+}
+
+std::string Progress::left(double done, std::int64_t steps) const {
   if (!(done > kLeastProgressToForesee)) return "";
-  return duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left";
+  const double of_stage = seconds_since(stage_start_) / done * (1.0 - done);
+  const auto made = static_cast<double>(steps - first_step_);
+  if (!steps_after_ || (*steps_after_ > 0.0 && made <= 0.0)) return duration(of_stage) + " left of the stage";
+  const double after = *steps_after_ > 0.0 ? *steps_after_ / made * seconds_since(start_) : 0.0;
+  return duration(of_stage + after) + " left";
 }
 
 }  // namespace pyroclast::app

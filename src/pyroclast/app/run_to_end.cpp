@@ -14,6 +14,7 @@
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/shell_words.hpp"
+#include "pyroclast/session/rehearsal.hpp"
 
 namespace pyroclast::app {
 
@@ -64,10 +65,29 @@ std::string describe_row(const Run& run) {
   return text;
 }
 
+std::int64_t steps_so_far(const Run& run) {
+  return run.simulation().moves() ? run.simulation().motion().steps() : 0;
+}
+
+/// Returns the steps of the stages after the one at hand, as `check` forecasts them; none where such a stage
+/// has work that is not counted in steps.
+std::optional<double> steps_after(const Session& session) {
+  const auto& run = session.run();
+  const auto forecasts = forecast({run.stages().begin() + run.stage_number(), run.stages().end()},
+                                  run.simulation(), session.opened().setup.temperatures.upper);
+  double steps = 0.0;
+  for (std::size_t i = 1; i < forecasts.size(); ++i) {
+    if (forecasts[i].heating_duration > 0.0 && forecasts[i].steps <= 0.0) return std::nullopt;
+    steps += forecasts[i].steps;
+  }
+  return steps;
+}
+
 std::string progress_line(const Run& run, const Progress& progress) {
   const double done = run.progress();
   return fmt::format("stage {} of {} ({}) {:3.0f} %, {:>14}{}", run.stage_number() + 1, run.stages().size(),
-                     run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run));
+                     run.stage().kind(), 100.0 * done, progress.left(done, steps_so_far(run)),
+                     describe_row(run));
 }
 
 /// Describes a run that has not come to a look for a while.
@@ -151,14 +171,15 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   if (options.watch) watcher.emplace(folder, log);
   session.log_bytes_by([&] { return log.bytes(); });
   session.stop_when([&] { return interrupt.asked(); });
-  Progress progress;
+  Progress progress(steps_so_far(run));
+  progress.begin_stage(steps_after(session));
   session.between_batches([&] {
     if (watcher) watcher->look_after();
     if (progress.is_long_silent()) log.say_now(doing_line(run));
   });
   int stage = run.stage_number();
   while (session.next()) {
-    if (run.stage_number() != stage) progress.begin_stage();
+    if (run.stage_number() != stage) progress.begin_stage(steps_after(session));
     stage = run.stage_number();
     if (progress.line_is_due() || log.speech() == Speech::verbose) log.say_now(progress_line(run, progress));
   }

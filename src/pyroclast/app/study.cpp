@@ -27,6 +27,7 @@ void scatter(const RunOptions& o) {
   for (const std::string& change : o.changes) add({"--set", change});
   if (!o.out.empty()) add({"--out", o.out.string()});
   if (o.threads > 0) add({"--jobs", std::to_string(o.threads)});
+  if (o.dry_run) add({"--dry-run"});
   if (!o.figures) add({"--no-figures"});
   if (o.speech == Speech::quiet) add({"--quiet"});
   if (o.laws.allow_code) add({"--allow-code"});

@@ -70,14 +70,6 @@ double frame_bytes(const Simulation& simulation) {
   return numbers * sizeof(float);
 }
 
-Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
-                  const Interval& temperatures) {
-  Foreseen foreseen{simulation.field().mean(), temperatures.upper};
-  Forecast sum;
-  for (const auto& stage : stages) sum += stage->forecast(simulation, foreseen);
-  return sum;
-}
-
 /// Finds out what the forecast costs. Moves and heats the simulation.
 /// \param hottest  highest temperature to which the run may come, °C
 Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
@@ -104,8 +96,18 @@ Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulati
 
 }  // namespace
 
+std::vector<Forecast> forecast(std::span<const std::unique_ptr<Stage>> stages, const Simulation& simulation,
+                               double hottest) {
+  Foreseen foreseen{simulation.field().mean(), hottest};
+  std::vector<Forecast> found;
+  for (const auto& stage : stages) found.push_back(stage->forecast(simulation, foreseen));
+  return found;
+}
+
 Rehearsal rehearse(Setup setup, Simulation& simulation) {
-  const Forecast expected = forecast(setup.stages, simulation, setup.temperatures);
+  Forecast expected;
+  for (const Forecast& of_stage : forecast(setup.stages, simulation, setup.temperatures.upper))
+    expected += of_stage;
   const double field_bytes = setup.has_fields ? expected.frames * frame_bytes(simulation) : 0.0;
   Run run(simulation, std::move(setup.stages));
   Rehearsal cost = cost_of(expected, setup.temperatures.upper, simulation, run);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
@@ -13,6 +17,12 @@ struct Rehearsal {
   double history_bytes = 0.0;     ///< size of history.csv, bytes
   double field_bytes = 0.0;       ///< size of all frames of the fields, bytes; 0 where the deck wants none
 };
+
+/// Forecasts stages, each from the temperatures that the one before it leaves.
+/// \param simulation  body as it is when the first of them begins
+/// \param hottest  highest temperature to which the run may come, °C
+std::vector<Forecast> forecast(std::span<const std::unique_ptr<Stage>> stages, const Simulation& simulation,
+                               double hottest);
 
 /// Tries each action of a run for a moment. The simulation then no longer stands at the run's beginning.
 Rehearsal rehearse(Setup setup, Simulation& simulation);

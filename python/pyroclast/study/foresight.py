@@ -1,0 +1,47 @@
+"""What the runs of a study will take."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..writing import make_folder
+from .driver import duration
+from .study import Study
+
+_DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
+
+
+def foresee(study: Study, say: Callable[[str], None]) -> None:
+    """Says how many runs a study wants, their time and their disk space; makes none."""
+    seen = study.forecast()
+    setup = study.setup
+    more = "" if seen.is_complete else " to begin with; more may follow"
+    say(f"points          {seen.points}{more}")
+    say(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
+    if not seen.left:
+        return
+    seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
+    if seconds is None:
+        say("time            not known before one run is done")
+    else:
+        say(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
+    if setup.runner.kind == "pyroclast":
+        there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
+        say(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
+              f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
+              f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
+
+
+@contextmanager
+def folder_of_runs(out: Path, is_kept: bool) -> Iterator[Path]:
+    """Makes a folder, also of a study that only looks ahead; what this one made goes at its end."""
+    made = [folder for folder in (out, *out.parents) if not folder.exists()]
+    try:
+        yield make_folder(out)
+    finally:
+        if made and not is_kept:
+            shutil.rmtree(made[-1])
