@@ -15,6 +15,9 @@ install(DIRECTORY cases examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT p
         PATTERN "__pycache__" EXCLUDE)
 install(FILES CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
+install(CODE "message(STATUS \"import pyroclast: export PYTHONPATH='\${CMAKE_INSTALL_PREFIX}/${PYROCLAST_PYTHON_DIR}'\")"
+        COMPONENT module)
+
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pyroclast)
 install(EXPORT pyroclastTargets NAMESPACE pyroclast:: DESTINATION ${package_folder} COMPONENT development)
 install(EXPORT pyroclastLawsTargets NAMESPACE pyroclast:: DESTINATION ${package_folder} COMPONENT laws)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import importlib
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 from .programs import load_libraries
+from .writing import shell_path
 
 _NEEDED = {"numpy": "figures", "h5py": "figures", "matplotlib": "figures", "scipy": "studies", "cmaes": "calibration",
            "jinja2": "pages of runs",
@@ -31,6 +33,8 @@ def main() -> None:
         from . import _core
 
         _tell("  compiled part", f"{_core.version}, {_core.commit}")
+        package = shell_path(Path(_core.__file__).parents[1])
+        _tell("  for scripts", f"import pyroclast, after export PYTHONPATH={package}")
     except ImportError:
         _tell("  compiled part", "missing: for studies and runs in Python")
 

@@ -6,7 +6,8 @@ function(run)
   endif()
 endfunction()
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix OUTPUT_VARIABLE said
+                COMMAND_ERROR_IS_FATAL ANY)
 foreach(project tests/install examples)
   run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/${project} -B ${WORK}/${project} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
   run(${CMAKE_COMMAND} --build ${WORK}/${project})
@@ -18,6 +19,18 @@ string(REPLACE "duration = \"2 h\"" "duration = \"1 min\"" deck "${deck}")
 file(WRITE ${WORK}/deck.toml "${deck}")
 run(${WORK}/examples/run_deck ${WORK}/deck.toml ${WORK}/out)
 run(${WORK}/prefix/bin/pyroclast --version)
+
+# What the installation says of the package for Python, and the doctor too, is all that a script needs.
+string(REGEX MATCH "import pyroclast: export PYTHONPATH='([^'\n]+)'" found "${said}")
+set(python_package ${CMAKE_MATCH_1})
+run(${CMAKE_COMMAND} -E chdir ${WORK} ${CMAKE_COMMAND} -E env PYTHONPATH=${python_package} ${PYTHON} -c
+    "import pyroclast, sys; assert pyroclast.__file__.startswith(sys.argv[1]); pyroclast.Deck('deck.toml').check()"
+    ${WORK}/prefix)
+execute_process(COMMAND ${WORK}/prefix/bin/pyroclast doctor OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+string(FIND "${said}" "${python_package}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "the doctor does not say where the package lies: ${said}")
+endif()
 
 # A contact law of one's own: built from the headers alone, in a build without optimization, loaded and driven by the
 # installed program; from the header, which the program compiles, it gives the same numbers. One instruction set is
