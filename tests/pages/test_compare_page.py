@@ -59,6 +59,25 @@ class Compared(PageTest):
             self.assertAlmostEqual(strain, nearest, delta=1e-9)
         self.assert_silent()
 
+    def test_strains_are_counted_from_the_start_of_loading(self):
+        runs = [RUNS / "compression", RUNS / "hot_compression"]
+        browser.open(self.page_of(*runs))
+        self.assertEqual(browser.run("return document.getElementById('over').value"), "strain_of_load")
+        drawn = browser.run("return pyroclast.runs.map((r) => r.course.of('strain_of_load').filter(isFinite))")
+        for strains, run in zip(drawn, map(pyroclast.read, runs)):
+            self.assertAlmostEqual(1e-3 * strains[-1], run.loaded_strain[-1], delta=1e-8)
+            self.assertLess(abs(strains[0]), 0.05)  # heated to 100 degC it had grown by 0.6
+        self.assert_silent()
+
+    def test_no_row_has_equal_values(self):
+        browser.open(self.page_of(RUNS / "compression", self.copy(RUNS / "compression", "fields")))
+        rows = browser.run("return [...document.querySelector('table').tBodies[0].rows].map((r) => r.cells[0].textContent)")
+        self.assertEqual(rows, [""])  # the verdicts alone
+        browser.open(self.page_of(RUNS / "compression", RUNS / "starter"))
+        for row in browser.run("return [...document.querySelector('table').tBodies[0].rows].slice(2)"
+                               ".map((r) => [...r.cells].slice(1).map((c) => c.textContent.trim()))"):
+            self.assertGreater(len(set(row)), 1)
+
     def test_seeds_get_a_band(self):
         runs = []
         for seed in (1, 2, 3):

@@ -109,6 +109,16 @@ class OneRun(PageOfRun):
         self.assertLessEqual(np.abs(self.kept(name, frame) - values).max(),
                              0.5 * self.step(name) * (1.0 + 1e-6) + 1e-6 * np.abs(values).max(), name)
 
+    def test_a_platen_covers_cracks_unless_it_is_asked_to_show_them(self):
+        covered = ("const s = pyroclast.specimen, found = [0, 0]; for (let i = 0; i < s.pixels.length; i += 7) {"
+                   "const x = i % s.W, y = (i - x) / s.W, {block} = s.body.at(x, y, s.W, s.H, s.frame, s.magnification);"
+                   "if (block >= 0 && s.isCovered([x, y, x, y])) found[s.body.bearing[block]]++;} return found")
+        of_specimen, of_platens = browser.run(covered)
+        self.assertEqual(of_specimen, 0)
+        self.assertGreater(of_platens, 100)
+        browser.run("document.getElementById('covered').click()")
+        self.assertEqual(browser.run(covered), [0, 0])
+
     def test_numbers_are_those_of_the_fields_within_their_step(self):
         blocks = self.run_.mesh.blocks
         outline = outline_of(self.run_.mesh)

@@ -15,6 +15,7 @@ from ..deck_differences import DeckPath, differing_keys, tells_nothing, values_o
 from ..errors import Error
 from ..results import Results
 from ..style import warnings_of
+from .course import OVER_LOAD
 from .judging import Card, cards, verdict, worst
 from .run_page import MOST_TEXT, run_data
 from .shell import page
@@ -50,6 +51,7 @@ def _common(runs: list[dict[str, Any]], what: str) -> str:
     """Of what the runs' own curves are drawn over, or of, the first that all runs have."""
     there = set.intersection(*({one["id"] for one in run["course"]["quantities"]} for run in runs))
     asked = [name for run in runs for name in ([run["course"]["over"]] if what == "over" else run["course"]["drawn"])]
+    asked = [OVER_LOAD, *asked] if "strain" in asked and what == "over" else asked
     found = next((name for name in asked if name in there), None)
     if found is None:
         raise Error("report: the runs have nothing in common that a curve could be drawn "
@@ -65,7 +67,7 @@ class Result(NamedTuple):
 
 
 def _results(runs: Sequence[Results]) -> list[tuple[str, list[Result]]]:
-    """A row for each headline: label with unit, and what each run has."""
+    """A row for each headline in which the runs differ: label with unit, and what each run has."""
     found = [{(card.label, card.unit): card for card in cards(run)} for run in runs]
     labels = dict.fromkeys(key for one in found for key, card in one.items() if card.unit or card.value != "–")
     units = {label for label, unit in labels if unit}
@@ -73,7 +75,7 @@ def _results(runs: Sequence[Results]) -> list[tuple[str, list[Result]]]:
     rows = [(f"{label} [{unit}]" if unit else label,
              [one.get((label, unit)) or one.get((label, "")) for one in found]) for label, unit in shown]
     return [(label, [Result(card, _change(line[0], card) if i else "") for i, card in enumerate(line)])
-            for label, line in rows]
+            for label, line in rows if len({card and (card.value, card.level) for card in line}) > 1]
 
 
 def _change(first: Card | None, other: Card | None) -> str:

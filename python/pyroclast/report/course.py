@@ -17,6 +17,8 @@ from ..results import Results
 from .marks import Mark, marks
 from .packing import packed_floats
 
+OVER_LOAD = "strain_of_load"
+"""Quantity over which runs are compared: heat before the load has moved the strain of each by its own amount."""
 _MOST_CELLS = 40_000  # of the history that a page keeps
 _MOST_ROWS_OF_PARENT = 400
 
@@ -30,6 +32,8 @@ class CurveQuantity:
     column: str
     factor: float = 1.0
     reference: str = ""
+    offset: float = 0.0  #: taken off, in the unit of the label
+    stage: int = 0  #: from which the quantity has values
 
 
 def quantities(run: Results) -> list[CurveQuantity]:
@@ -39,6 +43,10 @@ def quantities(run: Results) -> list[CurveQuantity]:
 
 def _all(run: Results) -> Iterator[CurveQuantity]:
     yield CurveQuantity("strain", "axial strain, compression positive [10⁻³]", "strain", 1e3, "strain")
+    if run.moves and run.has_platens and not run.ends_heated and np.isfinite(run.history["stress_MPa"]).any():
+        before = run.strain_before
+        yield CurveQuantity(OVER_LOAD, "axial strain since loading began, compression positive [10⁻³]", "strain", 1e3,
+                            offset=1e3 * before, stage=int(run.history["stage"][run.loaded][0]) if before else 0)
     yield CurveQuantity("stress", "axial stress, compression positive [MPa]", "stress_MPa", 1.0, "stress")
     yield CurveQuantity("total_strain", "total axial strain, expansion positive [10⁻³]", "specimen_strain", -1e3,
                    "total_strain")

@@ -42,7 +42,8 @@ class Course {
   }
   of(id) {
     const q = this.quantity(id);
-    return this.column(q.column).map((v) => v * q.factor);
+    const stage = this.column("stage");
+    return this.column(q.column).map((v, i) => (stage[i] < q.stage ? NaN : v * q.factor - q.offset));
   }
   varies(id) {
     const values = this.of(id).filter(isFinite);

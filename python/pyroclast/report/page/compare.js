@@ -174,7 +174,7 @@ class ComparePage {
       const x = run.course.of(this.axes.over);
       let best = 0;
       run.frames.forEach((f, k) => {
-        if (Math.abs(x[f.row] - place) < Math.abs(x[run.frames[best].row] - place)) best = k;
+        if (!isFinite(x[run.frames[best].row]) || Math.abs(x[f.row] - place) < Math.abs(x[run.frames[best].row] - place)) best = k;
       });
       run.frame = best;
       run.specimen.frame = best;

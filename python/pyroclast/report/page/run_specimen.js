@@ -21,6 +21,13 @@ class RunSpecimen extends RunPiece {
       s.magnification = +$("magnification").value;
       this.redraw();
     };
+    if ($("covered")) {
+      $("covered").parentElement.hidden = !this.body.bearing.includes(1);
+      $("covered").onchange = () => {
+        s.showsCovered = $("covered").checked;
+        s.draw();
+      };
+    }
     if ($("cracks"))
       $("cracks").onchange = () => {
         s.cracks = $("cracks").value;

@@ -115,7 +115,7 @@ class Specimen {
       const groups = new Map();
       for (const c of contacts) {
         const line = body.line(c);
-        if (!isFinite(line[0])) continue;
+        if (!isFinite(line[0]) || this.isCovered(line)) continue;
         const key = this.strokeOf(c, theme);
         if (!groups.has(key.name)) groups.set(key.name, {...key, lines: []});
         groups.get(key.name).lines.push(line);
@@ -143,6 +143,12 @@ class Specimen {
     return all;
   }
 
+  // Whether a platen covers the middle of a line, and is not to be looked through.
+  isCovered([x0, y0, x1, y1]) {
+    const [x, y] = [(x0 + x1) / 2, (y0 + y1) / 2].map(Math.floor);
+    return !this.showsCovered && this.inksOfBearings.has(this.pixels[y * this.W + x]);
+  }
+
   // Contacts that are damaged by a half at most, by their mode.
   addDamaged(add, theme) {
     const {body, frame} = this,
@@ -151,7 +157,7 @@ class Specimen {
     for (let c = 0; c < body.contacts; c++) {
       const [mode, damage] = body.worst(frame, c),
         line = damage > 0 && !shownAsCracks.has(c) ? body.line(c) : [NaN];
-      if (isFinite(line[0])) lines[mode].push(line);
+      if (isFinite(line[0]) && !this.isCovered(line)) lines[mode].push(line);
     }
     for (const mode of body.modes) add(theme.value(`--${mode}-tint`), 1, lines[mode]);
   }
@@ -237,9 +243,11 @@ class Specimen {
     body.project(W, H);
     const colour = this.painter(theme),
       inks = new Map();
+    this.inksOfBearings = new Set();
     body.paint(this.pixels, W, H, (b) => {
       let value = inks.get(b);
       if (value === undefined) inks.set(b, (value = ink(colour(b))));
+      if (b < body.blocks && body.bearing[b]) this.inksOfBearings.add(value);
       return value;
     });
     context.putImageData(this.image, 0, 0);
