@@ -29,7 +29,8 @@ class CrackStyle:
 
     @property
     def label(self) -> str:
-        return f"{self.mode}, " + ("broken ($D=1$)" if self.broken else f"damaged (${_HALF}<D<1$)")
+        return f"{self.mode}, " + (style.page().said("broken ($D=1$)", "broken") if self.broken else
+                                   style.page().said(f"damaged (${_HALF}<D<1$)", f"${_HALF}<D<1$"))
 
     def holds(self, damage: np.ndarray) -> np.ndarray:
         return damage >= 1.0 if self.broken else (damage > _HALF) & (damage < 1.0)

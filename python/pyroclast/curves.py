@@ -52,12 +52,16 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     axes.set_ylabel(style.STRESS_LABEL)
 
     style.draw_legend(beside_table, axes, loc="center left")
-    _draw_table(of_table, run)
+    if of_table is not None:
+        _draw_table(of_table, run)
     return figure
 
 
-def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes]:
-    """Figure with axes for the curve, for a legend (None where it stands in the first), and for the table."""
+def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes | None]:
+    """Figure with axes for the curve, for a legend (None where it stands in the first), and for the table, if any."""
+    if not style.page().has_table:
+        figure, (axes,), below = style.panels(4.8, below=0.3)
+        return figure, axes, below, None
     if style.page().is_column:
         figure, (axes, table), _ = style.panels(0.0, (1.0, 0.3))
         return figure, axes, None, table
@@ -74,7 +78,7 @@ def _draw_run(axes: Axes, run: Results) -> None:
     strain = style.PER_MILLE * run.loaded_strain
     top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
-              label="this run, mean of both platens"
+              label=style.page().said("this run, mean of both platens", "this run")
                     + (f";\nrises again, {100.0 * run.rise_again:+.0f} % above $f_c$" if run.rise_again > 0.005 else ""))
     if run.has_peak:
         at, strength = run.peak
@@ -90,7 +94,7 @@ def _draw_run(axes: Axes, run: Results) -> None:
     if np.nanmax(np.abs(top - bottom)) > _LEAST_BAND * np.nanmax(np.abs(top)):
         rows = style.kept(strain, top, bottom)
         axes.fill_between(strain[rows], top[rows], bottom[rows], color=style.SKY, alpha=0.5, linewidth=0.0,
-                          label="between its upper and lower platen")
+                          label=style.page().said("between its upper and lower platen", "between its platens"))
 
 
 def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> None:
@@ -98,8 +102,10 @@ def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> N
     strain = np.linspace(0.0, min(last_strain, reference.AT_LAST_STRAIN), 300)
     axes.plot(style.PER_MILLE * strain, reference.at_stress(strain), color=style.VERMILLION,
               linestyle=(0, (5, 2)), linewidth=1.2,
-              label="Anderberg & Thelandersson law\nat 20 °C, generated,\nnot measured points" if wrapped else
-              "Anderberg & Thelandersson law at 20 °C,\ngenerated, not measured points")
+              label=style.page().said(
+                  "Anderberg & Thelandersson law\nat 20 °C, generated,\nnot measured points" if wrapped else
+                  "Anderberg & Thelandersson law at 20 °C,\ngenerated, not measured points",
+                  "Anderberg & Thelandersson, law"))
     # the paper's model stands above the mean of runs, which it may nearly meet
     for values, marker, name, order in (
         (reference.EXPERIMENT, "D", "experiment", 5),
@@ -107,15 +113,15 @@ def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> N
     ):
         axes.plot(style.PER_MILLE * values.strain_at_peak, values.strength, marker, color=style.BLACK,
                   markerfacecolor="white", markersize=4.5, zorder=order, linestyle="none",
-                  label=f"peak, {name}:" + ("\n" if wrapped else " ")
-                  + "$f_c$ at $f_c/E+\\varepsilon_{ic}$ (Table 3)")
+                  label=style.page().said(f"peak, {name}:" + ("\n" if wrapped else " ")
+                                          + "$f_c$ at $f_c/E+\\varepsilon_{ic}$ (Table 3)", f"peak, {name}"))
 
 
 def _draw_marks(axes: Axes, marks: Mapping[str, Frame]) -> None:
     axes.plot([style.PER_MILLE * frame.strain for frame in marks.values()],
               [frame.stress_MPa for frame in marks.values()], "o", color=style.BLUE, markersize=6.5,
               linestyle="none", zorder=4,
-              label=f"frames shown in fracture: {', '.join(marks)}" if marks else None)
+              label=style.page().said("frames shown in fracture: ", "frames ") + ", ".join(marks) if marks else None)
     for letter, frame in marks.items():
         axes.annotate(letter, (style.PER_MILLE * frame.strain, frame.stress_MPa), xytext=(-7, -11),
                       textcoords="offset points", ha="center", va="center", fontweight="bold", zorder=3.5,
@@ -292,7 +298,7 @@ def names_apart(runs: Sequence[Results], written: Callable[[str], str] = style.p
 
 def title_together(axes: Axes, runs: Sequence[Results]) -> None:
     """Heads a comparison with the title that its runs have in common."""
-    if len({run.title for run in runs}) == 1:
+    if style.page().has_title and len({run.title for run in runs}) == 1:
         axes.set_title("\n".join(style.lines_of(style.plain(runs[0].title), style.page().letters)))
 
 

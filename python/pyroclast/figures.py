@@ -1,6 +1,7 @@
 """Draws the figures of runs and specimens.
 
-    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/..., or with --out FOLDER there
+    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/..., or with --out FOLDER there; of a folder of
+                                                    `pyroclast run --seeds`, figures/seeds.png
     python3 -m pyroclast.figures plane RUN_DIR --axis z --at 0.5    RUN_DIR/figures/plane_z_0.5.png, of a solid
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
@@ -23,9 +24,11 @@ that need none of these are drawn.
 from __future__ import annotations
 
 import argparse
+import csv
 import gc
 import re
 import sys
+import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -33,7 +36,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from .comparisons import KINDS, compare_runs
+from .comparisons import KINDS, compare_runs, compare_seeds
 from .curves import stress_strain
 from .errors import Error
 from .files import GapWarning
@@ -49,7 +52,7 @@ from .results import Results, SpecimenFolder
 from .sections import gradation, morphology
 from .solid_sections import cracks_inside, plane_section
 from .style import page_of, save
-from .writing import make_folder
+from .writing import make_folder, shell_path
 
 _FORMATS = ("png", "svg", "pdf")
 _NAME = "pyroclast figures"
@@ -159,7 +162,8 @@ def _of_compression(run: Results, magnification: float | None) -> Iterator[Pictu
 
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
-             temperatures: Sequence[float] | None = None, out: Path | None = None) -> Iterator[Path]:
+             temperatures: Sequence[float] | None = None, out: Path | None = None,
+             only: Sequence[str] = ()) -> Iterator[Path]:
     """Draws all figures of a run into its figures/ folder; yields each path once written. Beside a figure of fracture
     stands a table of its cracks. Where the run conducts heat, temperature_profile.csv and isotherm.csv are written
     into the folder of the run.
@@ -168,13 +172,23 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
 
+    only: names of the figures to draw, such as "energy"; empty: all.
+
+    Of a folder of `pyroclast run --seeds` the one figure is the band of its specimens, seeds.png.
+
     Raises Error at the end, with a line for each reason, where figures could not be drawn: a run of an older program
     lacks a column that one figure needs, and has those of the others.
     """
+    if (folder / "study.toml").is_file() and not (folder / "history.csv").exists():
+        yield _draw_seeds(folder, file_format, out)
+        return
     run = Results(folder)
-    reasons = []
+    reasons, names = [], []
     try:
         for picture in figures_of(run, magnification, temperatures):
+            names.append(picture.name)
+            if only and picture.name not in only:
+                continue
             place = out or make_folder(run.folder / "figures")
             try:
                 if picture.write is not None:
@@ -182,14 +196,31 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
                     picture.write(place, out or run.folder)
                 path = save(picture.draw(), place / f"{picture.name}.{file_format}")
             except Error as error:
-                reasons.append(str(error))
+                said = str(error)
+                reasons.append(said if str(folder) in said else f"{folder}: {picture.name}: {said}")
                 continue
             yield path
             gc.collect()  # a figure refers to itself; of a long history it holds much
     except Error as error:
         reasons.append(str(error))
+    if unknown := [name for name in only if name not in names]:
+        reasons.append(f"{folder}: has no figure {', '.join(unknown)}; its figures are {', '.join(names)}")
     if reasons:
         raise Error("\n".join(dict.fromkeys(reasons)))
+
+
+def _draw_seeds(folder: Path, file_format: str, out: Path | None) -> Path:
+    """Draws the band of the runs of `pyroclast run --seeds` that came to an end; returns the path."""
+    method = tomllib.loads((folder / "study.toml").read_text("utf-8")).get("method", {})
+    if method.get("kind") != "ensemble":
+        raise Error(f"{folder}: is the folder of a study of the kind {method.get('kind')!r}, which "
+                    f"`pyroclast study report {shell_path(folder / 'study.toml')}` draws")
+    table = folder / "table.csv"
+    rows = list(csv.DictReader(table.read_text("utf-8").splitlines())) if table.is_file() else []
+    runs = [Results(folder / "runs" / row["run"]) for row in rows if row["state"] in ("done", "no value")]
+    if not runs:
+        raise Error(f"{folder}: has no finished run yet")
+    return save(compare_seeds(runs), (out or make_folder(folder / "figures")) / f"seeds.{file_format}")
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -275,6 +306,21 @@ def _share(text: str) -> float:
     return value
 
 
+def _panel_numbers(text: str) -> list[int]:
+    """Numbers of panels, or letters: A is 1."""
+    try:
+        return [ord(part.upper()) - ord("A") + 1 if part.isalpha() and len(part) == 1 else _positive_whole(part)
+                for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not a list of panels like 1,3 or A,D") from None
+
+
+def _positive_whole(text: str) -> int:
+    if (number := int(text)) < 1:
+        raise ValueError
+    return number
+
+
 def _temperatures(text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
@@ -288,7 +334,7 @@ def parser() -> argparse.ArgumentParser:
                                      description="Draws the figures of runs and specimens.")
     commands = parser.add_subparsers(dest="command", required=True)
 
-    run = commands.add_parser("run", help="all figures of a run")
+    run = commands.add_parser("run", help="all figures of a run, or the band of a folder of run --seeds")
     run.add_argument("folder", type=Path, metavar="RUN_DIR")
     run.add_argument("--format", choices=_FORMATS, default="png")
     run.add_argument("--magnification", type=_positive, metavar="FACTOR",
@@ -297,8 +343,10 @@ def parser() -> argparse.ArgumentParser:
                      help="temperatures of the fracture patterns of a heated run, °C (default: from its frames)")
     run.add_argument("--out", type=Path, metavar="FOLDER",
                      help="folder for the figures; the run is then read only (default: its figures/)")
+    run.add_argument("--only", type=lambda text: text.split(","), default=[], metavar="NAME,NAME,...",
+                     help="figures to draw, such as energy,fracture (default: all)")
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
-                                                 asked.temperatures, asked.out))
+                                                 asked.temperatures, asked.out, asked.only))
 
     plane = commands.add_parser("plane", help="a plane through a solid, with its cracks")
     plane.add_argument("folder", type=Path, metavar="RUN_DIR")
@@ -338,8 +386,15 @@ def parser() -> argparse.ArgumentParser:
                                                          asked.magnification))
     for command in commands.choices.values():
         command.add_argument("--width", type=_width, metavar="LENGTH",
-                             help="width of the figures, such as 90mm, with all text of 8 pt and legends in the axes "
-                                  "(default: a page of two columns, 183mm)")
+                             help="width of the figures, such as 90mm, with all text of 8 pt, legends in the axes and a "
+                                  "height of 4/3 of the width at most (default: a page of two columns, 183mm)")
+        command.add_argument("--panels", type=_panel_numbers, default=(), metavar="N,N,...",
+                             help="panels to draw of each figure that has several, from the top left: 1,3 or A,D "
+                                  "(default: all)")
+        command.add_argument("--no-title", action="store_true", help="draw no titles; then say in the caption what they say")
+        command.add_argument("--cracks-under-platens", action="store_true",
+                             help="draw cracks also where a platen covers them in the picture")
+        command.add_argument("--no-table", action="store_true", help="draw no table beside a stress-strain curve")
     return parser
 
 
@@ -353,7 +408,8 @@ def _draw(asked: argparse.Namespace) -> int:
         warnings.simplefilter("always", GapWarning)
         warnings.showwarning = lambda message, *_: _tell(message)
         try:
-            with page_of(asked.width):
+            with page_of(asked.width, panels=asked.panels, title=not asked.no_title, table=not asked.no_table,
+                         cracks_under_platens=asked.cracks_under_platens):
                 for path in asked.draw(asked):
                     say(path)
         except Error as problem:

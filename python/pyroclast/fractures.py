@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,9 +17,10 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
 from . import style
+from .errors import Error
 from .crack_styles import can_crack, count_cracks, crack_legend, cracked, cracks_of, material_legend, size_of_cracks
 from .mesh import BlockMesh, ContactMesh, specimen_box
-from .sections import (MARGIN, block_box, draw_blocks, draw_scale_bar, frame_box, frame_section,
+from .sections import (MARGIN, block_box, cover_by_bearings, draw_blocks, draw_scale_bar, frame_box, frame_section,
                        height_over_width, panel_box)
 from .solid_sections import crack_lines, flat
 from .writing import whole
@@ -32,13 +34,17 @@ _AT_PEAK = 0.98  # of the largest stress, that a frame has to have to be called 
 _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
 _LARGEST_MARGIN = 0.3  # for blocks that have moved out
+_OF_SCALE_BAR = np.array([[0.0, 0.2], [0.0, 0.0]])  # that the bar's text needs in a column
 _PANELS, _PANELS_OF_SQUARE = 4, 2
 """Least number of panels for which a page has room side by side, and that of bodies hardly higher than wide."""
 _SQUARE = 1.45  # height over width, with platens and margins, up to which a body is one of these
 _TITLE_HEIGHT, _CAPTION_LINE, _HEADING_LINE, _LEGEND_LINE = 0.3, 0.125, 0.17, 0.16  # in print, inches
 _NOTE_LETTERS = 125  # of a line below a figure on a page of two columns
-_NARROWEST = 1.55  # inches, of a panel with its caption in a column
+_NARROWEST, _LEAST_WIDTH = 1.55, 0.85  # inches, of a panel in a column: as it stands well, and with a short caption
 _EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; factor on line widths
+_BOLD_LETTER = 0.07  # inches, mean width in a title of a panel
+_SYMBOL = re.compile(r"^\$\\\w+\$ = |(?<=^\$)\\varepsilon_\{\\mathrm\{tot\}\} = ", re.MULTILINE)
+"""Before a number of a caption, whose unit tells what it is."""
 _THINNEST = 0.4  # width of a crack that has just opened over that of the widest
 _WIDE = 0.65  # height over width, below which panels are stacked
 _BODY_SHARE = 0.66  # of the page, where an enlargement stands beside a wide body
@@ -164,6 +170,7 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
     magnification of displacements: the same in all panels; when None, the largest round one at which, in the
     last panel of each row, 95 % of the gridpoints move by less than 6 % of the height.
     """
+    drawn = _chosen(drawn, style.page().panels)
     lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in drawn.rows]
     if magnification is None:
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
@@ -171,22 +178,46 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
                      for _, panels in drawn.rows for panel in panels)
     is_wide = all(height_over_width(last.run.mesh.blocks, margin) < _WIDE for last in lasts)
     page, most = style.page(), max(len(panels) for _, panels in drawn.rows)
-    across = 1 if is_wide else min(most, page.fitting(_NARROWEST)) if page.is_column else most
-    look = _Look(magnification, margin, _full_width(lasts), across, None)
-    lines = [(label if not first else "", panels[first:first + across]) for label, panels in drawn.rows
-             for first in range(0, len(panels), across)]
+    full = _full_width(lasts)
+    narrowest = max(_LEAST_WIDTH, _BOLD_LETTER * max(len(panel.title) for _, panels in drawn.rows for panel in panels))
+    for across in range(1 if is_wide else min(most, page.fitting(_NARROWEST)) if page.is_column else most, most + 1):
+        look = _Look(magnification, margin, full, across, None)
+        lines = [(label if not first else "", panels[first:first + across]) for label, panels in drawn.rows
+                 for first in range(0, len(panels), across)]
+        if is_wide or page.width / (across + 1) < narrowest or _height(drawn, lines, look) <= page.highest:
+            break
     if is_wide and (box := _crack_box(lasts, magnification)):
         return _draw_stacked(drawn, lines, look, box)
     return _draw_lines(drawn, lines, look)
 
 
-def _draw_lines(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> Figure:
+def _chosen(drawn: Rows, numbers: Sequence[int]) -> Rows:
+    """Returns what the page wants of each row. Raises Error where nothing with a frame is left in one."""
+    rows = [(label, [panel for i, panel in enumerate(panels, 1) if not numbers or i in numbers])
+            for label, panels in drawn.rows]
+    if not all(any(panel.frame for panel in panels) for _, panels in rows):
+        raise Error(f"a row has {max(len(panels) for _, panels in drawn.rows)} panels, and none of the numbers "
+                    f"{', '.join(map(str, numbers))}")
+    return replace(drawn, rows=rows)
+
+
+def _body_heights(lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> list[float]:
+    """Heights of the bodies of each line, inches, as wide as their panels are."""
     page = style.page()
-    ratio = height_over_width(drawn.panels[0].run.mesh.blocks, look.margin)
+    ratio = height_over_width(lines[0][1][0].run.mesh.blocks, look.margin)
     least = 1 if page.is_column or ratio < _WIDE else _PANELS_OF_SQUARE if ratio < _SQUARE else _PANELS
     width = page.width / max(look.across, least) - 0.12
-    heights = [width * height_over_width(panels[0].run.mesh.blocks, look.margin) for _, panels in lines]
-    figure, grid = _figure(drawn, lines, look, heights, [1.0] * look.across)
+    return [width * height_over_width(panels[0].run.mesh.blocks, look.margin) for _, panels in lines]
+
+
+def _height(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> float:
+    """Height of the whole figure, inches, with bodies as wide as their panels."""
+    heights = _body_heights(lines, look)
+    return sum(heights) + sum(_text_heights(drawn, lines, look, heights))
+
+
+def _draw_lines(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> Figure:
+    figure, grid = _figure(drawn, lines, look, _body_heights(lines, look), [1.0] * look.across)
     for row, (label, panels) in enumerate(lines):
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
         for axes, panel in zip(all_axes, panels):
@@ -200,19 +231,17 @@ def _draw_lines(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look:
 
 def _draw_stacked(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look,
                   box: tuple[np.ndarray, np.ndarray]) -> Figure:
-    """Each panel a line of its own: the body, and beside or, in a column, below it what is enlarged."""
+    """Each panel a line of its own: the body, and beside it what is enlarged."""
     page = style.page()
     blocks = lines[0][1][0].run.mesh.blocks
-    body = (page.width if page.is_column else _BODY_SHARE * page.width) - 0.12
+    body = _BODY_SHARE * page.width - 0.12
     height = body * height_over_width(blocks, look.margin)
-    room = (body if page.is_column else page.width - body - 0.24, max(height, 0.3 * page.width))
+    room = (page.width - body - 0.24, max(height, 0.3 * page.width))
     low, high = panel_box(blocks, look.margin)
     factor, look = _enlarged(box, body / (high - low)[0], room, look)
-    heights = [h for _ in lines for h in ((height, room[1]) if page.is_column else (room[1],))]
-    figure, grid = _figure(drawn, lines, look, heights, [1.0] if page.is_column else [body, room[0]])
+    figure, grid = _figure(drawn, lines, look, [room[1]] * len(lines), [body, room[0]])
     for row, (label, (panel,)) in enumerate(lines):
-        places = (grid[2 * row, 0], grid[2 * row + 1, 0]) if page.is_column else (grid[row, 0], grid[row, 1])
-        axes, beside = (figure.add_subplot(place) for place in places)
+        axes, beside = (figure.add_subplot(grid[row, column]) for column in range(2))
         _draw_panel(axes, replace(panel, caption=panel.caption.replace("\n", ", ")), look)
         axes.set_ylabel(label)
         if row == 0:
@@ -232,27 +261,39 @@ def _draw_stacked(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], loo
 def _figure(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look, heights: Sequence[float],
             widths: Sequence[float]) -> tuple[Figure, GridSpec]:
     """Figure with a heading, and a grid for panels of these heights, inches, and relative widths, with a row for the
-    legend below.
+    legend below. Panels are lower where the figure would be too high.
     """
     page = style.page()
-    larger = page.size(6.5) / 6.5
-    captions = [max(1 if len(heights) != len(lines) or look.enlarged else panel.caption.count("\n") + 1
-                    for panel in panels) for _, panels in lines]
-    heading = "\n".join(filter(None, [drawn.heading, f"displacements ×{look.magnification:g}"]))
+    texts, legend = _text_heights(drawn, lines, look, heights)
+    share = min(1.0, max(0.2, (page.highest - texts - legend) / sum(heights)))
+    figure = style.new_figure(share * sum(heights) + texts + legend, dpi=2 * style.DPI)
+    figure.suptitle(_heading(drawn, look), fontsize=page.size(9.0))
+    return figure, figure.add_gridspec(len(heights) + 1, len(widths),
+                                       height_ratios=[*(share * height for height in heights), legend],
+                                       width_ratios=widths)
+
+
+def _heading(drawn: Rows, look: _Look) -> str:
+    return "\n".join(filter(None, [drawn.heading, f"displacements ×{look.magnification:g}"]))
+
+
+def _text_heights(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look,
+                  heights: Sequence[float]) -> tuple[float, float]:
+    """Heights, inches, of titles, captions and heading, and of the legend."""
+    larger = style.page().size(6.5) / 6.5
+    captions = [(2 if style.page().is_column else 1) if look.enlarged else
+                max(panel.caption.count("\n") + 1 for panel in panels) for _, panels in lines]
     handles, columns, note = _legend(drawn, look)
     legend = _LEGEND_LINE * larger * (-(-len(handles) // columns) + note.count("\n") + 1.5)
     texts = (_TITLE_HEIGHT * len(heights) + _CAPTION_LINE * larger * sum(captions)
-             + _HEADING_LINE * (heading.count("\n") + 1))
-    figure = style.new_figure(sum(heights) + texts + legend, dpi=2 * style.DPI)
-    figure.suptitle(heading, fontsize=page.size(9.0))
-    return figure, figure.add_gridspec(len(heights) + 1, len(widths), height_ratios=[*heights, legend],
-                                       width_ratios=widths)
+             + _HEADING_LINE * (_heading(drawn, look).count("\n") + 1))
+    return texts, legend
 
 
 def _legend(drawn: Rows, look: _Look) -> tuple[list, int, str]:
     """Handles, in how many columns they stand, and what stands above them."""
     page = style.page()
-    columns = (2 if page.width > 6.0 else 1) if page.is_column else 4
+    columns = max(2, page.fitting(1.6)) if page.is_column else 4
     return fracture_legend(drawn.panels[0].run), columns, _note(drawn, look)
 
 
@@ -298,7 +339,9 @@ def _moved(panel: Panel, magnification: float) -> np.ndarray:
 def _draw_panel(axes: Axes, panel: Panel, look: _Look) -> None:
     if panel.frame:
         _draw_fractured(axes, panel, look)
-        axes.set_xlabel(panel.caption, fontsize=style.page().size(6.5), linespacing=1.4)
+        is_narrow = style.page().is_column and style.page().width / look.across < _NARROWEST
+        caption = _SYMBOL.sub("", panel.caption) if is_narrow else panel.caption
+        axes.set_xlabel(caption, fontsize=style.page().size(6.5), linespacing=1.4)
     else:
         axes.text(0.5, 0.5, panel.caption, transform=axes.transAxes, ha="center", va="center",
                   fontsize=style.page().size(7.0), color="#6a6a6a")
@@ -317,7 +360,8 @@ def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
         places = flat(drawn)
         reach = np.array([low - places.min(axis=0), places.max(axis=0) - high]) / (high - low)[0]
         margin = np.maximum(margin, 0.2 * MARGIN + reach)
-    return np.minimum(margin, _LARGEST_MARGIN)
+    margin = np.minimum(margin, _LARGEST_MARGIN)
+    return np.maximum(margin, _OF_SCALE_BAR) if style.page().is_column else margin
 
 
 def _visible_magnification(run: Results, frame: Frame) -> float:
@@ -399,6 +443,8 @@ def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
             sheared |= which & (crack.mode == "shear")
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width * of_lines,
                                            capstyle="round", rasterized=True))
+    if in_plane and blocks.bearing_materials and not style.page().has_covered:
+        cover_by_bearings(axes, blocks, _moved(panel, look.magnification))
 
 
 def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:

@@ -32,7 +32,7 @@ _NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its
 _NOTE = "Broken: share of the length, in space of the area, of all contacts that can break."
 _MOST_PANELS = 5
 _FIELDS = 4
-_NARROWEST = 1.5  # inches, of a panel with its caption in a column
+_NARROWEST, _LEAST_WIDTH = 1.5, 0.85  # inches, of a panel in a column: as it stands well, and at least
 _ROOM = 20.0  # °C, from which the colours of temperatures start
 _MEET = 1e-6  # of the size of a body: gridpoints so near to each other are one
 ISOTHERMS = (300.0, 500.0, 700.0)
@@ -147,12 +147,21 @@ def _panel(run: Results, frame: Frame) -> Panel:
 def temperature_field(run: Results) -> Figure:
     """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
     frames = _spread(run.heated_frames)
-    fields = [run.gridpoint_temperature(frame) for frame in frames]
     blocks, page = run.mesh.blocks, style.page()
+    if page.panels:
+        chosen = [frame for i, frame in enumerate(frames, 1) if i in page.panels]
+        if not chosen:
+            raise Error(f"has {len(frames)} panels, and none of the numbers {', '.join(map(str, page.panels))}")
+        frames = chosen
+    fields = [run.gridpoint_temperature(frame) for frame in frames]
     specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]
     scale = _scale_of(within)
     across = page.fitting(_NARROWEST) if page.is_column else _FIELDS
+    ratio = height_over_width(blocks)
+    while page.is_column and across < len(frames) and page.width / (across + 1) >= _LEAST_WIDTH and \
+            -(-len(frames) // across) * (page.width / (across + 0.4) * ratio + 0.75) + 0.6 > page.highest:
+        across += 1
     lines = -(-len(frames) // across)
     panel_height = (page.width / (across + 0.4) - 0.12) * height_over_width(blocks)
     figure = style.new_figure(lines * (panel_height + 0.75) + 0.35)

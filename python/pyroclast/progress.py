@@ -139,10 +139,10 @@ def _draw_extents(axes: Axes, course: Course) -> None:
         colour, seen = _MODE_COLOURS[mode], np.where(values > 0.0, values, np.nan)
         rows = style.kept(course.over, seen)
         if is_broken:
-            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8, label=f"{mode}, broken ($D=1$)")
+            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8, label=f"{mode}, " + style.page().said("broken ($D=1$)", "broken"))
         else:
             axes.fill_between(course.over[rows], least, seen[rows], color=colour, alpha=0.18, linewidth=0.0,
-                              label=f"{mode}, damaged ($D>0$), the broken among them")
+                              label=style.page().said(f"{mode}, damaged ($D>0$), the broken among them", f"{mode}, $D>0$"))
     axes.set_ylim(least, 1.5 * max(np.nanmax(values) for *_, values in drawn))
 
 
@@ -182,22 +182,22 @@ def energy(course: Course) -> Figure:
     turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
-               label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
+               label=style.page().said("work put in (loading,\ngravity, change of\nproperties, mass scaling)", "work put in"))
     upper.set_xlim(course.start, np.nanmax(course.over))
     if not (work_in < 0.0).any():
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
     style.draw_legend(beside, upper, handles[::-1], labels[::-1], loc="upper left", alignment="left",
-                      title="at the end, share of\nthe energy turned over")
+                      title=style.page().said("at the end, share of\nthe energy turned over", "share at the end"))
     if len(all_axes) == 3:
         all_axes[1].plot(*style.thinned(course.over, changes), color=style.PURPLE, linewidth=1.4)
         all_axes[1].axhline(0.0, color=style.BLACK, linewidth=0.6)
-        all_axes[1].set_ylabel("Put in by\nthe change of\nproperties [J]")
+        all_axes[1].set_ylabel(style.page().said("Put in by\nthe change of\nproperties [J]", "Changed\nproperties\n[J]"))
 
     lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylabel("Ledger error\n[% of energy\nturned over]")
+    lower.set_ylabel(style.page().said("Ledger error\n[% of energy\nturned over]", "Ledger\nerror [%]"))
     lower.set_xlabel(course.label)
     return figure
 
@@ -223,6 +223,7 @@ def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
         if np.nanmax(np.abs(values), initial=0.0) < _LEAST_SHARE * turnover:
             continue
         known = values[np.isfinite(values)]
+        name = style.page().said(name, name.removeprefix("stored ").removesuffix(" softening"))
         axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,
                           edgecolor="white", linewidth=0.3, label=f"{name}: {_share(known, turnover)}")
         below = below + values[rows]
@@ -232,4 +233,4 @@ def _share(known: np.ndarray, turnover: float) -> str:
     if not len(known):
         return "not known"
     share = known[-1] / turnover
-    return f"{100.0 * share:.1f} %" if abs(share) >= _LEAST_SHARE else "none left"
+    return f"{100.0 * share:.1f}\u00a0%" if abs(share) >= _LEAST_SHARE else "none left"

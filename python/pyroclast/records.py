@@ -163,7 +163,8 @@ def records(run: Results) -> Figure:
         alike = _drawn_once(run, panel.records)
         for (record, *same), colour in zip(alike, _colours()):
             axes.plot(panel.values, record.of(run), color=colour, linewidth=1.5,
-                      label=" and ".join(one.name for one in (record, *same)) + ", within 1 %" * bool(same))
+                      label="this run" if len(panel.records) == 1 else  # the axis names it
+                      " and ".join(one.name for one in (record, *same)) + ", within 1 %" * bool(same))
         draw_tables(axes, [run], (panel.over, panel.factor), *((r.name, r.factor) for r in panel.records))
         axes.set_ylabel(panel.records[0].label if len(panel.records) > 1 else panel.records[0].title)
         axes.axhline(0.0, color=style.BLACK, linewidth=0.5)

@@ -55,6 +55,14 @@ def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | N
                                            linewidths=0.15, rasterized=True))
 
 
+def cover_by_bearings(axes: Axes, blocks: BlockMesh, points: np.ndarray) -> None:
+    """Draws the bearings of a plane body again, over its cracks."""
+    outlines, material = blocks.outlines
+    over = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(np.isin(material, list(blocks.bearing_materials)))]
+    axes.add_collection(PolyCollection(over, facecolors=style.PLATEN_COLOUR, edgecolors=style.PLATEN_COLOUR,
+                                       linewidths=0.15, rasterized=True, zorder=2.5))
+
+
 def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = MARGIN) -> None:
     """Limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
     frame_box(axes, *panel_box(blocks, margin))

@@ -173,7 +173,16 @@ def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
     lies = np.zeros(len(points), bool)
     for plane in planes:
         lies |= np.abs(points @ plane[:3] - plane[3] * size) < _NEAR * size
-    return lies
+    return lies if style.page().has_covered else lies & ~_touches_bearing(blocks, points, _NEAR * size)
+
+
+def _touches_bearing(blocks: BlockMesh, points: np.ndarray, within: float) -> np.ndarray:
+    """(n,) bool, of points in the reference configuration: on a zone of a bearing, by its box."""
+    corners = blocks.points[blocks.zones[blocks.of_bearing]]
+    touches = np.zeros(len(points), bool)
+    for low, high in zip(corners.min(axis=1) - within, corners.max(axis=1) + within):
+        touches |= ((points >= low) & (points <= high)).all(axis=1)
+    return touches
 
 
 def draw_triad(axes: Axes, blocks: BlockMesh) -> None:
@@ -266,29 +275,29 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
                                        edgecolors="none", rasterized=True))
     draw_triad(axes, blocks)
     _frame(axes, box)
-    axes.set_title(f"crack faces, damaged by more than {least:g}" if len(drawn.area) else
-                   f"no crack face is damaged by more than {least:g}", fontsize=style.page().size(8.0))
+    column = style.page().is_column
+    told = (style.page().said("crack faces, damaged by more than ", "faces with $D$ > ") if len(drawn.area) else
+            style.page().said("no crack face is damaged by more than ", "no face with $D$ > ")) + f"{least:g}"
+    if not column or not len(drawn.area):
+        axes.set_title(told, fontsize=style.page().size(8.0))
     for mode in dict.fromkeys(drawn.mode.tolist()):
         axes.plot([], [], color=colours[mode], linewidth=4.0, label=mode)
     if len(drawn.area):
-        axes.legend(loc="upper left")
+        above = {"title": told, "loc": "lower center", "bbox_to_anchor": (0.5, 1.0)} if column else {"loc": "upper left"}
+        axes.legend(**above, title_fontsize=style.COLUMN_TEXT)
     _draw_rose(rose, drawn)
     _draw_inclination(inclination, drawn)
     _draw_heights(heights, all_damaged, blocks)
     figure.suptitle(style.title_of(run), fontsize=style.page().size(9.0))
+    style.number(figure, [axes, rose, inclination, heights])
     return figure
 
 
 def _axes_inside(height: float) -> tuple[Figure, Axes, tuple[Axes, Axes, Axes]]:
-    """Figure with axes for the body, and for rose, inclination and heights: beside it, in a column below."""
-    if style.page().is_column:
-        figure = style.new_figure(1.8 * height + 1.55 * style.page().width + 0.5)
-        grid = figure.add_gridspec(4, 1, height_ratios=[1.8 * height, *(3 * [0.5 * style.page().width])])
-        places = [grid[i, 0] for i in range(4)]
-    else:
-        figure = style.new_figure(height + 0.5)
-        grid = figure.add_gridspec(3, 2, width_ratios=[1.25, 1.0])
-        places = [grid[:, 0], grid[0, 1], grid[1, 1], grid[2, 1]]
+    """Figure with axes for the body, and for rose, inclination and heights beside it."""
+    figure = style.new_figure(style.page().highest if style.page().is_column else height + 0.5)
+    grid = figure.add_gridspec(3, 2, width_ratios=[1.0 if style.page().is_column else 1.25, 1.0])
+    places = [grid[:, 0], grid[0, 1], grid[1, 1], grid[2, 1]]
     rose = figure.add_subplot(places[1], projection="polar")
     return figure, figure.add_subplot(places[0]), (rose, figure.add_subplot(places[2]), figure.add_subplot(places[3]))
 
@@ -312,7 +321,7 @@ def _draw_rose(axes: Axes, faces: CrackFaces) -> None:
     axes.set_yticks([])
     axes.set_xticks(np.radians([0, 90, 180, 270]))
     axes.set_xticklabels(["x", "z", "−x", "−z"], fontsize=style.page().size(6.5))
-    axes.set_title("normals around the vertical, by area", fontsize=style.page().size(7.0))
+    axes.set_title(style.page().said("normals around the vertical, by area", "normals around y, by area"), fontsize=style.page().size(7.0))
 
 
 def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
@@ -321,12 +330,12 @@ def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
     of_any = np.sin(np.radians(bins[1:])) - np.sin(np.radians(bins[:-1]))
     share = sums / sums.sum() if sums.sum() > 0.0 else sums
     axes.bar(bins[:-1], share, width=10.0, align="edge", color=style.BLUE, edgecolor="white", linewidth=0.3)
-    axes.step(bins, [*of_any, of_any[-1]], where="post", color=style.BLACK, linewidth=0.9, label="if all ways alike")
+    axes.step(bins, [*of_any, of_any[-1]], where="post", color=style.BLACK, linewidth=0.9, label=style.page().said("if all ways alike", "all ways alike"))
     axes.set_xlim(0.0, 90.0)
     axes.set_xticks([0, 30, 60, 90])
     axes.set_xlabel("normal from the horizontal [°]", fontsize=style.page().size(7.0))
     axes.set_ylabel("share of area", fontsize=style.page().size(7.0))
-    axes.set_ylim(top=1.35 * max(*share, *of_any))
+    axes.set_ylim(top=(1.8 if style.page().is_column else 1.35) * max(*share, *of_any))
     axes.legend(loc="upper right", fontsize=style.page().size(6.5))
 
 

@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
+from .errors import Error
 from .texts import seen_on_a_line
 from .writing import whole
 
@@ -35,9 +36,11 @@ DPI = 300
 
 COLUMN_TEXT = 8.0
 """Points, of all text where a width is asked for."""
+_LABELS, _HANDLE = 0.9, 0.36  # inches: labels beside axes, about, and the sign before a text of a legend
 _LETTER = 0.062  # inches, mean width of a letter of such text
-_LEAST_PLOT = 0.52  # of the width, inches: height of a panel without the legend in it
-_PANEL_OF_COLUMN = 0.66  # of the width: height of a panel with its labels
+_PLOT = 0.5  # of the width: height of a panel of a column without the legend in it
+_LEAST_SHARE_OF_PLOT = 0.3  # of that height, where panels and legends are many
+_HIGHEST, _HIGHEST_OF_WIDTH = 240.0 / 25.4, 4.0 / 3.0  # inches; over the width: of a picture of a column
 _SHORT_TITLE = 25  # letters: a longer one is that of the figure
 _LOWEST = 0.42  # height of a panel over that of the highest
 _LEGEND_GAP = 4.0  # points between a legend and curves below it
@@ -75,10 +78,23 @@ class Page:
 
     width: float = WIDTH  #: inches
     is_column: bool = False  #: a width was asked for: all text has 8 pt, and legends stand in the axes
+    panels: tuple[int, ...] = ()  #: numbers, from 1, of the panels that are drawn; empty: all
+    has_title: bool = True
+    has_covered: bool = False  #: cracks are drawn that a platen covers in the picture
+    has_table: bool = True  #: of values, beside a stress-strain curve
 
     def size(self, points: float) -> float:
         """Of a text, which has these points unless a width is asked for."""
         return COLUMN_TEXT if self.is_column else points
+
+    @property
+    def highest(self) -> float:
+        """Inches, of a picture."""
+        return min(_HIGHEST, _HIGHEST_OF_WIDTH * self.width) if self.is_column else float("inf")
+
+    def said(self, text: str, short: str) -> str:
+        """Returns what a legend says: a short text in a column, where its axes or the caption say the rest."""
+        return short if self.is_column else text
 
     @property
     def letters(self) -> int:
@@ -99,9 +115,16 @@ def page() -> Page:
 
 
 @contextmanager
-def page_of(width: float | None) -> Iterator[None]:
-    """Draws figures for a width, inches; None: for a page of two columns, as they are drawn without this."""
-    before = _page.set(Page() if width is None else Page(width, is_column=True))
+def page_of(width: float | None, *, panels: Sequence[int] = (), title: bool = True,
+            table: bool = True, cracks_under_platens: bool = False) -> Iterator[None]:
+    """Draws figures for a width, inches; None: for a page of two columns, as they are drawn without this.
+
+    panels: numbers, from 1, of the panels to draw of figures that have several; empty: all. title, table: False draws
+    figures without their title, and a stress-strain curve without its table. cracks_under_platens: draws cracks also
+    where a platen covers them in the picture.
+    """
+    choices = {"panels": tuple(panels), "has_title": title, "has_table": table, "has_covered": cracks_under_platens}
+    before = _page.set(Page(**choices) if width is None else Page(width, is_column=True, **choices))
     try:
         yield
     finally:
@@ -151,9 +174,15 @@ def phase_colours(names: Sequence[str], bearings: Container[int]) -> list[str]:
 
 def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> Figure:
     """Empty figure for the page; inches, dots per inch (DPI where it is not stated). width: the most that it takes."""
-    figure = Figure(figsize=(page().width if width == WIDTH else min(width, page().width), height), dpi=dpi or DPI)
-    figure.is_of_column = page().is_column  # type: ignore[attr-defined]
+    figure = Figure(figsize=(page().width if width == WIDTH else min(width, page().width), min(height, page().highest)),
+                    dpi=dpi or DPI)
+    figure.of_page = page()  # type: ignore[attr-defined]
     return figure
+
+
+def number(figure: Figure, all_axes: Sequence[Axes]) -> None:
+    """Numbers the panels of a figure, by which its page chooses among them."""
+    figure.numbered = list(all_axes)  # type: ignore[attr-defined]
 
 
 def panels(height: float, rows: Sequence[float] = (1.0,), beside: float | None = None,
@@ -166,14 +195,19 @@ def panels(height: float, rows: Sequence[float] = (1.0,), beside: float | None =
     """
     if page().is_column:
         rows = [max(_LOWEST * max(rows), row) for row in rows]
-        figure = new_figure(0.2 + _PANEL_OF_COLUMN * page().width * sum(rows) / max(rows))
-        grid = figure.add_gridspec(len(rows), 1, height_ratios=rows)
-        return figure, [figure.add_subplot(grid[i]) for i in range(len(rows))], None
+        plots = [_PLOT * page().width * row / max(rows) for row in rows]
+        figure = new_figure(sum(plots) + 0.5 + 0.3 * len(rows))
+        grid = figure.add_gridspec(len(rows), 1, height_ratios=plots)
+        all_axes = [figure.add_subplot(grid[i]) for i in range(len(rows))]
+        figure.plots = dict(zip(all_axes, plots))  # type: ignore[attr-defined]
+        number(figure, all_axes)
+        return figure, all_axes, None
     figure = new_figure(height)
     columns = [1.0] if beside is None else [1.0, beside]
     grid = figure.add_gridspec(len(rows) + (below is not None), len(columns), width_ratios=columns,
                                height_ratios=[*rows] if below is None else [*rows, below])
     all_axes = [figure.add_subplot(grid[i, 0]) for i in range(len(rows))]
+    number(figure, all_axes)
     if beside is None and below is None:
         return figure, all_axes, None
     return figure, all_axes, figure.add_subplot(grid[-1, 0] if beside is None else grid[:, 1])
@@ -187,11 +221,7 @@ def draw_legend(place: Axes | None, axes: Axes, handles: Sequence | None = None,
     if place is not None:
         legend_alone(place, list(handles), list(labels), alignment, **options)
     elif handles:
-        title = options.get("title")
-        legend = axes.legend(handles, [_broken(label) for label in labels], loc="upper left", borderaxespad=0.2,
-                             title=title and _broken(title), title_fontsize=COLUMN_TEXT)
-        legend.set_in_layout(False)  # it would make axes narrower that are hardly wider
-        legend.stands_on_top = True
+        _draw_on_top(axes, list(handles), list(labels), options.get("title"), page().width - _LABELS)
 
 
 def draw_own_legend(axes: Axes) -> None:
@@ -202,14 +232,23 @@ def draw_own_legend(axes: Axes) -> None:
         axes.legend(loc="best")
 
 
-def _broken(text: str) -> str:
-    """A text of a legend in lines that fit into the axes."""
-    return _lines(text, max(14, int((page().width - 1.5) / _LETTER)))
+def _draw_on_top(axes: Axes, handles: list, labels: list[str], title: str | None, width: float) -> None:
+    """Draws a legend at the upper end of axes of this width, inches: in one column, or in two where these are lower."""
+    one, two = ([_lines(label, max(10, int((width / columns - _HANDLE) / _LETTER))) for label in labels]
+                for columns in (1, 2))
+    half = -(-len(labels) // 2)
+    heights = [sum(label.count("\n") + 1 for label in part) for part in (one, two[:half], two[half:])]
+    in_two = max(heights[1:]) < heights[0]
+    legend = axes.legend(handles, two if in_two else one, loc="upper left", borderaxespad=0.2, ncol=2 if in_two else 1,
+                         columnspacing=0.8, handlelength=1.4, handletextpad=0.5, title=title and _lines(title, 40),
+                         title_fontsize=COLUMN_TEXT, fontsize=COLUMN_TEXT, frameon=False)
+    legend.set_in_layout(False)  # it would make axes narrower that are hardly wider
+    legend.on_top = handles, labels, title
 
 
 def lines_of(text: str, letters: int) -> list[str]:
     """A text in lines of at most so many letters, longer words apart."""
-    return textwrap.wrap(" ".join(text.split()), letters, break_long_words=False, break_on_hyphens=False)
+    return textwrap.wrap(" ".join(re.split("[ \t\n]+", text.strip())), letters, break_long_words=False, break_on_hyphens=False)
 
 
 def _lines(text: str, letters: int) -> str:
@@ -220,30 +259,90 @@ def settle(figure: Figure) -> Figure:
     """Makes room in a figure of a column: breaks labels that are longer than their axes, and lifts the upper ends of
     axes that have a legend on top until it covers nothing. Returns the figure.
     """
-    if not getattr(figure, "is_of_column", False):
+    of_page = getattr(figure, "of_page", Page())
+    _choose_panels(figure, of_page.panels)
+    if not of_page.is_column:
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
-    scale = figure.dpi / 72.0
     for _ in range(4):
         figure.draw(renderer)
         _break_labels(figure, renderer)
         figure.draw(renderer)
-        lacking = max((_room_of_legend(axes, renderer) + _LEAST_PLOT * figure.get_figwidth() * figure.dpi
-                       - axes.bbox.height for axes in _with_legend_on_top(figure)), default=0.0)
-        if lacking < scale:
+        for axes in _with_legend_on_top(figure):
+            _draw_on_top(axes, *axes.get_legend().on_top, axes.bbox.width / figure.dpi)
+        if not _share_height(figure, of_page.highest, renderer):
             break
-        count = len({round(axes.bbox.y0) for axes in figure.axes})
-        figure.set_figheight(figure.get_figheight() + count * lacking / figure.dpi)
     for axes in _with_legend_on_top(figure):
         share = min(0.8, _room_of_legend(axes, renderer) / axes.bbox.height)
         for one in figure.axes:
             if one.bbox.bounds == axes.bbox.bounds:
                 _lift(one, share)
+    figure.draw(renderer)
+    _break_labels(figure, renderer)  # axes may have become narrower
     return figure
 
 
+def _choose_panels(figure: Figure, numbers: Sequence[int]) -> None:
+    """Takes away the panels that the page does not want, and their share of the height. Raises Error where the figure
+    has none of those that it wants.
+    """
+    listed: list[Axes] = getattr(figure, "numbered", [])
+    if not numbers or len(listed) < 2:
+        return
+    kept = [axes for i, axes in enumerate(listed, 1) if i in numbers]
+    if not kept:
+        raise Error(f"has {len(listed)} panels, and none of the numbers {', '.join(map(str, numbers))}")
+    for above, axes in zip(listed, listed[1:] + [listed[-1]]):  # a label below serves all panels above it
+        if above in kept and not above.get_xlabel():
+            follows = next(one for one in listed[listed.index(axes):] if one.get_xlabel() or one is listed[-1])
+            if not any(one in kept for one in listed[listed.index(axes):listed.index(follows) + 1]):
+                above.set_xlabel(follows.get_xlabel())
+                above.tick_params(labelbottom=True)
+    if listed[0] not in kept and not kept[0].get_title():
+        kept[0].set_title(listed[0].get_title())
+    grid = listed[0].get_gridspec()
+    heights, widths = list(grid.get_height_ratios()), list(grid.get_width_ratios())
+    before = sum(heights)
+    gone = [axes.get_subplotspec() for axes in listed if axes not in kept]
+    for one in [one for one in figure.axes if one.get_subplotspec() in gone or (listed[0] not in kept and not one.axison)]:
+        one.remove()  # with what stands behind it, and a legend of the first panel
+    filled = [axes.get_subplotspec() for axes in kept]
+    for ratios, side in ((heights, "rowspan"), (widths, "colspan")):
+        for i in {i for place in gone for i in getattr(place, side)}:
+            if not any(i in getattr(place, side) for place in filled):
+                ratios[i] *= 1e-3
+    grid.set_height_ratios(heights)
+    grid.set_width_ratios(widths)
+    figure.set_figheight(figure.get_figheight() * sum(heights) / before)
+
+
+def _share_height(figure: Figure, highest: float, renderer: Any) -> bool:
+    """Gives each panel of a column its plot and the room of its legend; plots get lower where the picture would become
+    too high. Returns whether the layout changes.
+    """
+    plots = {axes: height for axes, height in getattr(figure, "plots", {}).items() if axes in figure.axes}
+    if not plots:
+        return False
+    legends = {axes: _room_of_legend(one, renderer) / figure.dpi for one in _with_legend_on_top(figure)
+               for axes in plots if axes.bbox.bounds == one.bbox.bounds}
+    now = figure.get_figheight()
+    rest = now - sum(axes.bbox.height for axes in plots) / figure.dpi
+    room = highest - rest - sum(legends.values())
+    share = min(1.0, max(_LEAST_SHARE_OF_PLOT, room / sum(plots.values())))
+    heights = {axes: share * height + legends.get(axes, 0.0) for axes, height in plots.items()}
+    wanted = min(highest, rest + sum(heights.values()))
+    grid = next(iter(plots)).get_gridspec()
+    ratios = list(grid.get_height_ratios())
+    for axes, height in heights.items():
+        ratios[axes.get_subplotspec().rowspan.start] = height
+    off = max(abs(axes.bbox.height / figure.dpi - height) for axes, height in heights.items())
+    grid.set_height_ratios(ratios)
+    figure.set_figheight(wanted)
+    return max(off, abs(wanted - now)) > 1.0 / 72.0
+
+
 def _with_legend_on_top(figure: Figure) -> list[Axes]:
-    return [axes for axes in figure.axes if getattr(axes.get_legend(), "stands_on_top", False)]
+    return [axes for axes in figure.axes if hasattr(axes.get_legend(), "on_top")]
 
 
 def _room_of_legend(axes: Axes, renderer: Any) -> float:
@@ -313,7 +412,11 @@ def draw_parent(axes: Axes, parent, over, values) -> None:
 
 
 def title_of(run) -> str:
-    """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page."""
+    """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page; empty on a page
+    without titles.
+    """
+    if not page().has_title:
+        return ""
     return "\n".join(line for text in (plain(run.title), *facts_of(run), *warnings_of(run))
                      for line in textwrap.wrap(text, page().letters))
 

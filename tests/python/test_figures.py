@@ -11,6 +11,7 @@ import importlib.machinery
 import importlib.util
 import io
 import json
+import re
 import shutil
 import struct
 import sys
@@ -610,6 +611,62 @@ class WidthOfThePage(HeatedTest):
         self.assertEqual(self.command("compare", folder, folder, "--out", out, "--width", "8.4 cm")[0], 0)
         self.assertAlmostEqual(png_size(out)[0], 84.0 / 25.4 * style.DPI, delta=1.0)
 
+    def test_no_picture_of_a_column_is_higher_than_four_thirds_of_its_width(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        (folder / "references.json").write_text('[{"builtin": "compression"}]')
+        for width in (90, 140):
+            self.assertEqual(self.command("run", folder, "--width", f"{width}mm")[0], 0)
+            for file in sorted((folder / "figures").glob("*.png")):
+                across, high = png_size(file)
+                self.assertLessEqual(high / across * width, min(240.0, 4.0 / 3.0 * width) + 0.2, file.name)
+
+    def test_legends_of_a_column_do_not_say_what_axes_say(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        with style.page_of(90.0 / 25.4):
+            for picture in figures.figures_of(Results(folder)):
+                for axes in style.settle(picture.draw()).figure.axes:
+                    said = " ".join(text.get_text() for text in legend.get_texts()).lower() \
+                        if (legend := axes.get_legend()) else ""
+                    for word in re.findall("[a-z]{5,}", f"{axes.get_ylabel()} {axes.get_xlabel()}".lower()):
+                        self.assertNotIn(word, said, picture.name)
+
+    def test_panels_title_and_table_are_chosen(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        run = Results(folder)
+        drawn = {picture.name: picture for picture in figures.figures_of(run)}
+        for width in (None, 90.0 / 25.4):
+            with style.page_of(width, panels=[1], title=False, table=False):
+                energy = style.settle(drawn["energy"].draw())
+                self.assertEqual([axes.get_ylabel() for axes in energy.axes if axes.axison], ["Energy since the start [J]"])
+                self.assertIn("strain", energy.axes[0].get_xlabel())
+                self.assertEqual(sum(bool(axes.get_title()) for axes in drawn["fracture"].draw().axes), 1)
+                curve = style.settle(drawn["stress_strain"].draw())
+                self.assertFalse(any(axes.tables for axes in curve.axes))
+                self.assertNotIn(run.title, [text.get_text() for text in curve.findobj(Text)])
+            with style.page_of(width, panels=[2]):
+                energy = style.settle(drawn["energy"].draw())
+                self.assertEqual(len([axes for axes in energy.axes if axes.axison]), 1)
+            with style.page_of(width, panels=[7]), self.assertRaisesRegex(Error, "none of the numbers 7"):
+                style.settle(drawn["energy"].draw())
+        code, _, said = self.command("run", folder, "--only", "energy,pace", "--no-title", "--panels", "a,C")
+        self.assertEqual(code, 1)
+        self.assertIn("has no figure pace; its figures are stress_strain, cracks, energy", said)
+        self.assertEqual([file.name for file in (folder / "figures").iterdir()], ["energy.png"])
+
+    def test_platens_cover_cracks_unless_they_are_asked_to_show_them(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        run = Results(folder)
+        for shown in (False, True):
+            with style.page_of(None, cracks_under_platens=shown):
+                axes = fracture_panels(fracture(run, select_frames(run.loaded_frames, *run.peak))).axes[0]
+            drawn = sorted(axes.collections, key=lambda one: one.get_zorder())
+            over = isinstance(drawn[-1], PolyCollection) and to_rgba(style.PLATEN_COLOUR) in map(tuple, drawn[-1].get_facecolor())
+            self.assertEqual(over, not shown)
+
     def test_a_length_needs_a_unit_and_a_range(self):
         for text in ("90", "90px", "wide", "20mm", "3m", "1000mm", "-90mm"):
             with self.subTest(text), self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as told:
@@ -641,6 +698,7 @@ class WidthOfThePage(HeatedTest):
                 for name, figure in self.figures_of_runs():
                     with self.subTest(name, width=width):
                         style.settle(figure)
+                        self.assertLessEqual(figure.get_figheight(), 4.0 / 3.0 * width / 25.4 + 1e-9, name)
                         assert_apart(self, name, figure)
                         sizes = {text.get_fontsize() for text in figure.findobj(Text) if text.get_text().strip()
                                  and not isinstance(text.axes, type(None)) and text.get_visible()}
@@ -652,7 +710,7 @@ class WidthOfThePage(HeatedTest):
         figure.draw(renderer)
         for axes in figure.axes:
             legend = axes.get_legend()
-            if legend is None or not getattr(legend, "stands_on_top", False):
+            if legend is None or not hasattr(legend, "on_top"):
                 continue
             below = legend.get_window_extent(renderer).y0
             for line in axes.lines:
