@@ -28,7 +28,6 @@ import csv
 import gc
 import re
 import sys
-import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -53,6 +52,11 @@ from .sections import gradation, morphology
 from .solid_sections import cracks_inside, plane_section
 from .style import page_of, save
 from .writing import make_folder, shell_path
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # the tarball brings it along
 
 _FORMATS = ("png", "svg", "pdf")
 _NAME = "pyroclast figures"

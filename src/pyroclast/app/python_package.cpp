@@ -53,7 +53,7 @@ class Strings {
 
 /// What the package needs; ends messages.
 constexpr auto kNeeded =
-    "Python 3.9 or later with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in the environment "
+    "Python 3.9 or later, for studies 3.11, with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in the environment "
     "names "
     "another Python";
 
@@ -64,7 +64,7 @@ constexpr auto kStart = R"(import sys
 if sys.path[:1] == ['']:
     del sys.path[0]
 needed = '?'
-if sys.version_info < (3, 9):
+if sys.version_info < (3, 11 if '@' == 'pyroclast.study' else 9):
     sys.exit('error: %s is Python %d.%d: ' % ((sys.executable,) + sys.version_info[:2]) + needed)
 import runpy, signal
 if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
