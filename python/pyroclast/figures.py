@@ -390,12 +390,13 @@ def parser() -> argparse.ArgumentParser:
                                                          asked.magnification))
     for command in commands.choices.values():
         command.add_argument("--width", type=_width, metavar="LENGTH",
-                             help="width of the figures, such as 90mm, with all text of 8 pt, legends in the axes and a "
-                                  "height of 4/3 of the width at most (default: a page of two columns, 183mm)")
+                             help="width of the figures, such as 90mm, with all text of 8 pt, legends in the axes and "
+                                  "a height of 4/3 of the width at most (default: a page of two columns, 183mm)")
         command.add_argument("--panels", type=_panel_numbers, default=(), metavar="N,N,...",
                              help="panels to draw of each figure that has several, from the top left: 1,3 or A,D "
                                   "(default: all)")
-        command.add_argument("--no-title", action="store_true", help="draw no titles; then say in the caption what they say")
+        command.add_argument("--no-title", action="store_true",
+                             help="draw no titles; then say in the caption what they say")
         command.add_argument("--cracks-under-platens", action="store_true",
                              help="draw cracks also where a platen covers them in the picture")
         command.add_argument("--no-table", action="store_true", help="draw no table beside a stress-strain curve")

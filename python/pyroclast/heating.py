@@ -43,7 +43,8 @@ def total_strain(run: Results) -> Figure:
     if not run.timed and reference.TRANSIENT_STRAIN in run.references.builtin:
         band = reference.strain_band(run.load_level)
     if band:
-        draw_band(upper, band, style.ORANGE, style.page().said(_BAND_LABEL, "models calibrated on Anderberg & Thelandersson"))
+        draw_band(upper, band, style.ORANGE,
+                  style.page().said(_BAND_LABEL, "models calibrated on Anderberg & Thelandersson"))
     _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
     draw_tables(upper, [run], over_minutes(run.timed), ("total_strain", style.PER_MILLE))
     label = f"this run, {style.load_label(run)}".rstrip(", ")
@@ -69,7 +70,8 @@ def thrust(run: Results) -> Figure:
     draw_tables(upper, [run], over_minutes(run.timed), ("stress", 1.0))
     upper.fill_between(over, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label=style.page().said("between its upper and lower platen", "between its platens"))
-    upper.plot(over, stress, color=style.BLUE, linewidth=1.8, label=style.page().said("this run, mean of both platens", "this run"))
+    upper.plot(over, stress, color=style.BLUE, linewidth=1.8,
+               label=style.page().said("this run, mean of both platens", "this run"))
     if run.history.known("stress_MPa", run.heated).min() >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)

@@ -139,10 +139,12 @@ def _draw_extents(axes: Axes, course: Course) -> None:
         colour, seen = _MODE_COLOURS[mode], np.where(values > 0.0, values, np.nan)
         rows = style.kept(course.over, seen)
         if is_broken:
-            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8, label=f"{mode}, " + style.page().said("broken ($D=1$)", "broken"))
+            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8,
+                      label=f"{mode}, " + style.page().said("broken ($D=1$)", "broken"))
         else:
             axes.fill_between(course.over[rows], least, seen[rows], color=colour, alpha=0.18, linewidth=0.0,
-                              label=style.page().said(f"{mode}, damaged ($D>0$), the broken among them", f"{mode}, $D>0$"))
+                              label=style.page().said(f"{mode}, damaged ($D>0$), the broken among them",
+                                                      f"{mode}, $D>0$"))
     axes.set_ylim(least, 1.5 * max(np.nanmax(values) for *_, values in drawn))
 
 
@@ -182,7 +184,8 @@ def energy(course: Course) -> Figure:
     turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
-               label=style.page().said("work put in (loading,\ngravity, change of\nproperties, mass scaling)", "work put in"))
+               label=style.page().said("work put in (loading,\ngravity, change of\nproperties, mass scaling)",
+                                       "work put in"))
     upper.set_xlim(course.start, np.nanmax(course.over))
     if not (work_in < 0.0).any():
         upper.set_ylim(bottom=0.0)
@@ -193,7 +196,8 @@ def energy(course: Course) -> Figure:
     if len(all_axes) == 3:
         all_axes[1].plot(*style.thinned(course.over, changes), color=style.PURPLE, linewidth=1.4)
         all_axes[1].axhline(0.0, color=style.BLACK, linewidth=0.6)
-        all_axes[1].set_ylabel(style.page().said("Put in by\nthe change of\nproperties [J]", "Changed\nproperties\n[J]"))
+        all_axes[1].set_ylabel(style.page().said("Put in by\nthe change of\nproperties [J]",
+                                                 "Changed\nproperties\n[J]"))
 
     lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)

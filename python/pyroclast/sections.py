@@ -58,7 +58,8 @@ def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | N
 def cover_by_bearings(axes: Axes, blocks: BlockMesh, points: np.ndarray) -> None:
     """Draws the bearings of a plane body again, over its cracks."""
     outlines, material = blocks.outlines
-    over = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(np.isin(material, list(blocks.bearing_materials)))]
+    of_bearings = np.flatnonzero(np.isin(material, blocks.bearing_materials))
+    over = [style.MILLI * points[outlines[i]] for i in of_bearings]
     axes.add_collection(PolyCollection(over, facecolors=style.PLATEN_COLOUR, edgecolors=style.PLATEN_COLOUR,
                                        linewidths=0.15, rasterized=True, zorder=2.5))
 

@@ -283,7 +283,9 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
     for mode in dict.fromkeys(drawn.mode.tolist()):
         axes.plot([], [], color=colours[mode], linewidth=4.0, label=mode)
     if len(drawn.area):
-        above = {"title": told, "loc": "lower center", "bbox_to_anchor": (0.5, 1.0)} if column else {"loc": "upper left"}
+        above = {"loc": "upper left"}
+        if column:
+            above = {"title": told, "loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
         axes.legend(**above, title_fontsize=style.COLUMN_TEXT)
     _draw_rose(rose, drawn)
     _draw_inclination(inclination, drawn)
@@ -321,7 +323,8 @@ def _draw_rose(axes: Axes, faces: CrackFaces) -> None:
     axes.set_yticks([])
     axes.set_xticks(np.radians([0, 90, 180, 270]))
     axes.set_xticklabels(["x", "z", "−x", "−z"], fontsize=style.page().size(6.5))
-    axes.set_title(style.page().said("normals around the vertical, by area", "normals around y, by area"), fontsize=style.page().size(7.0))
+    axes.set_title(style.page().said("normals around the vertical, by area", "normals around y, by area"),
+                   fontsize=style.page().size(7.0))
 
 
 def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
@@ -330,7 +333,8 @@ def _draw_inclination(axes: Axes, faces: CrackFaces) -> None:
     of_any = np.sin(np.radians(bins[1:])) - np.sin(np.radians(bins[:-1]))
     share = sums / sums.sum() if sums.sum() > 0.0 else sums
     axes.bar(bins[:-1], share, width=10.0, align="edge", color=style.BLUE, edgecolor="white", linewidth=0.3)
-    axes.step(bins, [*of_any, of_any[-1]], where="post", color=style.BLACK, linewidth=0.9, label=style.page().said("if all ways alike", "all ways alike"))
+    axes.step(bins, [*of_any, of_any[-1]], where="post", color=style.BLACK, linewidth=0.9,
+              label=style.page().said("if all ways alike", "all ways alike"))
     axes.set_xlim(0.0, 90.0)
     axes.set_xticks([0, 30, 60, 90])
     axes.set_xlabel("normal from the horizontal [°]", fontsize=style.page().size(7.0))

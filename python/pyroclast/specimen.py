@@ -181,8 +181,8 @@ class Specimen(_Blocks[_core.Specimen]):
         side = length("pixel", pixel, "0.2 mm")
         for key, name in phases.items():
             if name is not None and not isinstance(name, str):
-                raise Error(f"phases: {'...' if key is ... else repr(key)} has the phase {name!r}; it must be a name, or "
-                            "None where there is nothing")
+                raise Error(f"phases: {'...' if key is ... else repr(key)} has the phase {name!r}; it must be a "
+                            "name, or None where there is nothing")
         names = list(dict.fromkeys(name for name in phases.values() if name is not None))
         labels, place = label_image.numbered(pixels)
         keys = label_image.keys_of(labels, place, phases, source)

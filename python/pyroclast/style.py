@@ -248,7 +248,8 @@ def _draw_on_top(axes: Axes, handles: list, labels: list[str], title: str | None
 
 def lines_of(text: str, letters: int) -> list[str]:
     """A text in lines of at most so many letters, longer words apart."""
-    return textwrap.wrap(" ".join(re.split("[ \t\n]+", text.strip())), letters, break_long_words=False, break_on_hyphens=False)
+    words = re.split("[ \t\n]+", text.strip())
+    return textwrap.wrap(" ".join(words), letters, break_long_words=False, break_on_hyphens=False)
 
 
 def _lines(text: str, letters: int) -> str:
@@ -304,7 +305,8 @@ def _choose_panels(figure: Figure, numbers: Sequence[int]) -> None:
     heights, widths = list(grid.get_height_ratios()), list(grid.get_width_ratios())
     before = sum(heights)
     gone = [axes.get_subplotspec() for axes in listed if axes not in kept]
-    for one in [one for one in figure.axes if one.get_subplotspec() in gone or (listed[0] not in kept and not one.axison)]:
+    has_first = listed[0] in kept
+    for one in [one for one in figure.axes if one.get_subplotspec() in gone or not (has_first or one.axison)]:
         one.remove()  # with what stands behind it, and a legend of the first panel
     filled = [axes.get_subplotspec() for axes in kept]
     for ratios, side in ((heights, "rowspan"), (widths, "colspan")):

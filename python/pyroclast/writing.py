@@ -19,7 +19,8 @@ from .texts import seen_on_a_line
 def whole(path: Path) -> Iterator[Path]:
     """A file beside `path` that is written, and then takes its place; where something goes wrong there is none.
 
-    It is made under a name that was free. A link at `path` is replaced and not followed. `--overwrite` knows its ending.
+    It is made under a name that was free. A link at `path` is replaced and not followed. `--overwrite` knows its
+    ending.
     """
     aside = path.with_name(f"{path.name}.{secrets.token_hex(4)}.partial")
     os.close(os.open(aside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
@@ -51,8 +52,8 @@ def refuse_link(path: Path) -> None:
         raise OSError(errno.ELOOP, "is a link, and nothing is written through it; remove it", str(path))
     if path.is_file() and path.stat().st_nlink > 1:
         raise OSError(errno.EMLINK, "is a link, and nothing is written through it: the same file has another name, as "
-                      "where a folder is copied by links (cp -l, rsync --link-dest); copy the folder whole (cp -r), and "
-                      "use the copy", str(path))
+                      "where a folder is copied by links (cp -l, rsync --link-dest); copy the folder whole (cp -r), "
+                      "and use the copy", str(path))
 
 
 def shell_path(path: str | Path) -> str:

@@ -63,7 +63,8 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
         yield CurveQuantity(f"probe_{name}", f"probe {name} [°C]", f"probe_{name}_degC", 1.0, name)
     yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
     yield CurveQuantity("step", "step", "step")
-    yield CurveQuantity("mean_opening", "mean opening of contacts damaged in tension or mixed mode [µm]", "mean_opening_m", 1e6)
+    yield CurveQuantity("mean_opening", "mean opening of contacts damaged in tension or mixed mode [µm]",
+                        "mean_opening_m", 1e6)
     yield CurveQuantity("unbalanced", "unbalanced ratio [–]", "unbalanced_ratio")
     yield CurveQuantity("kinetic", "kinetic over strain energy [–]", "kinetic_over_strain")
     yield CurveQuantity("cycles", "cycles after the exchange", "cycles")

@@ -67,8 +67,8 @@ def _run(options: argparse.Namespace) -> int:
     is_complete = study.run(executor, say=say)
     table = study.setup.folder / "table.csv"
     if isinstance(executor, Commands) and executor.written:
-        say(f"{executor.written} commands are in {executor.file}, and for Slurm in {executor.script}; when they are done, "
-            "the same command takes them in")
+        say(f"{executor.written} commands are in {executor.file}, and for Slurm in {executor.script}; when they are "
+            "done, the same command takes them in")
         return 0
     if not is_complete:
         say(f"stopped; to go on: pyroclast study run {shell_path(options.study)}")
@@ -102,8 +102,8 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         off = f": {100.0 * (y / value - 1.0):+.1f} %" if value else ""
         say(f"                {target.output} {y:.4g}{unit}, wanted {value:g}{unit}{off}")
         if unit and abs(y - value) > _FAR * min(abs(y), abs(value)) > 0.0:
-            far.append(f"targets.{target.output} counts in{unit} and is far from all that the runs gave: is another unit meant, "
-                       f"write it, as in \"{y:.3g}{unit}\"")
+            far.append(f"targets.{target.output} counts in{unit} and is far from all that the runs gave: is another "
+                       f"unit meant, write it, as in \"{y:.3g}{unit}\"")
     if deck := study.write_best():
         say(f"its deck        {deck}")
     if found.get("is_met", True):
@@ -202,7 +202,8 @@ def _converge(options: argparse.Namespace) -> int:
     return converge.run(options, _speech(options))
 
 
-_COMMANDS = {"run": _run, "scatter": _scatter, "converge": _converge, "check": _check, "status": _status, "table": _table, "report": _report, "keys": _keys}
+_COMMANDS = {"run": _run, "scatter": _scatter, "converge": _converge, "check": _check, "status": _status,
+             "table": _table, "report": _report, "keys": _keys}
 
 
 if __name__ == "__main__":

@@ -172,7 +172,8 @@ def number_in(value: Any, unit: str) -> float:
     if math.isfinite(number):
         return number
     if unit == "1":
-        raise Error("counts in no unit, as the name of the output tells none: a plain number is needed, or e.g. \"31 %\"")
+        raise Error("counts in no unit, as the name of the output tells none: a plain number is needed, or "
+                    "e.g. \"31 %\"")
     raise Error(f"counts in {unit}: a number is needed, or a quantity of that kind, such as \"1 {unit}\"")
 
 
