@@ -53,7 +53,8 @@ class Strings {
 
 /// What the package needs; ends messages.
 constexpr auto kNeeded =
-    "Python 3.9 or later, for studies 3.11, with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in the environment "
+    "Python 3.9 or later, for studies 3.11, with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in "
+    "the environment "
     "names "
     "another Python";
 
