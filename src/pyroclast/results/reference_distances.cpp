@@ -27,7 +27,6 @@ PlainCurve advancing(const PlainCurve& curve) {
 double value_at(const PlainCurve& line, double x) {
   const auto after = std::ranges::upper_bound(line.x, x) - line.x.begin();
   if (after == std::ssize(line.x)) return line.y.back();
-  if (after == 0) return line.y.front();
   const double share = (x - line.x[after - 1]) / (line.x[after] - line.x[after - 1]);
   return line.y[after - 1] + share * (line.y[after] - line.y[after - 1]);
 }
@@ -88,7 +87,7 @@ std::vector<std::size_t> heated_rows(const Run& run) {
     for (std::size_t row = record.rows.first; row < record.rows.last; ++row) {
       const bool fails = record.outcome == Outcome::ran_away && row + 1 == record.rows.last;
       if (!is_exchange(run.history(), row) || fails) continue;
-      if (rows.empty() && row > 0) rows.push_back(row - 1);
+      if (rows.empty()) rows.push_back(row - 1);
       rows.push_back(row);
     }
   }
@@ -101,15 +100,14 @@ PlainCurve compressed(const Run& run) {
   std::optional<std::size_t> test;
   for (std::size_t i = 0; i < run.courses().size(); ++i)
     if (const RowRange rows = run.courses()[i].rows;
-        !rows.empty() && run.stages()[i]->needs().mechanics && history.cell(rows.last - 1, "stress_MPa"))
+        !rows.empty() && history.cell(rows.last - 1, "stress_MPa"))
       test = i;
   if (!test) return {};
   const RowRange of_test = run.courses()[*test].rows;
   std::size_t since = 0;  // first row after heat last changed the body
   for (std::size_t row = 0; row < of_test.first; ++row)
     if (is_exchange(history, row)) since = row + 1;
-  const double before =
-      since > 0 && of_test.first > 0 ? history.cell(of_test.first - 1, "strain").value_or(0.0) : 0.0;
+  const double before = since > 0 ? history.cell(of_test.first - 1, "strain").value_or(0.0) : 0.0;
   PlainCurve curve;
   const auto add = [&](RowRange rows) {
     for (std::size_t row = rows.first; row < rows.last; ++row)
