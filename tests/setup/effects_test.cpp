@@ -1,5 +1,9 @@
 // Promise: what a deck states acts on something, or the check refuses it with its place.
+#include "pyroclast/setup/effects.hpp"
+
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -80,6 +84,10 @@ TEST(Effects, ABoundaryThatLetsNoHeatThroughIsRefused) {
       {"heat.boundaries[0].flux", none_through});
 }
 
+std::string with_stress_free(const std::string& text, const std::string& at) {
+  return with(text, "failure_strain = 0.005\n", "failure_strain = 0.005\nstress_free = \"" + at + "\"\n");
+}
+
 /// Warnings of a deck, a line each.
 std::string warnings_of(const std::string& text) {
   std::string lines;
@@ -104,6 +112,30 @@ TEST(Effects, TemperaturesThatStayAreTold) {
   expect_contains(twice, {"stages[1].to = \"20 degC\": is the temperature that the specimen has already",
                           "stages[3].to = \"50 degC\""});
   expect_out("stages[2]", twice);
+  expect_out("has already",
+             warnings_of(deck(kUniform + kSettle + heat("50 degC") + heat("20 degC") + heat("50 degC"))));
+}
+
+// Promise: a flux changes the body, to whatever temperature.
+TEST(Effects, AFluxLeavesNoBodyAsItIs) {
+  const std::string text = conducting(kSettle + kExpose);
+  const auto said = [&](HeatCondition condition) {
+    const Deck deck = Deck::parse(text, "deck.toml");
+    pyroclast::Setup setup = read(text);
+    setup.heat.boundaries[0].condition = std::move(condition);
+    warn_of_even_temperatures(deck.root(), setup);
+    return deck.warnings().size();
+  };
+  EXPECT_EQ(said(Adiabatic{}), 1U);
+  EXPECT_EQ(said(HeatFlux{Curve::constant(1.0)}), 0U);
+}
+
+// Promise: `conduct` lets heat flow too, and a deck without boundaries needs no flow.
+TEST(Effects, WhoHasNoBoundaryNeedsNoFlow) {
+  EXPECT_EQ(refused(conducting(kSettle + kConduct)), "no Error was thrown");
+  EXPECT_EQ(refused(conducting(kSettle + with(kConduct, "duration = \"1 min\"", "duration = \"0.5 s\""))),
+            "no Error was thrown");
+  EXPECT_EQ(refused(deck(kUniform + kSettle)), "no Error was thrown");
 }
 
 TEST(Effects, PropertiesThatNoTemperatureCallsForAreTold) {
@@ -122,7 +154,42 @@ TEST(Effects, PropertiesThatNoTemperatureCallsForAreTold) {
                                  "changes in this run, so that they have no effect"}));
   EXPECT_EQ(told(heat("500 degC")),
             std::vector<std::string>{quartz + "500 degC at most, so that it has no effect"});
+  EXPECT_EQ(told(heat("550 degC")),
+            std::vector<std::string>{quartz + "550 degC at most, so that it has no effect"});
   EXPECT_EQ(told(heat("560 degC")), std::vector<std::string>());
+}
+
+// Promise: shares left after cooling, of a phase and of contacts, are told too, one key and several; where a
+// stage changes the temperature, or the body begins strained, all keys act.
+TEST(Effects, ResidualRatiosThatNoTemperatureCallsForAreTold) {
+  const std::string residual = "residual_ratio = { table = [[\"20 degC\", 1], [\"820 degC\", 0.1]] }\n";
+  const std::string irreversible =
+      with(deck(kUniform + kSettle), "on_cooling = \"reversible\"", "on_cooling = \"irreversible\"");
+  const std::string of_contact =
+      with(irreversible, "[contacts.mortar_mortar]\n", "[contacts.mortar_mortar]\n" + residual);
+  const auto told = [](const std::string& text) { return read(text).unused_properties; };
+  const std::string none = ": no temperature changes in this run, so that ";
+  EXPECT_EQ(told(irreversible), std::vector<std::string>());
+  EXPECT_EQ(told(of_contact),
+            std::vector<std::string>{"contacts.mortar_mortar.residual_ratio" + none + "it has no effect"});
+  EXPECT_EQ(
+      told(with(of_contact, "[materials.mortar]\n", "[materials.mortar]\n" + residual)),
+      std::vector<std::string>{"materials.mortar.residual_ratio, contacts.mortar_mortar.residual_ratio" +
+                               none + "they have no effect"});
+  EXPECT_EQ(told(of_contact + heat("20 degC")).size(), 1U);
+  EXPECT_EQ(told(of_contact + heat("21 degC")), std::vector<std::string>());
+  EXPECT_EQ(told(with_stress_free(of_contact, "35 degC")), std::vector<std::string>());
+}
+
+// Promise: where heat alone moves, contacts have no properties to be told of.
+TEST(Effects, HeatAloneHasNoContactsWithProperties) {
+  const std::string text = deck(kUniform + kSettle);
+  const Deck deck = Deck::parse(text, "deck.toml");
+  pyroclast::Setup setup = read(text);
+  setup.moving.reset();
+  EXPECT_EQ(unused_properties(deck.root(), setup), std::vector<std::string>());
+  setup.block_materials[1].contraction = 5e-6;
+  EXPECT_EQ(unused_properties(deck.root(), setup).size(), 1U);
 }
 
 TEST(Effects, ATemperatureWithoutStressOfABodyThatDoesNotExpandIsTold) {
@@ -138,6 +205,79 @@ TEST(Effects, ATemperatureWithoutStressOfABodyThatDoesNotExpandIsTold) {
                   {"heat.initial", "unstrained at 35 degC", "to 20 degC acts at once"});
   expect_contains(of("1e-5 1/K", ""),
                   {"deck.toml:", "coupling.stress_free = \"35 degC\": the body is unstrained"});
+}
+
+/// What is said of the first strain of a body, of which a test has changed something since the deck was read.
+std::string said_of_first_strain(const std::string& text,
+                                 const std::function<void(pyroclast::Setup&)>& change) {
+  const Deck deck = Deck::parse(text, "deck.toml");
+  pyroclast::Setup setup = read(text);
+  change(setup);
+  warn_of_first_strain(deck.root(), setup);
+  std::string lines;
+  for (const Diagnostic& warning : deck.warnings()) lines += to_string(warning) + "\n";
+  return lines;
+}
+
+// Promise: a body expands where a phase strains upwards or downwards, contracts as it cools, or has its
+// strain from the concrete; what a bearing does is no strain of the body.
+TEST(Effects, ABodyExpandsByAnyOfItsPhases) {
+  const std::string text = with_stress_free(deck(kUniform + kSettle), "35 degC");
+  const auto strain = [](double at_hundred) {
+    return Curve::table({0.0, 20.0, 100.0}, {0.0, 0.0, at_hundred}, temperature_axis());
+  };
+  const auto expands = [&](const std::function<void(std::vector<BlockMaterial>&, MovingBody&)>& change) {
+    const std::string said = said_of_first_strain(text, [&](pyroclast::Setup& setup) {
+      for (BlockMaterial& material : setup.block_materials) material.thermal_strain = Curve::constant(0.0);
+      change(setup.block_materials, *setup.moving);
+    });
+    EXPECT_NE(said.find("strains nothing") == std::string::npos,
+              said.find("acts at once") == std::string::npos);
+    return said.find("strains nothing") == std::string::npos;
+  };
+  EXPECT_FALSE(expands([](auto&, auto&) {}));
+  EXPECT_FALSE(expands([&](auto& materials, auto&) { materials[0].thermal_strain = strain(0.0); }));
+  EXPECT_TRUE(expands([&](auto& materials, auto&) { materials[0].thermal_strain = strain(1e-3); }));
+  EXPECT_TRUE(expands([&](auto& materials, auto&) { materials[1].thermal_strain = strain(-1e-3); }));
+  EXPECT_TRUE(expands([](auto& materials, auto&) { materials[1].contraction = 5e-6; }));
+  EXPECT_FALSE(expands([&](auto& materials, auto&) {
+    EXPECT_TRUE(materials.back().is_of_bearing);
+    materials.back().thermal_strain = strain(1e-3);
+    materials.back().contraction = 5e-6;
+  }));
+  EXPECT_TRUE(
+      expands([&](auto&, auto& moving) { moving.strain_of_concrete.emplace().strain = strain(1e-3); }));
+  EXPECT_FALSE(
+      expands([&](auto&, auto& moving) { moving.strain_of_concrete.emplace().strain = strain(0.0); }));
+}
+
+// Promise: a body that begins at another temperature than the one without stress is told both, and how to
+// say another; one that begins there, that does not expand, or whose temperatures without stress are a field,
+// is told nothing.
+TEST(Effects, AStrainAtTheFirstStepIsTold) {
+  const std::string warm = deck("[heat]\nfield = \"uniform\"\ninitial = \"50 degC\"\n" + kSettle);
+  const auto nothing = [](pyroclast::Setup&) {};
+  const std::string at_once = "degC acts at once at the first step, which can crack it";
+  const std::string another =
+      ": a stage that heats the body does so gradually; coupling.stress_free says another temperature\n";
+  expect_contains(
+      said_of_first_strain(warm, nothing),
+      {"heat.initial", "unstrained at 20 degC, and its strain from there to 50 " + at_once + another});
+  expect_contains(said_of_first_strain(with_stress_free(warm, "35 degC"), nothing),
+                  {"heat.initial", "unstrained at 35 degC", "50 " + at_once + "\n"});
+  EXPECT_EQ(said_of_first_strain(with_stress_free(warm, "50 degC"), nothing), "");
+  EXPECT_EQ(said_of_first_strain(deck(kUniform + kSettle), nothing), "");
+  EXPECT_EQ(said_of_first_strain(warm,
+                                 [](pyroclast::Setup& setup) {
+                                   for (BlockMaterial& material : setup.block_materials)
+                                     material.thermal_strain = Curve::constant(0.0);
+                                 }),
+            "");
+  EXPECT_EQ(
+      said_of_first_strain(with_stress_free(warm, "35 degC"),
+                           [](pyroclast::Setup& setup) { setup.moving->stress_free->places.push_back({}); }),
+      "");
+  EXPECT_EQ(said_of_first_strain(warm, [](pyroclast::Setup& setup) { setup.moving.reset(); }), "");
 }
 
 TEST(Effects, TheGasOfCracksIsKnownAtAllTemperatures) {
@@ -212,6 +352,23 @@ TEST(Effects, ASetThatNoTableNamesIsTold) {
       "[[sets]]\nname = \"mine\"\nwithin = \"left\"\n[[sets]]\nname = \"used\"\nwithin = \"top\"\n" +
       record("u", "displacement", "set = \"used\"\ndirection = \"y\"");
   EXPECT_EQ(read(deck(kUniform + kSettle + sets)).unused_sets, std::vector<std::string>{"mine"});
+}
+
+// Promise: a set is used by a stage, a record, as the first or the other one, a boundary, another set, or a
+// part with finer blocks; the others are told in their order.
+TEST(Effects, ASetIsUsedByAnyTableThatNamesIt) {
+  pyroclast::Setup setup = read(deck(kUniform + kSettle +
+                                     drive("name = \"pull\"\nduration = \"1 ms\"",
+                                           does("driven", "direction = \"x\"\nvelocity = \"1 mm/s\"")) +
+                                     "[[sets]]\nname = \"driven\"\nwithin = \"left\"\n"));
+  EXPECT_EQ(setup.unused_sets, std::vector<std::string>());
+  for (const char* name : {"mine", "recorded", "other", "heated", "whole", "fine", "yours"})
+    setup.sets.push_back({.name = name, .within = "left", .place = {}});
+  setup.sets.back().within = "whole";
+  setup.records = {{.name = "gap", .set = "recorded", .other = "other"}};
+  setup.heat.boundaries = {{.faces = {.part = "heated"}, .condition = Adiabatic{}, .place = ""}};
+  setup.specimen.blocks.finer = {{.name = "fine"}};
+  EXPECT_EQ(unused_sets(setup), (std::vector<std::string>{"mine", "yours"}));
 }
 
 TEST(Effects, WhatIsNearestToAPlaceFarFromTheBodyIsRefused) {

@@ -15,8 +15,7 @@ constexpr const char* kStressFree = "stress_free";
 
 bool is_nothing(const Curve& strain) {
   const auto [lower, upper] = strain.range();
-  return strain.is_constant() ? strain(kReferenceTemperature) == 0.0
-                              : strain.minimum(lower, upper) == 0.0 && strain.maximum(lower, upper) == 0.0;
+  return strain.minimum(lower, upper) == 0.0 && strain.maximum(lower, upper) == 0.0;
 }
 
 /// Tells whether temperature strains any part of the specimen.
@@ -59,16 +58,15 @@ std::vector<std::string> keys_of_change(const Section& root, const Setup& setup)
 }  // namespace
 
 void check_flow(const Section& root, const Setup& setup) {
-  const auto heat = root.optional_section("heat");
   const auto lets_flow = [](const auto& stage) { return stage->heating().duration > 0.0; };
-  if (!heat || setup.heat.boundaries.empty() || std::ranges::any_of(setup.stages, lets_flow)) return;
-  heat->error("boundaries", "have no effect: no stage lets heat flow (kinds \"expose\" and \"conduct\")");
+  if (setup.heat.boundaries.empty() || std::ranges::any_of(setup.stages, lets_flow)) return;
+  root.section("heat").error("boundaries",
+                             "have no effect: no stage lets heat flow (kinds \"expose\" and \"conduct\")");
 }
 
 void warn_of_first_strain(const Section& root, const Setup& setup) {
   if (!setup.moving) return;
   const auto& stress_free = setup.moving->stress_free;
-  const auto coupling = root.optional_section("coupling");
   if (!expands(setup)) {
     if (stress_free)
       root.section("coupling")
@@ -86,23 +84,22 @@ void warn_of_first_strain(const Section& root, const Setup& setup) {
     heat->warn("initial", strained + (stress_free ? ""
                                                   : ": a stage that heats the body does so gradually; "
                                                     "coupling.stress_free says another temperature"));
-  else if (coupling)
-    coupling->warn(kStressFree, strained);
+  else
+    root.section("coupling").warn(kStressFree, strained);
 }
 
 void warn_of_even_temperatures(const Section& root, const Setup& setup) {
   if (!setup.heat.uniform) {
-    const auto heat = root.optional_section("heat");
-    if (heat && setup.exposure > 0.0 && !changes_temperature(setup))
-      heat->warn("boundaries",
-                 fmt::format("have no effect: all of them leave the specimen at {:.6g} degC, as it "
-                             "is at the start",
-                             setup.heat.initial));
+    if (!changes_temperature(setup))
+      root.section("heat").warn(
+          "boundaries", fmt::format("have no effect: all of them leave the specimen at {:.6g} degC, as it "
+                                    "is at the start",
+                                    setup.heat.initial));
     return;
   }
   const auto sections = root.sections("stages");
   double temperature = setup.heat.initial;
-  for (std::size_t i = 0; i < std::min(setup.stages.size(), sections.size()); ++i) {
+  for (std::size_t i = 0; i < setup.stages.size(); ++i) {
     const auto to = setup.stages[i]->heating().to;
     if (!to) continue;
     if (same(*to, temperature, absolute_zero))
