@@ -17,7 +17,7 @@ from scipy.stats import chi2, norm, spearmanr, t
 
 from pyroclast.errors import Error
 from pyroclast.study.methods import (_needs, calibration, ensemble, hsic, main_effects, morris, posterior, sampling,
-                                     secant, seeds, sobol, surrogate)
+                                     seeds, sobol, surrogate)
 
 
 def ishigami(u):
@@ -1446,71 +1446,6 @@ class Calibration(unittest.TestCase):
         found = calibration.calibrate(2, linear_targets(np.array([0.0, 1.0])), calibration.Settings(), linear)
         self.assertTrue(found.points.min() >= 0.0 and found.points.max() <= 1.0)
         np.testing.assert_allclose(found.points[found.best], [0.0, 1.0], atol=0.03)
-
-
-class Secant(unittest.TestCase):
-    """A stiffness and a strength, each a power of its own factor and a little of the other."""
-
-    TARGETS = calibration.Targets(("E", "f_c"), np.array([32.0, 45.0]), np.array([0.1, 0.2]))
-    RANGE = np.log(4.0)  # factors from 1/2 to 2, evenly in their logarithms
-
-    def approach(self, answer, targets=TARGETS, rounds=10):
-        return secant.approach(targets, np.full(2, 0.5), np.full(2, self.RANGE), rounds, answer)
-
-    def concrete(self, u, scatter=0.0):
-        stiffness, strength = np.exp(self.RANGE * (u - 0.5))
-        shaken = 1.0 + scatter * np.sin(1e4 * u[0])
-        return np.array([[21.0 * stiffness**0.9, 34.0 * stiffness**0.2 * strength**0.95 * shaken]] * 3)
-
-    def test_meets_both_in_a_few_rounds(self):
-        found = self.approach(self.concrete)
-        self.assertTrue(found.is_met)
-        self.assertLessEqual(len(found.points), 4)
-        self.assertEqual(found.finished, "all targets are met")
-        np.testing.assert_allclose(found.means[found.best], self.TARGETS.values, atol=0.2)
-
-    def test_a_strength_that_is_not_smooth_is_met_within_its_sd(self):
-        targets = calibration.Targets(("E", "f_c"), np.array([32.0, 45.0]), np.array([0.3, 0.9]))
-        found = self.approach(lambda u: self.concrete(u, 0.01), targets)
-        self.assertTrue(found.is_met)
-        self.assertLessEqual(len(found.points), 6)
-
-    def test_says_that_a_target_is_out_of_reach_and_keeps_the_nearest(self):
-        targets = calibration.Targets(("E", "f_c"), np.array([60.0, 45.0]), np.array([0.5, 0.5]))
-        found = self.approach(self.concrete, targets)
-        self.assertFalse(found.is_met)
-        self.assertEqual(found.finished, "no value within the ranges comes nearer")
-        self.assertEqual(found.points[found.best][0], 1.0)
-        np.testing.assert_allclose(found.means[found.best], [21.0 * 2.0**0.9, 45.0], rtol=0.01)
-
-    def test_goes_half_the_way_back_from_a_point_without_a_value(self):
-        def answer(u):
-            return calibration.Infeasible() if u[1] > 0.75 else self.concrete(u)
-
-        targets = calibration.Targets(("E", "f_c"), np.array([21.0, 47.0]), np.array([0.2, 0.4]))
-        found = self.approach(lambda u: self.concrete(u) * (1.0, 0.8) if u[1] <= 0.75 else answer(u), targets)
-        self.assertTrue(np.isnan(found.means).any())
-        self.assertFalse(found.is_met)
-        self.assertGreater(found.means[found.best][1], 27.3)
-
-    def test_without_a_first_value_there_is_nothing_to_go_on_from(self):
-        found = self.approach(lambda u: np.full((3, 2), np.nan))
-        self.assertIsNone(found.best)
-        self.assertEqual(len(found.points), 1)
-        self.assertEqual(found.finished, "the first point gives no value of all targets")
-
-    def test_the_same_points_whatever_is_known_when(self):
-        whole = self.approach(self.concrete)
-        known: dict[bytes, np.ndarray] = {}
-        for _ in range(len(whole.points)):
-            state = self.approach(lambda u: known.get(u.tobytes()))
-            self.assertFalse(state.finished)
-            known[state.points[-1].tobytes()] = self.concrete(state.points[-1])
-        np.testing.assert_array_equal(self.approach(lambda u: known.get(u.tobytes())).points, whole.points)
-
-    def test_ends_after_its_rounds(self):
-        found = self.approach(self.concrete, rounds=2)
-        self.assertEqual((len(found.points), found.finished), (2, "2 rounds"))
 
 
 class Posterior(unittest.TestCase):

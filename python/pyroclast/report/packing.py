@@ -37,7 +37,7 @@ def packed_whole(values: np.ndarray, size: int) -> dict[str, Any]:
     if len(whole):
         change[1:] -= whole[:-1]
     # 0, -1, 1, -2, 2 ... become 0, 1, 2, 3, 4 ...: the upper bytes of small differences are zero
-    turned = (change << 1) ^ (change >> (8 * size - 1))
+    turned = np.where(change < 0, ~(change << 1), change << 1)
     return {"bytes": size, "shape": list(whole.shape), "data": _text_of(turned)}
 
 

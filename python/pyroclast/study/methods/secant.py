@@ -66,7 +66,7 @@ def approach(targets: Targets, start: Array, slopes: Array, rounds: int,
             if (is_met | is_at_end & (np.abs(step) < _SAME)).all():
                 finished = "no value within the ranges comes nearer"
                 break
-            following = u + step * min(1.0, _MOST_STEP / max(float(np.abs(step).max()), _SAME))
+            following = u + step * (_MOST_STEP / max(float(np.abs(step).max()), _MOST_STEP))
         following = following.round(_DIGITS)
         if np.abs(following - u).max() < _SAME:
             finished = "no value within the ranges comes nearer"
