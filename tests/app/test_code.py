@@ -372,6 +372,21 @@ class HashOfAStudy(CodeTest):
                 self.assertEqual(values, [7.0, *others])
                 self.assertIn("of other code", said)
 
+    def test_runs_of_a_deck_are_made_anew_with_another_law(self):
+        self.write_study('deck = "header.toml"')
+        study, law, deck = self.folder / "study.toml", self.folder / "law.hpp", self.folder / "header.toml"
+        text = deck.read_text()
+        deck.write_text(text[:text.rindex("[[stages]]")] + text[text.index("[output]"):])  # so that it comes to rest
+        study.write_text(study.read_text().replace('y = "y"', 'y = "energy_J.elastic_contacts"'))
+        self.runs_script = True
+        (first,), _ = self.run_study("--allow-code", "--quiet")
+        self.assertEqual(self.run_study()[0], [first])
+        law.write_text(law.read_text().replace("{ return p; }", "{ return {2.0 * p.stiffness, p.times}; }"))
+        self.assert_refused("study", "run", "study.toml", "--quiet")
+        (second,), said = self.run_study("--allow-code")
+        self.assertIn("of other code", said)
+        self.assertNotEqual(second, first)
+
     def test_code_that_the_hash_cannot_cover_needs_a_word_each_time(self):
         self.write_script("w.sh")
         (self.folder / "bin").mkdir()

@@ -327,6 +327,21 @@ TEST_F(LawInAHeader, ACompilerThatIsTooOldIsNamed) {
   EXPECT_TRUE(says(refusal_of("mine.hpp"), {"(Debian 10.2.1-6) 10.2.1", "too old", "GCC 11 or later"}));
 }
 
+// Promise: macros may grow without end, so the preprocessor has a minute of a processor and 256 MiB for its
+// text.
+TEST_F(LawInAHeader, ThePreprocessorHasItsLimits) {
+  write("mine.hpp", small());
+  write("limits",
+        "#!/bin/sh\ncase \"$*\" in --version) echo 'of the test 1.0'; exit;; esac\n"
+        "awk '/^Max (cpu time|file size)/ { print $(NF - 2), $(NF - 1) }' /proc/self/limits\nexit 1\n");
+  fs::permissions(folder_ / "limits", fs::perms::owner_all);
+  sources_.compiler.program = folder_ / "limits";
+  expect_in("the preprocessor refuses this contact law", refusal_of("mine.hpp"));
+  std::ifstream said(sources_.compiler.cache / "messages.txt");
+  const std::string limits{std::istreambuf_iterator<char>(said), {}};
+  EXPECT_EQ(limits, fmt::format("60 60\n{0} {0}\n", 256 * 1024 * 1024));
+}
+
 TEST_F(LawInAHeader, CompilingCanBeForbidden) {
   write("mine.hpp", small());
   sources_.may_compile = false;
