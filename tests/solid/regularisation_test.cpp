@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
@@ -22,12 +23,17 @@ struct Cells {
   RegularisedCells done;
 };
 
-Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked = kAsked) {
+Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked,
+                     const specimen::BlockSizes& sizes) {
   Random random(3);
-  const LaguerreComplex made = laguerre_complex(spaced_seeds(body, count, 0.3, random), body);
+  const LaguerreComplex made = laguerre_complex(spaced_seeds(body, sizes, count, 0.3, random), body);
   Cells cells{made.complex, made.complex, {}};
-  cells.done = regularise(cells.merged, body, made.plane, asked);
+  cells.done = regularise(cells.merged, body, made.plane, asked, sizes);
   return cells;
+}
+
+Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked = kAsked) {
+  return raw_and_merged(body, count, asked, specimen::BlockSizes(std::cbrt(body.volume() / count)));
 }
 
 double mean_flatness(const Complex& complex, const Prism& body) {
@@ -143,6 +149,34 @@ TEST(Regularisation, IsTheSameForAnyNumberOfThreads) {
   const SolidSpecimen shared = make_specimen(p, body, &team);
   EXPECT_TRUE(shared.complex.vertices == alone.complex.vertices);
   EXPECT_TRUE(shared.complex.cells == alone.complex.cells);
+}
+
+/// What regularised cells are, in numbers that hardly any other cells have.
+struct Told {
+  std::size_t vertices, faces;
+  int edges_left_short;
+  double flatness;  ///< mean
+};
+
+void expect_told(const Prism& body, const Cells& cells, const Told& told) {
+  EXPECT_EQ(cells.merged.vertices.size(), told.vertices);
+  EXPECT_EQ(cells.merged.faces.size(), told.faces);
+  EXPECT_EQ(cells.done.edges_left_short, told.edges_left_short);
+  // the twelfth digit may be another one with another library of mathematics
+  EXPECT_NEAR(mean_flatness(cells.merged, body) / told.flatness, 1.0, 1e-9)
+      << fmt::format("{:.13g}", mean_flatness(cells.merged, body));
+}
+
+// Promise: a deck of years ago makes the blocks that it made: the same seeds give the same cells. Their
+// numbers change only where the way of regularisation is meant to.
+TEST(Regularisation, MakesTheCellsThatItMade) {
+  const Prism box = cuboid(0.1, 0.06, 0.05), round = cylinder(0.1, 0.1, 9);
+  expect_told(box, raw_and_merged(box, 60), {196, 321, 1, 5012.72952763});
+  expect_told(round, raw_and_merged(round, 60, {0.5, 10.0 * kDegree}), {236, 373, 64, 7156.320683});
+  const specimen::BlockSizes finer(
+      0.02, 0.03,
+      {{.pieces = {{{{0, 0, 0}}, {{0, 0.06, 0}}, {{0, 0.06, 0.05}}, {{0, 0, 0.05}}}}, .size = 0.01}});
+  expect_told(box, raw_and_merged(box, 60, kAsked, finer), {200, 318, 0, 5257.414058173});
 }
 
 // Promise: the bend of a square with a corner lifted is the angle between its triangles and its mean plane.

@@ -1,7 +1,10 @@
 #include "pyroclast/solid/superposition.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +59,148 @@ TEST(CommonVolume, OfABallAroundTheWholeBodyIsTheBody) {
   const Prism body = cylinder(0.1, 0.1);
   const Complex complex = cells_of(body, 50);
   EXPECT_NEAR(in_all_cells(complex, {{0.05, 0.05, 0.05}}, 1.0), body.volume(), 1e-9 * body.volume());
+}
+
+// Promise: a ball that touches no part of a cell has nothing in common with it, and a corner of a cube cuts
+// an eighth out of a ball around it.
+TEST(CommonVolume, OfABallAroundACornerIsAnEighth) {
+  const Prism body = cuboid(1.0, 1.0, 1.0);
+  const Complex cube = laguerre_complex({{{{0.5, 0.5, 0.5}}}, {0.5}}, body).complex;
+  for (const double radius : {0.3, 0.9}) {
+    const double eighth = specimen::extent_of_round<3>(2.0 * radius) / 8.0;
+    EXPECT_NEAR(common_volume(cube, 0, {{1.0, 1.0, 1.0}}, radius), eighth, 1e-9 * eighth);
+  }
+  EXPECT_EQ(common_volume(cube, 0, {{1.6, 0.5, 0.5}}, 0.5), 0.0);
+  EXPECT_EQ(common_volume(cube, 0, {{1.4, 1.4, 0.5}}, 0.5), 0.0);
+  EXPECT_GT(common_volume(cube, 0, {{1.4, 0.5, 0.5}}, 0.5), 0.0);
+}
+
+/// Eight cubes of 1 m, cell 4 x + 2 y + z from 0 on.
+struct Cubes {
+  Prism body = cuboid(2.0, 2.0, 2.0);
+  Complex complex = made();
+
+  Complex made() const {
+    SolidSeeds seeds;
+    for (int i = 0; i < 8; ++i) {
+      seeds.position.push_back({{0.5 + i / 4, 0.5 + i / 2 % 2, 0.5 + i % 2}});
+      seeds.radius.push_back(0.5);
+    }
+    return laguerre_complex(seeds, body).complex;
+  }
+  SuperposedBalls superposed(const std::vector<Ball>& balls, specimen::Superposition rule,
+                             double covered_fraction = 0.5) const {
+    specimen::SpecimenParameters p;
+    p.superposition = rule;
+    p.covered_fraction = covered_fraction;
+    return superpose(complex, body, balls, p);
+  }
+};
+
+Ball ball(const Vec<3>& centre, double diameter) {
+  return {centre, diameter, 0, 0, nullptr};
+}
+
+/// Grains of the eight cells, of which the others have none.
+std::vector<int> only(const std::vector<std::pair<int, int>>& cells) {
+  std::vector<int> grain(8, -1);
+  for (const auto& [cell, of] : cells) grain[static_cast<std::size_t>(cell)] = of;
+  return grain;
+}
+
+TEST(Superpose, WithoutBallsAllIsMatrix) {
+  const auto none = Cubes().superposed({}, specimen::Superposition::fit, 0.7);
+  EXPECT_EQ(none.grain, only({}));
+  EXPECT_EQ(none.covered_fraction, 0.7);
+}
+
+// Promise: by the rule of centroids a cell is of the first ball that holds its centroid.
+TEST(Superpose, ByCentroidsACellIsOfTheFirstBallAroundIts) {
+  const std::vector<Ball> balls{ball({{0.5, 0.5, 0.9}}, 0.81), ball({{0.5, 0.5, 0.9}}, 1.4),
+                                ball({{1.5, 1.5, 1.1}}, 0.79), ball({{1.5, 1.5, 1.2}}, 0.62)};
+  const auto superposed = Cubes().superposed(balls, specimen::Superposition::centroid, 0.7);
+  EXPECT_EQ(superposed.grain, only({{0, 0}, {1, 1}, {7, 3}}));
+  EXPECT_EQ(superposed.covered_fraction, 0.7);
+}
+
+// Promise: by the rule of volumes a cell is aggregate where balls cover more of it than the stated fraction,
+// all of them together, and is of the one that covers most.
+TEST(Superpose, ByVolumesACellIsOfTheBallThatCoversMost) {
+  const Cubes cubes;
+  const auto by_volume = [&](const std::vector<Ball>& balls, double fraction) {
+    return cubes.superposed(balls, specimen::Superposition::area, fraction);
+  };
+  const std::vector<Ball> whole{ball({{0.5, 0.5, 0.5}}, 1.0)};  // pi / 6 = 0.5236
+  EXPECT_EQ(by_volume(whole, 0.523).grain, only({{0, 0}}));
+  EXPECT_EQ(by_volume(whole, 0.524).grain, only({}));
+  EXPECT_EQ(by_volume(whole, 0.524).covered_fraction, 0.524);
+  // halves of two balls, and an eighth of a third: 0.0654 + 0.1131 + 0.0335 = 0.212
+  const std::vector<Ball> three{ball({{0.5, 0.5, 0.0}}, 0.63), ball({{0.0, 0.5, 0.5}}, 0.756),
+                                ball({{1.0, 1.0, 1.0}}, 0.8)};
+  EXPECT_EQ(by_volume(three, 0.211).grain, only({{0, 1}}));
+  EXPECT_EQ(by_volume(three, 0.213).grain, only({}));
+  // the first of two alike
+  const std::vector<Ball> alike{ball({{0.25, 0.5, 0.5}}, 0.5), ball({{0.75, 0.5, 0.5}}, 0.5)};
+  EXPECT_EQ(by_volume(alike, 0.13).grain, only({{0, 0}}));
+  // balls that overlap cover no more than all of a cell
+  const std::vector<Ball> over(3, ball({{0.5, 0.5, 0.5}}, 1.0));
+  EXPECT_EQ(by_volume(over, 1.0).grain, only({}));
+  EXPECT_EQ(by_volume(over, 0.999).grain, only({{0, 0}}));
+}
+
+// Promise: by the rule of fit a ball takes the cell of which it covers most, where that brings the volumes
+// nearer to each other: so from half of a cell on.
+TEST(Superpose, ByFitABallTakesACellFromHalfOfItsVolumeOn) {
+  const Cubes cubes;
+  const auto by_fit = [&](const std::vector<Ball>& balls) {
+    return cubes.superposed(balls, specimen::Superposition::fit);
+  };
+  const double half = std::cbrt(0.5 * 6.0 / std::numbers::pi);
+  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).grain, only({{0, 0}}));
+  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 0.99 * half)}).grain, only({}));
+  EXPECT_EQ(by_fit({ball({{1.1, 0.5, 0.5}}, 1.01 * half)}).grain, only({{4, 0}}));
+  const double covered = by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).covered_fraction;
+  EXPECT_LT(covered, 1.0);
+  EXPECT_GT(covered, 1.0 - 1e-15);
+}
+
+// Promise: larger balls choose first, whatever their order; who finds its cell taken takes the next, or none.
+TEST(Superpose, ByFitLargerBallsChooseFirst) {
+  const Cubes cubes;
+  const auto by_fit = [&](const std::vector<Ball>& balls) {
+    return cubes.superposed(balls, specimen::Superposition::fit).grain;
+  };
+  const Ball small = ball({{0.8, 0.5, 0.5}}, 1.1), large = ball({{0.5, 0.5, 0.5}}, 1.2);
+  EXPECT_EQ(by_fit({small, large}), only({{0, 1}, {4, 0}}));
+  EXPECT_EQ(by_fit({large, small}), only({{0, 0}, {4, 1}}));
+  // the second has no other cell, so that the cell that is covered most of the others follows
+  const Ball within = ball({{0.5, 0.5, 0.5}}, 0.9);
+  EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.0), within}), only({{0, 0}}));
+  EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.2), within, within}), only({{0, 0}, {4, 0}}));
+}
+
+// Promise: then cells become aggregate, the most covered first, of the ball that covers most of them, as long
+// as the volumes come nearer; the least of their shares is told.
+TEST(Superpose, ByFitTheMostCoveredCellsFollow) {
+  const Cubes cubes;
+  // an eighth of a ball of 4.19 m³ in each cell: four cells come nearest
+  const auto even = cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0)}, specimen::Superposition::fit);
+  EXPECT_EQ(std::ranges::count(even.grain, 0), 4);
+  EXPECT_NEAR(even.covered_fraction, std::numbers::pi / 6.0, 1e-9);
+  // moved towards x: the four cells there have more
+  const auto moved = cubes.superposed({ball({{1.05, 1.0, 1.0}}, 2.0)}, specimen::Superposition::fit);
+  EXPECT_EQ(moved.grain, only({{4, 0}, {5, 0}, {6, 0}, {7, 0}}));
+  EXPECT_GT(moved.covered_fraction, std::numbers::pi / 6.0);
+  // towards one corner, with 5.58 m³: six cells, but for the one across and the first beside it
+  const auto to_corner = cubes.superposed({ball({{1.1, 1.1, 1.1}}, 2.2)}, specimen::Superposition::fit);
+  EXPECT_EQ(std::ranges::count(to_corner.grain, 0), 6);
+  EXPECT_EQ(to_corner.grain[0], -1);
+  EXPECT_EQ(to_corner.grain[7], 0);
+  // with another ball beside, each cell is of the one that covers most of it
+  const auto two = cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0), ball({{0.5, 0.5, 0.5}}, 1.3)},
+                                    specimen::Superposition::fit);
+  EXPECT_EQ(two.grain[0], 1);
+  EXPECT_EQ(std::ranges::count(two.grain, 0), 4);
 }
 
 }  // namespace

@@ -211,11 +211,11 @@ class CellRegulariser {
       }
     }
     std::ranges::sort(edges);
-    int vertices = 0;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      const auto [from, to] = edges[i];
-      if (i == 0 || from != edges[i - 1][0]) ++vertices;
-      if (i > 0 && edges[i] == edges[i - 1]) return false;
+    if (std::ranges::adjacent_find(edges) != edges.end()) return false;
+    int vertices = 0, before = -1;
+    for (const auto& [from, to] : edges) {
+      if (from != before) ++vertices;
+      before = from;
       if (!std::ranges::binary_search(edges, std::array{to, from})) return false;
     }
     return faces >= 4 && vertices + faces == static_cast<int>(edges.size()) / 2 + 2;

@@ -68,7 +68,7 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Prism& body) {
   std::array<std::uint32_t, 3> box;
   for (int d = 0; d < 3; ++d) {
     const double share = (point[d] - body.low()[d]) / (body.high()[d] - body.low()[d]);
-    box[d] = static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * ((1U << kBits) - 1U));
+    box[d] = static_cast<std::uint32_t>(share * ((1U << kBits) - 1U));
   }
   std::uint64_t place = 0;
   for (int bit = kBits - 1; bit >= 0; --bit)
