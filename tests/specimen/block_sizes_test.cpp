@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "examples.hpp"
 #include "pyroclast/specimen/blocks.hpp"
@@ -109,6 +110,59 @@ TEST(BlockSizes, AreFineNearAFaceABoxAndAlongZ) {
   EXPECT_NEAR(distance({.pieces = {{{{0, 0}}}}, .is_along_z = true}, {{0.3, 0.4, 7.0}}), 0.5, 1e-12);
 }
 
+// Promise: a face may have three corners or more, some in a line, be far away or tiny.
+TEST(BlockSizes, AreFineNearFacesOfAnyCorners) {
+  const auto distance = [](const FinerPiece& face, const Vec<3>& place) {
+    return BlockSizes(0.5, 100.0, {{.pieces = {face}, .size = 1e-3}}).at(place) / kSlopeOfSize -
+           1e-3 / kSlopeOfSize;
+  };
+  for (const double scale : {0.01, 1.0, 20.0}) {
+    const auto at = [&](double x, double y, double z) { return scale * Vec<3>{{x, y, z}}; };
+    const FinerPiece triangle{at(0, 0, 0), at(1, 0, 0), at(0, 1, 0)};
+    const FinerPiece in_line{at(0, 0, 0), at(1, 0, 0), at(2, 0, 0), at(2, 1, 0), at(0, 1, 0)};
+    for (const FinerPiece& face : {triangle, in_line}) {
+      EXPECT_NEAR(distance(face, at(0.2, 0.2, 3.0)), 3.0 * scale, 1e-9 * scale);
+      EXPECT_NEAR(distance(face, at(0.2, -3.0, 4.0)), 5.0 * scale, 1e-9 * scale);
+    }
+    EXPECT_NEAR(distance(triangle, at(1, 1, 0)), std::sqrt(0.5) * scale, 1e-9 * scale);
+    EXPECT_NEAR(distance(in_line, at(1.9, 0.9, 0.01)), 0.01 * scale, 1e-9 * scale);
+  }
+  // the nearest of several, farther than 1 m
+  const auto both = [](double first, double second) {
+    const auto at = [](double z) { return FinerPiece{{{0, 0, z}}, {{1, 0, z}}, {{1, 1, z}}, {{0, 1, z}}}; };
+    return BlockSizes(0.5, 100.0, {{.pieces = {at(first), at(second)}, .size = 1e-3}})
+        .at(Vec<3>{{0.5, 0.5, 0.0}});
+  };
+  EXPECT_NEAR(both(3.0, 2.0), 1e-3 + 2.0 * kSlopeOfSize, 1e-12);
+  EXPECT_NEAR(both(2.0, 3.0), 1e-3 + 2.0 * kSlopeOfSize, 1e-12);
+  EXPECT_NEAR(both(3.0, 0.5), 1e-3 + 0.5 * kSlopeOfSize, 1e-12);
+}
+
+// Promise: of several parts, the one that asks for the finest blocks counts; sizes in proportion have all of
+// their numbers in proportion.
+TEST(BlockSizes, HaveASmallestALargestAndAMean) {
+  const BlockSizes even(3e-3), scaled = even.scaled_to(2e-3);
+  for (const auto& [sizes, size] : {std::pair(even, 3e-3), std::pair(scaled, 2e-3)}) {
+    EXPECT_EQ(sizes.mean(), size);
+    EXPECT_EQ(sizes.smallest(), size);
+    EXPECT_EQ(sizes.largest(), size);
+    EXPECT_EQ(sizes.at(Vec<2>{{0.1, 0.1}}), size);
+    EXPECT_EQ(sizes.relative(Vec<2>{{0.1, 0.1}}), 1.0);
+  }
+  const BlockSizes finer(4e-3, 8e-3,
+                         {{.pieces = {{{{0, 0}}}}, .size = 2e-3},
+                          {.pieces = {{{{1, 0}}}}, .size = 3e-3},
+                          {.pieces = {{{{2, 0}}}}, .size = 9e-3}});
+  EXPECT_EQ(finer.smallest(), 2e-3);
+  EXPECT_EQ(finer.at(Vec<2>{{1, 0}}), 3e-3);
+  EXPECT_EQ(finer.at(Vec<2>{{2, 0}}), 8e-3);
+  const BlockSizes twice = finer.scaled_to(8e-3).scaled_to(16e-3).scaled_to(8e-3);
+  EXPECT_EQ(twice.mean(), 8e-3);
+  EXPECT_EQ(twice.smallest(), 4e-3);
+  EXPECT_EQ(twice.largest(), 16e-3);
+  EXPECT_EQ(twice.at(Vec<2>{{1, 0}}), 6e-3);
+}
+
 // The integral of 1 / size² over a strip beside a side, in closed form.
 TEST(SizedExtent, CountsBlocksAsTheIntegralDoes) {
   const Region region = Region::rectangle(0.2, 0.1);
@@ -120,6 +174,47 @@ TEST(SizedExtent, CountsBlocksAsTheIntegralDoes) {
   EXPECT_NEAR(sized.blocks(largest) / expected, 1.0, 0.01);  // pieces are as wide as a block
   EXPECT_NEAR(sized.largest_for(sized.blocks(largest)).value(), largest, 1e-9);
   EXPECT_FALSE(sized.largest_for(200.0).has_value());
+}
+
+// Promise: a body that is not its whole box has the blocks of its own part alone.
+TEST(SizedExtent, CountsBlocksOfTheBodyAlone) {
+  const FinerPart left{.pieces = {{{{0, 0}}, {{0, 0.1}}}}, .size = kFine, .distance = kReach};
+  const double largest = 6e-3, growing = (largest - kFine) / kSlopeOfSize;
+  const double of_growth = (1 / kFine - 1 / largest) / kSlopeOfSize;
+  const auto expected = [&](double width) {
+    return 0.1 * (kReach / (kFine * kFine) + of_growth + (width - kReach - growing) / (largest * largest));
+  };
+  const Room<2> half{{}, {{0.2, 0.1}}, 0.01, [](const Vec<2>& p) { return p[0] - 0.1; }};
+  const Room<2> whole{{}, {{0.2, 0.1}}, 0.02, {}};
+  EXPECT_NEAR(SizedExtent(half, {left}).blocks(largest) / expected(0.1), 1.0, 2e-3);
+  EXPECT_NEAR(SizedExtent(whole, {left}).blocks(largest) / expected(0.2), 1.0, 2e-3);
+}
+
+// Promise: a body is cut into 64 pieces along its longest side at least, and sizes that no memory would hold
+// are cut to the 2048th part of it.
+TEST(SizedExtent, CutsABodyFinelyEnoughAndNotTooFine) {
+  const Room<2> body{{}, {{1.0, 0.5}}, 0.5, {}};
+  const FinerPart coarse{.pieces = {{{{0, 0}}, {{0, 1}}}}, .size = 0.2, .distance = 0.0};
+  const double expected = 0.5 * (1 / 0.2 - 1 / (0.2 + kSlopeOfSize)) / kSlopeOfSize;
+  EXPECT_NEAR(SizedExtent(body, {coarse}).blocks(1.0) / expected, 1.0, 1e-4);  // the middle rule over 64
+  // one column of pieces, 1 / 2048 wide, has its size in its middle
+  const FinerPart tiny{.pieces = {{{{0, 0}}, {{0, 1}}}}, .size = 1e-6, .distance = 0.0};
+  const double first = 1e-6 + kSlopeOfSize / 4096;
+  EXPECT_NEAR(SizedExtent(body, {tiny}).blocks(1.0) / (0.5 / 2048 / (first * first)), 1.35, 0.15);
+}
+
+// Promise: a number of blocks that needs no larger ones than the body has is met by the largest of them, one
+// more is met by smaller blocks, one less by none.
+TEST(SizedExtent, TellsTheLargestSizeUpToItsBounds) {
+  const Room<2> body{{}, {{0.2, 0.1}}, 0.02, {}};
+  const SizedExtent sized(body, {{.pieces = {{{{0, 0}}, {{0, 0.1}}}}, .size = kFine, .distance = kReach}});
+  const double farthest = kFine + kSlopeOfSize * (0.2 - kReach), fewest = sized.blocks(1.0);
+  ASSERT_TRUE(sized.largest_for(fewest));
+  EXPECT_LE(*sized.largest_for(fewest), farthest);
+  EXPECT_GT(*sized.largest_for(fewest), 0.95 * farthest);
+  EXPECT_FALSE(sized.largest_for(fewest - 1e-6));
+  for (const double count : {fewest + 1.0, 1e5, 1e8})
+    EXPECT_NEAR(sized.blocks(*sized.largest_for(count)) / count, 1.0, 1e-9);
 }
 
 // The integral of 1 / size³ over a box beside one of its faces, and around its middle, in closed form.
@@ -160,6 +255,33 @@ TEST(PlaceDraw, DrawsPlacesAsOftenAsThereAreBlocks) {
   for (int i = 0; i < kDraws; ++i) fine += draw.draw(random)[0] < kReach ? 1 : 0;
   const double share = 0.01 * kReach / std::pow(kFine, 3) / SizedExtent(body, {left}).blocks(6e-3);
   EXPECT_NEAR(fine / double(kDraws), share, 4.0 * std::sqrt(share / kDraws) + 0.02 * share);
+}
+
+// Promise: of places drawn where blocks grow, each band has its share; none lies outside of the body by more
+// than its part's half diagonal.
+TEST(PlaceDraw, HasTheSharesOfBandsOverTheGrowth) {
+  const Room<2> body{{}, {{0.1, 0.05}}, 0.1 * 0.05, [](const Vec<2>& p) { return p[0] - 0.05; }};
+  const BlockSizes sizes(4e-3, 20e-3,
+                         {{.pieces = {{{{0, 0}}, {{0, 0.05}}}}, .size = kFine, .distance = 0.0}});
+  const PlaceDraw draw(body, sizes);
+  Random random(1);
+  constexpr int kDraws = 40'000, kBands = 5;
+  std::array<int, kBands> drawn{};
+  int within = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const Vec<2> place = draw.draw(random);
+    EXPECT_LT(place[0], 0.05 + 0.1 / 64);
+    EXPECT_TRUE(place[0] > 0.0 && place[1] > 0.0 && place[1] < 0.05);
+    if (place[0] >= 0.05) continue;
+    ++drawn[static_cast<std::size_t>(kBands * place[0] / 0.05)];
+    ++within;
+  }
+  const auto up_to = [](double x) { return (1 / kFine - 1 / (kFine + kSlopeOfSize * x)) / kSlopeOfSize; };
+  for (int band = 0; band < kBands; ++band) {
+    const double share = (up_to(0.01 * (band + 1)) - up_to(0.01 * band)) / up_to(0.05);
+    EXPECT_NEAR(drawn[static_cast<std::size_t>(band)], share * within, 4.0 * std::sqrt(share * within))
+        << band;
+  }
 }
 
 TEST(FinerBlocks, HaveTheirSizesNearAndFarAndTileTheBody) {

@@ -95,6 +95,77 @@ TEST(GrainFit, BlocksFollowGrainsBesideNotchesAndInRings) {
   EXPECT_NEAR(ring.fraction_superposed, ring.fraction_placed, 0.02);
 }
 
+/// Returns a specimen of three squares of 1 in a row, of which the middle one is of a grain, the others of
+/// none.
+Specimen with_middle_square(const Aggregate& grain) {
+  Specimen s;
+  s.tessellation.vertices = {{{0, 0}}, {{1, 0}}, {{2, 0}}, {{3, 0}}, {{0, 1}}, {{1, 1}}, {{2, 1}}, {{3, 1}}};
+  s.tessellation.cells = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}};
+  s.grain = {-1, 0, -1};
+  s.aggregates = {grain};
+  return s;
+}
+
+Aggregate grain_of(std::vector<Vec<2>> points) {
+  const auto [outline, centre] = outline_around(std::move(points));
+  return {centre, outline->width(), 0, 0, outline};
+}
+
+// Promise: the interface is the edges towards other blocks, and the deviation the root of the mean square of
+// their distances from the outline, exact where these are straight.
+TEST(GrainFit, TellsTheDistanceOfEdgesFromTheOutline) {
+  const auto box = [](double x0, double x1) {
+    return grain_of({{{x0, -1}}, {{x1, -1}}, {{x1, 2}}, {{x0, 2}}});
+  };
+  const GrainFit same = fits_of(with_middle_square(box(1.0, 2.0))).at(0);
+  EXPECT_DOUBLE_EQ(same.area, 3.0);
+  EXPECT_DOUBLE_EQ(same.perimeter, 8.0);
+  EXPECT_EQ(same.blocks, 1);
+  EXPECT_DOUBLE_EQ(same.area_of_blocks, 1.0);
+  EXPECT_DOUBLE_EQ(same.interface, 2.0);
+  EXPECT_NEAR(same.deviation, 0.0, 1e-12);
+  const GrainFit off = fits_of(with_middle_square(box(0.9, 2.3))).at(0);
+  EXPECT_NEAR(off.deviation, std::sqrt((0.1 * 0.1 + 0.3 * 0.3) / 2.0), 1e-12);
+  // the sides lean by 0.1: along the left edge the distance goes from a to b, and its mean square is (a² + ab
+  // + b²) / 3
+  const GrainFit leaning =
+      fits_of(with_middle_square(grain_of({{{0.7, -1}}, {{2, -1}}, {{2, 2}}, {{1.0, 2}}}))).at(0);
+  const double cosine = 1.0 / std::sqrt(1.01), a = 0.2 * cosine, b = 0.1 * cosine;
+  EXPECT_NEAR(leaning.deviation, std::sqrt((a * a + a * b + b * b) / 3.0 / 2.0), 1e-12);
+}
+
+// Promise: from a circle the distance is that at three points of each edge, by Gauss's rule.
+TEST(GrainFit, TellsTheDistanceOfEdgesFromACircle) {
+  const GrainFit fit = fits_of(with_middle_square({{{1.5, 0.5}}, 1.2, 0, 0, nullptr})).at(0);
+  EXPECT_DOUBLE_EQ(fit.area, 0.36 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(fit.perimeter, 1.2 * std::numbers::pi);
+  // points at 0 and sqrt(0.15) from the middle of an edge, which is 0.5 from the centre
+  const double in_middle = 0.5 - 0.6, beside = std::sqrt(0.25 + 0.15) - 0.6;
+  EXPECT_NEAR(fit.deviation, std::sqrt((8 * in_middle * in_middle + 10 * beside * beside) / 18), 1e-12);
+}
+
+// Promise: edges between two grains count for both, edges on the surface of the body and within a grain for
+// none; a grain without a block has no interface, and without grains of blocks there are no fits.
+TEST(GrainFit, CountsEdgesBetweenGrainsForBoth) {
+  Specimen s = with_middle_square(grain_of({{{1, -1}}, {{2, -1}}, {{2, 2}}, {{1, 2}}}));
+  s.aggregates.push_back({{{0.5, 0.5}}, 1.0, 0, 0, nullptr});
+  s.aggregates.push_back({{{0.5, 0.5}}, 0.1, 0, 0, nullptr});
+  s.grain = {1, 0, 0};
+  const auto fits = fits_of(s);
+  ASSERT_EQ(fits.size(), 3U);
+  EXPECT_EQ(fits[0].blocks, 2);
+  EXPECT_DOUBLE_EQ(fits[0].area_of_blocks, 2.0);
+  EXPECT_DOUBLE_EQ(fits[0].interface, 1.0);
+  EXPECT_NEAR(fits[0].deviation, 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(fits[1].interface, 1.0);
+  EXPECT_GT(fits[1].deviation, 0.0);
+  EXPECT_EQ(fits[2].blocks, 0);
+  EXPECT_EQ(fits[2].interface, 0.0);
+  EXPECT_EQ(fits[2].deviation, 0.0);
+  s.grain.clear();
+  EXPECT_TRUE(fits_of(s).empty());
+}
+
 /// Returns the part of an ellipse in [0, 0.12] x [0, 0.08] m, as points of its outline off by rounding.
 std::vector<Vec<2>> cut_ellipse(const Vec<2>& centre, double a, double b) {
   std::vector<Vec<2>> points;

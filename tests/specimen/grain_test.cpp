@@ -274,16 +274,22 @@ TEST(Grain, TouchingIsNoOverlapAndCrossingAtCornersIs) {
 // Promise: where two convex outlines overlap without a corner in each other, the approach is the move that
 // parts them.
 TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
-  const Aggregate bar = grain_of({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}});
-  Aggregate pole = grain_of({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}});
-  const Approach<2> near = approach(bar, pole);
-  EXPECT_DOUBLE_EQ(near.gap, -2.5);
-  EXPECT_EQ(near.direction, (Vec<2>{{0, 1}}));
-  pole.centre -= near.gap * near.direction;
-  EXPECT_NEAR(approach(bar, pole).gap, 0.0, 1e-12);
-  const Approach<2> of_line = approach(bar, {{2, -4}}, {{2, 1}});
-  EXPECT_DOUBLE_EQ(of_line.gap, -1.0);
-  EXPECT_EQ(of_line.direction, (Vec<2>{{1, 0}}));
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    const auto scaled = [scale](Points points) {
+      for (Vec<2>& point : points) point *= scale;
+      return points;
+    };
+    const Aggregate bar = grain_of(scaled({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}}));
+    Aggregate pole = grain_of(scaled({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}}));
+    const Approach<2> near = approach(bar, pole);
+    EXPECT_DOUBLE_EQ(near.gap, -2.5 * scale);
+    EXPECT_EQ(near.direction, (Vec<2>{{0, 1}}));
+    pole.centre -= near.gap * near.direction;
+    EXPECT_NEAR(approach(bar, pole).gap, 0.0, 1e-12 * scale);
+    const Approach<2> of_line = approach(bar, scale * Vec<2>{{2, -4}}, scale * Vec<2>{{2, 1}});
+    EXPECT_DOUBLE_EQ(of_line.gap, -1.0 * scale);
+    EXPECT_EQ(of_line.direction, (Vec<2>{{1, 0}}));
+  }
 }
 
 void expect_apart(const std::vector<Aggregate>& grains, const Room<2>& room, double gap) {
