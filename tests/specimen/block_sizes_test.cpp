@@ -284,6 +284,22 @@ TEST(PlaceDraw, HasTheSharesOfBandsOverTheGrowth) {
   }
 }
 
+// Promise: a deck of years ago makes the blocks that it made: the same seed draws the same places.
+TEST(PlaceDraw, DrawsThePlacesThatItDrew) {
+  const FinerPart part{.pieces = {{{{0, 0, 0}}, {{0, 0.05, 0}}}}, .size = kFine, .distance = kReach};
+  const BlockSizes sizes(4e-3, 20e-3, {part});
+  const auto sum = [&](const auto& draw) {
+    Random random(1);
+    double result = 0.0;
+    for (int i = 0; i < 200; ++i) result += norm(draw.draw(random));
+    return result;
+  };
+  const Room<2> half{{}, {{0.1, 0.05}}, 0.0025, [](const Vec<2>& p) { return p[0] + p[1] - 0.07; }};
+  const Room<3> ball{{}, {{0.1, 0.1, 0.1}}, 5e-4, [](const Vec<3>& p) { return norm(p) - 0.1; }};
+  EXPECT_NEAR(sum(PlaceDraw<2>(half, sizes)), 5.87635532998745, 1e-9);
+  EXPECT_NEAR(sum(PlaceDraw<3>(ball, sizes)), 9.31488622486042, 1e-9);
+}
+
 TEST(FinerBlocks, HaveTheirSizesNearAndFarAndTileTheBody) {
   const Region region = Region::rectangle(0.2, 0.15);
   const BlockParameters p = finer_near({{0, 0}}, {{0, 0.15}}, 6e-3, region);

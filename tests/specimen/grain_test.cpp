@@ -292,6 +292,70 @@ TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
   }
 }
 
+// Promise: an approach is the way of the second one out of the first, whichever of both has an outline;
+// circles around one centre part along x.
+TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
+  const Aggregate circle{{{0, 0}}, 2.0, 0, 0, nullptr}, beside{{{0, 3}}, 1.0, 0, 0, nullptr};
+  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const Aggregate other = grain_of({{{2, 4}}, {{4, 4}}, {{4, 6}}, {{2, 6}}});
+  const auto expect = [](const Approach<2>& near, double gap, const Vec<2>& direction) {
+    EXPECT_NEAR(near.gap, gap, 1e-12);
+    EXPECT_NEAR(norm(near.direction - direction), 0.0, 1e-12);
+  };
+  const Vec<2> x{{1, 0}}, y{{0, 1}};
+  expect(approach(circle, beside), 1.5, y);
+  expect(approach(beside, circle), 1.5, -y);
+  expect(approach(circle, box), 1.0, x);
+  expect(approach(box, circle), 1.0, -x);
+  expect(approach(box, other), 3.0, y);
+  expect(approach(other, box), 3.0, -y);
+  expect(approach(circle, Aggregate{{{0, 0}}, 1.0, 0, 0, nullptr}), -1.5, x);
+  const Grain<3> ball{{{1, 1, 1}}, 2.0, 0, 0, nullptr};
+  EXPECT_EQ(approach(ball, ball).gap, -2.0);
+  EXPECT_EQ(approach(ball, ball).direction, (Vec<3>{{1, 0, 0}}));
+}
+
+// Promise: an approach of a grain and a segment is the way of the segment, from its nearest place.
+TEST(Grain, AnApproachOfASegmentIsFromItsNearestPlace) {
+  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const auto gap = [&](const Vec<2>& from, const Vec<2>& to) { return approach(box, from, to); };
+  EXPECT_NEAR(gap({{3, 3}}, {{3, 5}}).gap, 2.0, 1e-12);  // an end over a side
+  EXPECT_NEAR(norm(gap({{3, 3}}, {{3, 5}}).direction - Vec<2>{{0, 1}}), 0.0, 1e-12);
+  EXPECT_NEAR(gap({{1, 3}}, {{5, 3}}).gap, 2.0, 1e-12);                 // a side along it
+  EXPECT_NEAR(gap({{0, 0}}, {{2, 4}}).gap, 3 / std::sqrt(5.0), 1e-12);  // a corner across it
+  const Vec<2> across = gap({{0, 0}}, {{2, 4}}).direction;
+  EXPECT_NEAR(norm(across - Vec<2>{{-2, 1}} * (1 / std::sqrt(5.0))), 0.0, 1e-12);
+  EXPECT_NEAR(gap({{0, 0}}, {{1, 0.5}}).gap, 1.0, 1e-12);  // the end, not the line beyond
+  EXPECT_NEAR(gap({{1, 0.5}}, {{0, 0}}).gap, 1.0, 1e-12);
+  EXPECT_EQ(gap({{1, 1}}, {{5, 1}}).gap, 0.0);  // it touches
+}
+
+// Promise: a place on the surface is held; a segment is closer than a gap up to the gap.
+TEST(Grain, HoldsItsSurface) {
+  const Aggregate circle{{{0, 0}}, 2.0, 0, 0, nullptr};
+  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  for (const double inside : {0.0, 0.999, 1.0}) EXPECT_TRUE(holds(circle, {{inside, 0}})) << inside;
+  EXPECT_FALSE(holds(circle, {{1.001, 0}}));
+  for (const double inside : {2.0, 2.001, 3.0, 4.0}) EXPECT_TRUE(holds(box, {{inside, 0}})) << inside;
+  EXPECT_FALSE(holds(box, {{1.999, 0}}));
+  EXPECT_DOUBLE_EQ(distance(circle, {{3, 0}}), 2.0);
+  EXPECT_DOUBLE_EQ(distance(circle, {{0, 0.25}}), -0.75);
+  EXPECT_DOUBLE_EQ(distance(box, {{3, 2}}), 1.0);
+  EXPECT_EQ(place_within(circle), (Vec<2>{{0, 0}}));
+  for (const Aggregate& grain : {circle, box}) {
+    const double right = grain.shape ? 4.0 : 1.0;
+    const auto is_closer = [&](double x, double gap) { return are_closer(grain, {{x, -3}}, {{x, 3}}, gap); };
+    EXPECT_TRUE(is_closer(right + 0.5, 0.51));
+    EXPECT_FALSE(is_closer(right + 0.5, 0.49));
+    EXPECT_TRUE(is_closer(right - 0.1, 0.0));
+    EXPECT_FALSE(is_closer(right + 0.1, 0.0));
+    EXPECT_TRUE(is_closer(right - 0.1, -0.09));
+    EXPECT_FALSE(is_closer(right - 0.1, -0.11));
+  }
+  // within, without a side near
+  EXPECT_TRUE(are_closer(box, {{2.9, 0}}, {{3.1, 0}}, 0.1));
+}
+
 void expect_apart(const std::vector<Aggregate>& grains, const Room<2>& room, double gap) {
   for (std::size_t i = 0; i < grains.size(); ++i) {
     EXPECT_TRUE(lies_within(grains[i], room, gap * (1.0 - 1e-9)));
