@@ -82,7 +82,7 @@ class Rounds(unittest.TestCase):
     ROUNDING = 1e-9  # points have nine digits
 
     def of(self, *left, start=(0.5,), slopes=(1.0,), sd=1e-9):
-        """Rounds after which so much was left of each target, a number or a row for each; the last one tells no point."""
+        """Rounds after each of which so much was left of each target; the last one tells no point."""
         rest = iter(np.atleast_2d(np.exp(np.array(left, float).reshape(len(left), -1))))
         targets = calibration.Targets(tuple("ab"[:len(start)]), np.ones(len(start)), np.full(len(start), sd))
         return secant.approach(targets, np.array(start), np.array(slopes), len(left), lambda u: next(rest)[None, :])
