@@ -2,10 +2,13 @@
 
 #include <regex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "messages.hpp"
+#include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
@@ -33,6 +36,12 @@ inline SpecimenParameters paper_specimen(std::uint64_t seed) {
   p.blocks.count = 5000;
   p.blocks.shortest_edge = 0.2;
   return p;
+}
+
+/// A grain with an outline, from its corners where they lie, m.
+inline Aggregate grain_of(std::vector<Vec<2>> corners) {
+  const auto [outline, centre] = outline_around(std::move(corners));
+  return {centre, outline->width(), 0, 0, outline};
 }
 
 /// Succeeds when the message has a part that matches the regular expression.

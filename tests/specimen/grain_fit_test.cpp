@@ -106,11 +106,6 @@ Specimen with_middle_square(const Aggregate& grain) {
   return s;
 }
 
-Aggregate grain_of(std::vector<Vec<2>> points) {
-  const auto [outline, centre] = outline_around(std::move(points));
-  return {centre, outline->width(), 0, 0, outline};
-}
-
 // Promise: the interface is the edges towards other blocks, and the deviation the root of the mean square of
 // their distances from the outline, exact where these are straight.
 TEST(GrainFit, TellsTheDistanceOfEdgesFromTheOutline) {

@@ -53,11 +53,6 @@ Aggregate circle(double radius, const Vec<2>& centre = kMiddle) {
   return {centre, 2.0 * radius, 0, 0, nullptr};
 }
 
-Aggregate grain_of(std::vector<Vec<2>> corners) {
-  const auto [outline, centre] = outline_around(std::move(corners));
-  return {centre, outline->width(), 0, 0, outline};
-}
-
 /// A rectangle around the middle.
 Aggregate rectangle(double width, double height) {
   const double a = 0.5 * width, b = 0.5 * height;

@@ -214,11 +214,6 @@ TEST(Grain, LiesInABodyWhereItIsClearOfHolesNotchesAndSlits) {
   EXPECT_GT(held, 30);  // all of their outline lies in the body
 }
 
-Aggregate grain_of(const Points& corners) {
-  const auto [outline, centre] = outline_around(corners);
-  return {centre, outline->width(), 0, 0, outline};
-}
-
 Points moved(Points points, const Vec<2>& by) {
   for (Vec<2>& point : points) point += by;
   return points;
