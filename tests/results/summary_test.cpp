@@ -228,18 +228,22 @@ TEST(EnergyLedger, AStageIsJudgedByItsOwnPart) {
 // ---- Strengths of several stages
 // ---------------------------------------------------------------------------
 
-// Promise: a strength above that at which the specimen failed before is told as hardening; one below it, or
-// after a stage that found none, is not.
+// Promise: a strength above that at which the specimen failed before is told as hardening, and is in doubt;
+// one below it, or after a stage that found none, is not.
 TEST(Strengths, AFailedSpecimenHasNoGreaterOne) {
   const auto warnings = [](const std::vector<Result::Value>& strengths) {
     Summary summary;
     for (const Result::Value& strength : strengths) {
       summary.stages.push_back({"compress", Outcome::completed, {}});
-      summary.stages.back().report.results.push_back({"f_c_MPa", strength});
+      summary.stages.back().report.results = {{"f_c_MPa", strength}, {"f_c_doubtful_because", {}}};
     }
     warn_of_hardening(summary);
     std::vector<std::size_t> counts;
-    for (const auto& stage : summary.stages) counts.push_back(stage.report.warnings.size());
+    for (const auto& stage : summary.stages) {
+      const auto& told = stage.report.warnings;
+      counts.push_back(told.size());
+      EXPECT_EQ(stage.report.results[1].value, told.empty() ? Result::Value() : Result::Value(told.back()));
+    }
     return counts;
   };
   using Counts = std::vector<std::size_t>;
@@ -712,7 +716,7 @@ TEST(SummaryFile, NumbersAreNamedByTheirPaths) {
                            "is_good", "wall_time_s", "steps", "exchange_stress_over_strength"})
     EXPECT_TRUE(has(name)) << name;
   for (const char* name : {"title", "outcome", "outcome_id", "sign", "stages", "warnings", "energy_J",
-                           "cracks", "f_c_none_because", "E_none_because", "expansion_reading"})
+                           "cracks", "f_c_none_because", "f_c_doubtful_because", "expansion_reading"})
     EXPECT_FALSE(has(name)) << name;
   EXPECT_TRUE(std::ranges::is_sorted(names));
 }
@@ -725,7 +729,8 @@ TEST(SummaryFile, ResultsOfTheTestAreToldFromThoseOfTheComputation) {
   for (const char* name : {"f_c_MPa", "E_GPa", "strain_at_peak", "toe_strain"})
     EXPECT_TRUE(std::ranges::binary_search(names, name)) << name;
   for (const char* name : {"steps", "unbalanced_ratio", "quasi_static", "kinetic_over_elastic_to_peak",
-                           "platen_difference_over_f_c_after_peak", "wall_time_s", "f_c_none_because"})
+                           "platen_difference_over_f_c_after_peak", "wall_time_s", "f_c_none_because",
+                           "strain_ic_doubtful_because"})
     EXPECT_FALSE(std::ranges::binary_search(names, name)) << name;
 }
 

@@ -54,14 +54,19 @@ void go_on(CompressionCurve& curve, double to_stress, double over_strain) {
   }
 }
 
-double number(const StageReport& report, const std::string& name) {
+Result::Value value(const StageReport& report, const std::string& name) {
   for (const Result& result : report.results)
-    if (result.name == name) return std::get<double>(result.value);
+    if (result.name == name) return result.value;
   ADD_FAILURE() << "no result " << name;
-  return 0.0;
+  return {};
 }
 
-// Promise: f_c is the strength, not the hardening of a specimen that has failed.
+double number(const StageReport& report, const std::string& name) {
+  return std::get<double>(value(report, name));
+}
+
+// Promise: f_c is the strength, not the hardening of a specimen that has failed. It is in doubt then, and so
+// is all that belongs to its peak; E is not.
 TEST(Response, WhatHardensBehindAFailureIsNoStrength) {
   CompressionCurve curve;
   go_on(curve, 30e6, 2e-3);
@@ -73,7 +78,30 @@ TEST(Response, WhatHardensBehindAFailureIsNoStrength) {
   EXPECT_DOUBLE_EQ(number(report, "stress_max_MPa"), 45.0);
   EXPECT_DOUBLE_EQ(number(report, "strain_at_stress_max"), 0.0105);
   EXPECT_EQ(report.lines[1], "rises again behind f_c, to 45.00 MPa (+50 %) at strain 0.01050");
-  EXPECT_TRUE(report.warnings.empty());  // every fall tells the same
+  // every fall tells the same
+  ASSERT_EQ(report.warnings.size(), 1U);
+  EXPECT_NE(report.warnings[0].find("the specimen hardens behind its peak: from f_c, 30.00 MPa, the stress "
+                                    "falls by more than 10 % and rises to 45.00 MPa at strain 0.01050"),
+            std::string::npos);
+  for (const char* name : {"f_c", "strain_at_peak", "strain_ic"})
+    EXPECT_EQ(value(report, std::string(name) + "_doubtful_because"), Result::Value(report.warnings[0]))
+        << name;
+}
+
+// Promise: a stress that comes back up to 5 % above f_c behind a failure leaves no doubt; a curve that falls
+// has none either.
+TEST(Response, ARiseWithinFivePercentLeavesNoDoubt) {
+  const auto back_to = [](double stress) {
+    CompressionCurve curve;
+    go_on(curve, 30e6, 2e-3);
+    go_on(curve, 24e6, 5e-4);
+    go_on(curve, stress, 2e-3);
+    go_on(curve, 10e6, 2e-3);
+    return value(compression_report(curve), "f_c_doubtful_because");
+  };
+  EXPECT_EQ(back_to(20e6), Result::Value());
+  EXPECT_EQ(back_to(31.4e6), Result::Value());
+  EXPECT_TRUE(std::holds_alternative<std::string>(back_to(31.6e6)));
 }
 
 // Promise: a dip that the curve makes good at once is no failure; where falls of 2 % and of 10 % tell
@@ -91,6 +119,7 @@ TEST(Response, AFallMustLast) {
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_NE(report.warnings[0].find("30.00 MPa by the first fall of 2 %, 36.00 MPa by one of 10 %"),
             std::string::npos);
+  EXPECT_EQ(value(report, "f_c_doubtful_because"), Result::Value(report.warnings[0]));
 }
 
 /// Adds points that swing about a straight stretch, as where a wave runs to and fro.

@@ -774,6 +774,8 @@ class Secant(StudyTest):
     def test_its_best_deck_gives_what_it_says(self) -> None:
         done = self.run_for("19000 MPa")
         self.assertEqual(done.returncode, 0, done.stderr)
+        # before the first run: how long one takes, those of the first round, and all that may be asked for
+        self.assertRegex(done.stdout.splitlines()[0], r"^time +\S+ s a run, .* to begin with; .* at most, for 10 runs$")
         said = re.search(r"E (\S+) GPa, wanted 19 GPa: ([+-]\d\.\d) %", done.stdout)
         self.assertLess(abs(float(said[1]) - 19.0), 0.1)
         best = Study(self.text, program=PROGRAM).setup.folder / "best.toml"

@@ -17,7 +17,7 @@ from .command_line import parser
 from .driver import NOT_RUN, WITH_A_BEST, duration
 from .executors.commands import Commands
 from .file import reference, schema
-from .foresight import foresee
+from .foresight import foresee, say_time
 from .parameters import Value
 from .study import Study
 
@@ -86,7 +86,9 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _say_best(study: Study, say: Callable[[str], None]) -> bool:
-    """Says which point comes nearest to the targets, and writes its deck; whether a secant met them."""
+    """Says which point comes nearest to the targets, and writes its deck; whether a secant met them, by values that no
+    run puts in doubt.
+    """
     setup = study.setup
     try:
         found = study.findings
@@ -96,23 +98,25 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
     values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
     say("best point      " + ", ".join(f"{p.name} = {_shown(v)} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
     units = {output.name: "" if output.unit == "1" else f" {output.unit}" for output in setup.outputs}
-    far = []
+    far, doubts = [], found["best"]["doubts"]
     for target, y in zip(setup.targets, found["best"]["y"]):
         value, unit = target.value, units[target.output]
         off = f": {100.0 * (y / value - 1.0):+.1f} %" if value else ""
-        say(f"                {target.output} {y:.4g}{unit}, wanted {value:g}{unit}{off}")
+        say(f"                {target.output} {y:.4g}{unit}, wanted {value:g}{unit}{off}"
+            f"{', does not count as met' if target.output in doubts else ''}")
         if unit and abs(y - value) > _FAR * min(abs(y), abs(value)) > 0.0:
             far.append(f"targets.{target.output} counts in{unit} and is far from all that the runs gave: is another "
                        f"unit meant, write it, as in \"{y:.3g}{unit}\"")
     if deck := study.write_best():
         say(f"its deck        {deck}")
-    if found.get("is_met", True):
+    if found.get("is_met", not doubts):
         for line in far:
             say(f"warning         {line}")
         return True
     at_end = [f"{p.name} = {_shown(v)}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
     end = [f"{' and '.join(at_end)}: at the end of the range"] if at_end else []
-    complain(f"the targets are not met: {'; '.join([found['finished'], *end, *far])}")
+    in_doubt = [f"{output}: {why}" for output, why in doubts.items()]
+    complain(f"the targets are not met: {'; '.join([found['finished'], *end, *far, *in_doubt])}")
     return False
 
 
@@ -132,6 +136,8 @@ def _check(options: argparse.Namespace) -> int:
     seen = study.forecast()
     say(f"{options.study} is valid: {study.setup.title}; {_counted(seen.points, 'point')}, {_counted(seen.runs, 'run')}"
           + ("" if seen.is_complete else " to begin with"))
+    if seen.left and study.setup.runner.kind == "pyroclast":
+        say_time(study, seen, say)
     return 0
 
 

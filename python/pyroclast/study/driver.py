@@ -69,6 +69,16 @@ class StudyForecast:
     infeasible: int  #: points whose deck is refused
     seconds: float  #: of one core, for what is left; NaN where no run has told yet how long it takes
     is_complete: bool  #: whether these are all points that the method will ask for
+    most: int | None  #: runs that it may come to ask for at most; None: not known
+
+    def time(self, seconds: float) -> str:
+        """Says how long the runs that are left take, of which one takes so many seconds."""
+        said = f"{duration(seconds)} a run, {duration(seconds * self.left)} of one core "
+        if self.is_complete:
+            return said + "in all"
+        more = "more may follow" if self.most is None else \
+            f"{duration(seconds * (self.most - self.known))} at most, for {self.most} runs"
+        return f"{said}to begin with; {more}"
 
     @property
     def left(self) -> int:
@@ -124,7 +134,9 @@ class Driver:
         known = sum(self._result(w) is not None for w in wanted)
         points = set(self._points(proposal.points))
         return StudyForecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
-                        (len(wanted) - known) * self.expected, proposal.is_complete)
+                        (len(wanted) - known) * self.expected, proposal.is_complete,
+                        len(wanted) if proposal.is_complete else
+                        self.plan.most_points and self.plan.most_points * len(proposal.seeds))
 
     @property
     def expected(self) -> float:
@@ -139,6 +151,8 @@ class Driver:
         if outdated := self.count_outdated():
             said = "1 earlier run is" if outdated == 1 else f"{outdated} earlier runs are"
             say(f"{said} of other code, another deck or another version: they stay, and do not count")
+        if self.plan.most_points and self.study.runner.kind == "pyroclast" and math.isnan(self.expected):
+            say(f"time            {self.forecast().time(self.points.seconds_of_run(self.study.seeds[0]))}")
         while True:
             proposal = self.plan.propose(self._answers)
             missing = self._missing(proposal)
@@ -240,9 +254,11 @@ class Driver:
         findings = self.findings()
         values = self.values(findings["best"]["u"])
         found = ", ".join(f"{p.name} = {v:g} {p.unit}".rstrip() for p, v in zip(self.study.parameters, values))
-        missed = "" if findings.get("is_met", True) else f"{NOT_MET}: " + ", ".join(
+        doubts = findings["best"]["doubts"]
+        missed = "" if findings.get("is_met", not doubts) else f"{NOT_MET}: " + ", ".join(
             f"{target.output} is {y:.4g}, wanted {target.value:g}"
-            for target, y in zip(self.study.targets, findings["best"]["y"])) + ".\n"
+            for target, y in zip(self.study.targets, findings["best"]["y"])) + "".join(
+            f"; {output} does not count: {seen_on_a_line(why)}" for output, why in doubts.items()) + ".\n"
         write_text(file, f"# Best point of the study \"{self.study.title}\": {found}.\n{missed}"
                          "# The comments below come from the first deck.\n" + self.points.text(values))
         return file
@@ -273,6 +289,7 @@ class Driver:
         shape = (len(points), len(seeds))
         y: dict[str, NDArray[np.float64]] = {o.name: np.full(shape, math.nan) for o in self.study.outputs}
         is_known = np.zeros(shape, dtype=bool)
+        doubts: dict[str, dict[tuple[int, int], str]] = {o.name: {} for o in self.study.outputs}
         is_feasible = np.array([not p.infeasible for p in points], dtype=bool)
         for i, point in enumerate(points):
             for j, seed in enumerate(seeds):
@@ -281,7 +298,9 @@ class Driver:
                     is_known[i, j] = True
                     for output in self.study.outputs:
                         y[output.name][i, j] = result.number(output.what)
-        return Answers(y, is_known, is_feasible)
+                        if doubt := result.doubt(output.what):
+                            doubts[output.name][i, j] = doubt
+        return Answers(y, is_known, is_feasible, doubts)
 
     def _result(self, wanted: Wanted) -> RunResult | None:
         """What is known of a run, with outputs that the study has only now; None where it has to be made for them."""

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..writing import make_folder
-from .driver import duration
+from .driver import StudyForecast
 from .study import Study
 
 _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
@@ -24,16 +24,18 @@ def foresee(study: Study, say: Callable[[str], None]) -> None:
     say(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
     if not seen.left:
         return
-    seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
-    if seconds is None:
-        say("time            not known before one run is done")
-    else:
-        say(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
+    say_time(study, seen, say)
     if setup.runner.kind == "pyroclast":
         there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
         say(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
               f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
               f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
+
+
+def say_time(study: Study, seen: StudyForecast, say: Callable[[str], None]) -> None:
+    """Says how long the runs of a forecast take."""
+    seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
+    say(f"time            {'not known before one run is done' if seconds is None else seen.time(seconds)}")
 
 
 @contextmanager

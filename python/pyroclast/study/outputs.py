@@ -83,7 +83,9 @@ class Output:
         return self.what.removeprefix("summary:").strip()
 
     def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
-        """The number and, where there is none (NaN), why. Not of functions."""
+        """The number, and why there is none (NaN) or why it is in doubt; empty where nothing is against it. Not of
+        functions.
+        """
         return self._of_history(folder) if self.of_history else self._of_summary(summary)
 
     def _of_summary(self, summary: dict[str, Any]) -> tuple[float, str]:
@@ -94,10 +96,10 @@ class Output:
         if not with_it:
             for part in name.split("."):
                 node = node.get(part) if isinstance(node, dict) else None
+        own = with_it[-1] if with_it else summary
         if isinstance(node, (int, float)) and math.isfinite(node):
-            return float(node), ""
-        because = with_it[-1].get(_because(name)) if with_it else None
-        return math.nan, str(because or f"the summary has no number called {name!r}")
+            return float(node), str(own.get(_because(name, "doubtful")) or "")
+        return math.nan, str(own.get(_because(name, "none")) or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
         from ..files import Table  # numpy and h5py, which a task that takes no history does without
@@ -188,9 +190,9 @@ def with_plain_numbers(what: str) -> str:
         raise Error(f"{found[3]} does not belong to {found[2]}, which {error}") from None
 
 
-def _because(name: str) -> str:
-    """Key of the summary that says why a number is missing: of "f_c_MPa" "f_c_none_because"."""
-    return f"{re.sub(r'_(?:[A-Z][A-Za-z]*|degC|percent)$', '', name)}_none_because"
+def _because(name: str, what: str) -> str:
+    """Key of the summary that says why a number is missing or doubtful: of "f_c_MPa" "f_c_none_because"."""
+    return f"{re.sub(r'_(?:[A-Z][A-Za-z]*|degC|percent)$', '', name)}_{what}_because"
 
 
 def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:

@@ -24,11 +24,15 @@ _MOST_CURVE = 40  # points of a response curve that a surrogate gives
 
 @dataclass(frozen=True)
 class Answers:
-    """What is known of points. y: (points, seeds) by output, NaN without a value; others likewise, and (points,)."""
+    """What is known of points. y: (points, seeds) by output, NaN without a value; others likewise, and (points,).
+
+    doubts: by output and (point, seed): why its value is in doubt.
+    """
 
     y: dict[str, Array]
     is_known: NDArray[np.bool_]
     is_feasible: NDArray[np.bool_]
+    doubts: dict[str, dict[tuple[int, int], str]]
 
     def has_all(self) -> bool:
         """Whether each point is known or cannot be run."""
@@ -52,6 +56,7 @@ class Plan(Protocol):
     """A method at work on a study. What it says depends on the study and the answers alone."""
 
     draws_as_it_goes: bool  #: points depend on answers; those that cannot be run count as infeasible then
+    most_points: int | None  #: that a method which draws as it goes may come to ask for; None: it is not known
 
     def propose(self, ask: Ask) -> Proposal:
         """All points that are wanted, given what is known."""
@@ -70,6 +75,7 @@ def plan_of(study: StudySetup) -> Plan:
 
 class _Plan:
     draws_as_it_goes = False
+    most_points: int | None = None
 
     def __init__(self, study: StudySetup):
         self.study = study
@@ -316,9 +322,21 @@ class _ToTargets(_Plan):
             return calibration.Infeasible()
         return self._of_targets(answers)[0] if answers.has_all() else None
 
+    def _doubts(self, ask: Ask, u: Array) -> dict[str, str]:
+        """By target that is not counted as met at a point (k,): how many of its seeds are in doubt, and why the first is."""
+        answers = ask(u[None, :], self.study.seeds)
+        doubts = {t.output: list(answers.doubts[t.output].values()) for t in self.study.targets}
+        return {output: f"{len(texts)} of {len(self.study.seeds)} seeds {'is' if len(texts) == 1 else 'are'} in doubt: "
+                        f"{texts[0]}" for output, texts in doubts.items() if texts}
+
 
 class _Calibrate(_ToTargets):
     draws_as_it_goes = True
+
+    def __init__(self, study: StudySetup):
+        super().__init__(study)
+        population = int(self.settings["population"]) or calibration.usual_population(self.k)
+        self.most_points = int(self.settings["generations"]) * population
 
     def propose(self, ask: Ask) -> Proposal:
         found = self._search(ask)
@@ -341,7 +359,8 @@ class _Calibrate(_ToTargets):
         targets = self._targets
         result: dict[str, Any] = {
             "finished": found.search.finished, "points": len(u), "best": {"u": u[found.best], "y": y[found.best],
-                                                                         "misfit": found.misfits[found.best]},
+                                                                         "misfit": found.misfits[found.best],
+                                                                         "doubts": self._doubts(ask, u[found.best])},
             "targets": targets, "sd": np.sqrt(np.diag(found.covariance)), "misfits": found.misfits}
         try:
             result["uncertainty"] = calibration.uncertainty(u[found.best], u, y, targets, found.covariance, self.seed)
@@ -354,6 +373,10 @@ class _Secant(_ToTargets):
     """Parameters and targets are in the order of the parameters."""
 
     draws_as_it_goes = True
+
+    def __init__(self, study: StudySetup):
+        super().__init__(study)
+        self.most_points = int(self.settings["rounds"])
 
     def propose(self, ask: Ask) -> Proposal:
         found = self._approach(ask)
@@ -389,9 +412,11 @@ class _Secant(_ToTargets):
         n = len(y)
         error = y.std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else np.full(y.shape[1], math.nan)
         back = np.argsort(self._order)  # from the order of the parameters to that of the targets
-        return _plain({"finished": found.finished, "is_met": found.is_met, "targets": self._targets,
+        doubts = self._doubts(ask, best)
+        finished = "the means meet all targets, but some values are in doubt" if found.is_met and doubts else found.finished
+        return _plain({"finished": finished, "is_met": found.is_met and not doubts, "targets": self._targets,
                        "rounds": {"u": found.points, "y": found.means[:, back]},
-                       "best": {"u": best, "y": y.mean(axis=0), "round": found.best, "error": error}})
+                       "best": {"u": best, "y": y.mean(axis=0), "round": found.best, "error": error, "doubts": doubts}})
 
 
 class _Posterior(_OnSurrogate, _ToTargets):

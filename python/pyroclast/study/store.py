@@ -39,7 +39,8 @@ _said: set[str] = set()
 class RunResult:
     """What came of a run.
 
-    outputs: by what they were taken from (Output.what): the number, or None and why there is none.
+    outputs: by what they were taken from (Output.what): the number and why it is in doubt, or None and why there is
+        none.
     state: as `judged` by all outputs that were taken.
     wall: of all attempts, s. version: physics version.
     """
@@ -63,19 +64,26 @@ class RunResult:
         value = self.outputs.get(what, (None, ""))[0]
         return math.nan if value is None else value
 
+    def doubt(self, what: str) -> str:
+        """Why an output that has a value is in doubt; empty where nothing is against it."""
+        return "" if math.isnan(self.number(what)) else self.outputs[what][1]
+
 
 def judged(result: RunResult, outputs: Iterable[str], may_lack: Container[str] = ()) -> RunResult:
     """Judges a run that came to its end by some of its outputs: it has no value where it lacks one of them that it must
-    have, or all of them. Returns it with its state, and with the reasons of all that it lacks.
+    have, or all of them. Returns it with its state, and with the reasons of all that it lacks, or else what it said
+    itself, and of all that is in doubt.
     """
     if result.state not in (DONE, NO_VALUE):
         return result
     found = {what: result.outputs.get(what, (None, "was not taken")) for what in outputs}
     missing = {what: why for what, (value, why) in found.items() if value is None}
     is_done = len(missing) < max(len(found), 1) and all(what in may_lack for what in missing)
-    reason = "; ".join(f"{what}: {why}" for what, why in missing.items())[:REASON_LENGTH]
+    reason = "; ".join(f"{what}: {why}" for what, why in missing.items())
     if not missing and result.state == DONE:
         reason = result.reason  # a stage that did not end as the deck asks
+    doubts = dict.fromkeys(why for value, why in found.values() if value is not None and why and why not in reason)
+    reason = "; ".join(filter(None, [reason, *doubts]))[:REASON_LENGTH]
     return replace(result, state=DONE if is_done else NO_VALUE, reason=reason)
 
 

@@ -39,8 +39,8 @@ constexpr double kEnergyNonsense = 0.05;
 /// some 1e5 evaluations to far less.
 constexpr double kHeatTolerance = 1e-6;
 
-/// End of the names of texts that say why a result is missing.
-constexpr const char* kReason = "none_because";
+/// Ends of the names of texts that say why a result is missing, why it is in doubt, and of both.
+constexpr const char *kReason = "none_because", *kDoubt = "doubtful_because", *kBecause = "because";
 
 /// Returns the last value of a column in the first rows. Where a stage lacks the column the value stands in
 /// an earlier row.
@@ -324,7 +324,7 @@ template <class F>
 void for_each_number(const Run& run, F f) {
   for (const auto& stage : run.stages())
     for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
-      if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason)) f(result);
+      if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kBecause)) f(result);
 }
 
 }  // namespace
@@ -337,12 +337,16 @@ void warn_of_hardening(Summary& summary) {
     if (found == report.results.end()) continue;
     const double* const strength = std::get_if<double>(&found->value);
     if (strength == nullptr) continue;
-    if (failed_at && *strength > *failed_at)
+    const double value = *strength;
+    if (failed_at && value > *failed_at) {
       report.warnings.push_back(fmt::format(
           "f_c {:.2f} MPa is of a specimen that had failed at {:.2f} MPa in an earlier stage: it is "
           "hardening of the remaining body, not a strength",
-          *strength, *failed_at));
-    failed_at = failed_at ? std::max(*failed_at, *strength) : *strength;
+          value, *failed_at));
+      for (Result& result : report.results)
+        if (result.name.ends_with(kDoubt)) result.value = report.warnings.back();
+    }
+    failed_at = std::max(failed_at.value_or(value), value);
   }
 }
 

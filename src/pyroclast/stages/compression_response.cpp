@@ -264,23 +264,26 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
 
 namespace {
 
-/// Reports a curve that rises above f_c again, and warns where another rule would tell another strength.
-void tell_doubts(const CompressionCurve& curve, const CompressionResponse& r, StageReport& report) {
+/// Returns why f_c does not tell the strength of a concrete; empty where nothing is against it.
+std::string doubt_of(const CompressionCurve& curve, const CompressionResponse& r) {
   const double strength = *r.strength, largest = curve.stress[r.largest];
-  if (largest > (1.0 + kRisesAgain) * strength)
-    report.lines.push_back(fmt::format("rises again behind f_c, to {:.2f} MPa ({:+.0f} %) at strain {:.5f}",
-                                       largest * 1e-6, 100.0 * (largest / strength - 1.0),
-                                       curve.strain[r.largest]));
   const double by_small = r.by_small_fall.value.value_or(strength);
   const double by_large = r.by_large_fall.value.value_or(largest);
   const auto [least, most] = std::minmax({by_small, by_large, strength});
-  if (most - least <= kMoves * strength) return;
-  const bool is_between = by_small <= strength && strength <= by_large;
-  report.warnings.push_back(fmt::format(
-      "f_c depends on how a peak is told: {:.2f} MPa by the first fall of 2 %, {}{:.2f} MPa {}; the stress "
-      "falls and rises again, as where few coarse blocks fail one by one (docs/validation/peaks.md)",
-      by_small * 1e-6, is_between ? "" : fmt::format("{:.2f} MPa by one that lasts, ", strength * 1e-6),
-      by_large * 1e-6, r.by_large_fall ? "by one of 10 %" : "at the end without a fall of 10 %"));
+  if (most - least > kMoves * strength) {
+    const bool is_between = by_small <= strength && strength <= by_large;
+    return fmt::format(
+        "f_c depends on how a peak is told: {:.2f} MPa by the first fall of 2 %, {}{:.2f} MPa {}; the stress "
+        "falls and rises again, as where few coarse blocks fail one by one (docs/validation/peaks.md)",
+        by_small * 1e-6, is_between ? "" : fmt::format("{:.2f} MPa by one that lasts, ", strength * 1e-6),
+        by_large * 1e-6, r.by_large_fall ? "by one of 10 %" : "at the end without a fall of 10 %");
+  }
+  if (largest > (1.0 + kMoves) * strength)
+    return fmt::format(
+        "the specimen hardens behind its peak: from f_c, {:.2f} MPa, the stress falls by more than 10 % and "
+        "rises to {:.2f} MPa at strain {:.5f}; plain concrete does not (docs/validation/after_peak.md)",
+        strength * 1e-6, largest * 1e-6, curve.strain[r.largest]);
+  return {};
 }
 
 }  // namespace
@@ -291,13 +294,19 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
   const CompressionResponse r = compression_response(curve, aim.waves_until);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   const bool has_points = curve.count() > 0;
+  const std::string doubt = r.strength ? doubt_of(curve, r) : std::string();
+  const auto doubted = [&](bool has_value) {
+    return has_value && !doubt.empty() ? Result::Value(doubt) : Result::Value();
+  };
   report.results = {
       {"E_GPa", value_of(r.modulus, 1e-9)},
       {"E_none_because", reason_of(r.modulus)},
       {"toe_strain", r.toe},
       {"f_c_MPa", value_of(r.strength, 1e-6)},
       {"f_c_none_because", reason_of(r.strength)},
+      {"f_c_doubtful_because", doubted(true)},
       {"strain_at_peak", value_if(r.strength.value.has_value(), r.strength ? curve.strain[r.peak] : 0.0)},
+      {"strain_at_peak_doubtful_because", doubted(true)},
       {"f_c_by_fall_of_2_percent_MPa", value_of(r.by_small_fall, 1e-6)},
       {"f_c_by_fall_of_2_percent_none_because", reason_of(r.by_small_fall)},
       {"f_c_by_fall_of_10_percent_MPa", value_of(r.by_large_fall, 1e-6)},
@@ -306,6 +315,7 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
       {"strain_at_stress_max", value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
       {"strain_ic", value_of(r.inelastic_strain, 1.0)},
       {"strain_ic_none_because", reason_of(r.inelastic_strain)},
+      {"strain_ic_doubtful_because", doubted(static_cast<bool>(r.inelastic_strain))},
       {"quasi_static", inertia.to_peak, ResultOf::computation},
       {"quasi_static_after_peak", inertia.after_peak, ResultOf::computation},
       {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak, ResultOf::computation},
@@ -315,7 +325,11 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
   };
   report.lines.push_back(line_of("f_c", r.strength, 1e-6, 3, " MPa"));
   if (r.strength) report.lines.back() += fmt::format(" at strain {:.2g}", curve.strain[r.peak]);
-  if (r.strength) tell_doubts(curve, r, report);
+  if (r.strength && curve.stress[r.largest] > (1.0 + kRisesAgain) * *r.strength)
+    report.lines.push_back(fmt::format(
+        "rises again behind f_c, to {:.2f} MPa ({:+.0f} %) at strain {:.5f}", curve.stress[r.largest] * 1e-6,
+        100.0 * (curve.stress[r.largest] / *r.strength - 1.0), curve.strain[r.largest]));
+  if (!doubt.empty()) report.warnings.push_back(doubt);
   if (r.bore) {
     report.lines.push_back(line_of("E", r.modulus, 1e-9, 3, " GPa"));
     if (r.modulus && r.toe > 0.0)

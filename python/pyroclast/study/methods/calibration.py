@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -137,6 +138,11 @@ def misfit(outputs: Array, targets: Targets, covariance: Array) -> Array:
     departure = outputs - targets.values
     squares: Array = np.einsum("pq,pq->p", departure, np.linalg.solve(covariance, departure.T).T)
     return squares
+
+
+def usual_population(k: int) -> int:
+    """Points of a generation where none is stated, as CMA-ES has it by default."""
+    return 4 + int(3.0 * math.log(max(k, 2)))
 
 
 def search(k: int, settings: Settings, judge: Callable[[Sequence[Array]], tuple[Array, Array] | None]) -> Search:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ... import style
-from ..methods.calibration import NOT_DETERMINED
+from ..methods.calibration import NOT_DETERMINED, usual_population
 from ..parameters import Parameter, Value
 from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_value_ticks, output_label, panels,
                       parameter_label, places, value_text)
@@ -57,13 +56,13 @@ def sections(seen: Seen) -> list[Section]:
 
 def standing(found: dict[str, Any]) -> str:
     """Whether a search is done, and why."""
-    return f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
+    said = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
+    return " ".join([said, *(f"{output} does not count as met: {why}." for output, why in found["best"]["doubts"].items())])
 
 
 def generation_size(seen: Seen) -> int:
     """Points of a generation, as stated or as CMA-ES has it by default."""
-    stated = int(seen.setup.method.settings["population"])
-    return stated or 4 + int(3.0 * math.log(max(len(seen.setup.parameters), 2)))
+    return int(seen.setup.method.settings["population"]) or usual_population(len(seen.setup.parameters))
 
 
 def _of_search(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> Section:
