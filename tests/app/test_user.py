@@ -626,18 +626,23 @@ class GradingsAndStones(UserTest):
 
     def test_a_skeleton_of_stones_is_told(self):
         self.write(STARTER)
-        plain = self.pyroclast("check", "deck.toml")
-        self.assertNotIn("skeleton", plain.stdout)
-        coarse = self.pyroclast("check", "deck.toml", "--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4")
+        joined = ("--set", "contacts.aggregate_mortar.between_stones=[]")
+        dense = ("--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4")
+        self.assertNotIn("skeleton", self.pyroclast("check", "deck.toml", *joined).stdout)
+        coarse = self.pyroclast("check", "deck.toml", *joined, *dense)
         self.assertEqual(coarse.returncode, 0, coarse.stderr)
         self.assertRegex(coarse.stdout, r"warning +stones form a skeleton that never cracks: \d+ % of their area is")
-        parted = self.pyroclast("check", "deck.toml", "--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4",
-                                "--set", 'contacts.aggregate_mortar.between_stones=["aggregate"]')
-        self.assertNotIn("skeleton", parted.stdout)
-        made = self.pyroclast("specimen", "deck.toml", "--no-figures", "--set", "aggregates.fraction=0.45",
-                              "--set", "specimen.seed=4")
+        self.assertNotIn("skeleton", self.pyroclast("check", "deck.toml", *dense).stdout)
+        made = self.pyroclast("specimen", "deck.toml", "--no-figures", *joined, *dense)
         self.assertEqual(made.returncode, 0, made.stderr)
         self.assertIn("stones form a skeleton", made.stdout)
+
+    def test_cases_of_a_thousand_blocks_let_the_stones_part_that_would_form_a_skeleton(self):
+        for case in ("starter", "cyclic", "hot_compression", "residual_capacity"):
+            with self.subTest(case):
+                words = ("check", str(CASES / f"{case}.toml"), "--seed", "3")
+                self.assertIn("skeleton", self.pyroclast(*words, "--set", "contacts.aggregate_mortar.between_stones=[]").stdout)
+                self.assertNotIn("skeleton", self.pyroclast(*words).stdout)
 
 
 class Properties(UserTest):

@@ -344,9 +344,14 @@ TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
             0.85 * measured);  // uniform stress underestimates a composite of 70 and 29 GPa by some per cent
 }
 
-/// The deck of cases/starter.toml with a second aggregate that cracks, fibres and pores.
+/// The deck of cases/starter.toml, whose stones hold together where they touch.
+std::string deck_of_joined_stones() {
+  return with(shipped_case("starter"), "\nbetween_stones", "\n# between_stones");
+}
+
+/// The same with a second aggregate that cracks, fibres and pores.
 std::string deck_of_many_phases() {
-  std::string deck = shipped_case("starter");
+  std::string deck = deck_of_joined_stones();
   const auto insert = [&](const std::string& before, const std::string& more) {
     deck.insert(deck.find(before), more);
   };
@@ -429,7 +434,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
 TEST(Phases, StonesThatTouchMayHaveAnInterface) {
   const std::string own = "[contacts.seam]\nlike = \"aggregate_mortar\"\nstrength_factor = 0.5\n";
   std::string deck =
-      with(shipped_case("starter"), "[mechanics]", own + "between_stones = [\"aggregate\"]\n[mechanics]");
+      with(deck_of_joined_stones(), "[mechanics]", own + "between_stones = [\"aggregate\"]\n[mechanics]");
   deck = with(deck, "fraction = 0.34", "fraction = 0.45");
   const auto setup = read(deck);
   const auto simulation = make_simulation(setup);

@@ -344,7 +344,8 @@ std::vector<std::string> read_between_stones(const Section& s, const std::vector
   for (const auto& phase : list)
     if (std::ranges::find(of_stones, phase) == of_stones.end())
       s.error(kBetweenStones, of_stones.empty()
-                                  ? "has no meaning here: which block belongs to which stone is not known"
+                                  ? "has no meaning here: which block belongs to which stone is not known; "
+                                    "leave it out, or state []"
                                   : fmt::format("\"{}\" is no phase of stones; such phases are {}", phase,
                                                 quoted_list(of_stones)));
   return list;
