@@ -101,6 +101,7 @@ struct ConcreteOptions {
   std::string d_min = "4.75 mm", width, height;
   std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %", or a file
   std::int64_t blocks = 0;           ///< 0: by the largest aggregate
+  bool cylinder = false;             ///< true for a body in space
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
   std::filesystem::path out;
   std::string command;  ///< command as typed, for the deck

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -19,6 +20,7 @@
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/deck/deck.hpp"
+#include "pyroclast/material/first_guess.hpp"
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/setup.hpp"
@@ -31,20 +33,33 @@ namespace pyroclast::app {
 
 namespace {
 
-// First guesses, from cases/starter.toml with E of the mortar from 20 to 50 GPa and strengths from 0.7 to 2
-// times the paper's, seeds 1 and 2: E within 3 %, f_c within some 10 %.
-constexpr double kModulusOverEstimate = 1.06;  // E of a run over the estimate of uniform stress
-constexpr double kStrength = 32e6;             // f_c with the paper's numbers, Pa
-constexpr double kPaperMortar = 29.4e9;        // E of the mortar there, Pa
-constexpr double kOfStiffness = 0.22;          // exponent with which f_c goes with E of the mortar
-constexpr double kOfFactor = 0.79;             // ... and with the factor on strengths and fracture energies
-
 /// Blocks in the diameter of the largest aggregate, where that gives a usual number of blocks.
 constexpr double kBlocksInAggregate = 5.0;
+/// Blocks across the smallest stone of a body in space; smaller stones would be a block or two, whatever
+/// their shape.
+constexpr double kBlocksInStone = 3.0;
+/// Least size of the largest stone, over the smallest.
+constexpr double kLeastRange = 1.1;
 constexpr const char *kWidth = "150 mm", *kHeight = "300 mm";  // of a specimen where nothing is said
 constexpr int kFewestBlocks = 1000, kMostBlocks = 5000;
+/// Diameter of a cylinder over its largest stone, its height over its diameter, and its blocks, of which a
+/// stone of two thirds of the largest then has three across.
+constexpr double kDiameterOverStone = 4.0, kSlenderness = 2.0;
+constexpr int kBlocksInSpace = 10000;
+/// Most blocks of a body in space by which its modulus is estimated: with 2,000 in place of 10,000 it moves
+/// by 0.4 %.
+constexpr int kBlocksOfEstimate = 2000;
 /// Block size, m, and time step, s, that go together in cases/.
 constexpr double kSizeOfCases = 3e-3, kStepOfCases = 10e-6;
+constexpr double kRateInSpace = 5e-3;  ///< 1/s, as in cases/starter_3d.toml
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr const char* kControlled =
+    "velocity = \"0.2 mm/s\"\nfastest_velocity = \"8 mm/s\"\nunbalanced_ratio = 1e-4\nkinetic_over_strain = "
+    "5e-3\n"
+    "platen_difference = 0.01\ndissipation_rate = \"1 1/s\"\nramp_time = \"20 ms\"\nstop_strain = 0.015";
+
+/// Exponent of Fuller's curve P(d) = (d / d_max)^exponent.
+constexpr double kFuller = 0.45;
 
 /// Largest relative difference of two numbers that count as one, of a deck's digits.
 constexpr double kAlike = 2e-3;
@@ -55,20 +70,38 @@ bool are_alike(double a, double b) {
 
 /// Numbers of mortar and contacts that are guessed or taken from a deck, SI.
 struct Found {
-  double mortar_modulus = kPaperMortar;
-  double f_t = 2.5e6, f_cm = 31e6, c_o = 3.8e6, c_res = 0.038e6, G_f1 = 60.0, G_f2 = 240.0;
+  double mortar_modulus = 0.0;
+  MortarContacts contacts{};
   int blocks = 0;
-  double factor = 1.0;  ///< over the paper's strengths
+  double factor = 1.0;  ///< over the strengths of the first guess's deck
 };
 
 /// Concrete as it is asked for, SI.
 struct Asked {
+  bool is_solid = false;  ///< true for a cylinder in space, whose width is its diameter
   double strength = 0.0, modulus = 0.0, fraction = 0.0, width = 0.0, height = 0.0, d_min = 0.0, d_max = 0.0;
   double coarse = 1.0;  ///< share of the stones that is larger than d_min
   const Rock* rock = nullptr;
   specimen::GradingCurve passing;  ///< empty: Fuller's curve
   std::optional<double> hot;       ///< °C
+
+  int dimension() const { return is_solid ? 3 : 2; }
+  /// Returns the area of the specimen, m², of a cylinder its volume, m³.
+  double extent() const { return (is_solid ? 0.25 * std::numbers::pi * width : 1.0) * width * height; }
+  /// Returns the size of so many blocks, m: the root of their mean area, of a solid of their mean volume.
+  double block_size(double blocks) const { return std::pow(extent() / blocks, 1.0 / dimension()); }
+  /// Returns the share of the stones, from d_min on, that is larger than a size.
+  double share_above(double size) const {
+    const auto passing_at = [&](double d) {
+      return passing.sizes.empty() ? std::pow(d / d_max, kFuller) : specimen::share_at(passing, d);
+    };
+    return (1.0 - passing_at(size)) / (1.0 - passing_at(d_min));
+  }
 };
+
+std::string in(double value, double scale, const char* unit) {
+  return fmt::format("{:.10g} {}", value * scale, unit);
+}
 
 double quantity_of(const char* option, const std::string& text, const Unit& unit, double least, double most) {
   double value = 0.0;
@@ -122,8 +155,7 @@ Asked asked_of(const ConcreteOptions& o) {
   a.rock = &rock(o.rock);
   a.strength = quantity_of("--f_c", o.strength, unit::stress, 5e6, 150e6);
   a.modulus = quantity_of("--E", o.modulus, unit::stress, 5e9, 80e9);
-  a.width = quantity_of("--width", o.width.empty() ? kWidth : o.width, unit::length, 0.02, 2.0);
-  a.height = quantity_of("--height", o.height.empty() ? kHeight : o.height, unit::length, 0.02, 2.0);
+  a.is_solid = o.cylinder;
   a.d_min = quantity_of("--d_min", o.d_min, unit::length, 5e-4, 0.1);
   a.passing = passing_of(o.passing);
   if (a.passing.sizes.empty() && o.d_max.empty())
@@ -133,6 +165,12 @@ Asked asked_of(const ConcreteOptions& o) {
     throw Error("--d_max has no meaning beside --passing: all passes the largest sieve");
   a.d_max = a.passing.sizes.empty() ? quantity_of("--d_max", o.d_max, unit::length, 1e-3, 0.15)
                                     : a.passing.sizes.back();
+  const auto size_of = [](const char* option, const std::string& stated, const std::string& usual) {
+    return quantity_of(option, stated.empty() ? usual : stated, unit::length, 0.02, 2.0);
+  };
+  a.width = size_of("--width", o.width,
+                    a.is_solid ? in(std::ceil(kDiameterOverStone * 1e3 * a.d_max), 1.0, "mm") : kWidth);
+  a.height = size_of("--height", o.height, a.is_solid ? in(kSlenderness * a.width, 1e3, "mm") : kHeight);
   if (a.d_max <= a.d_min)
     throw Error(fmt::format("the largest aggregate, {:g} mm, must be larger than --d_min, {:g} mm",
                             1e3 * a.d_max, 1e3 * a.d_min));
@@ -166,14 +204,27 @@ double rounded(double value, int digits) {
 /// Returns the number of blocks, two digits of it.
 int block_count(const Asked& asked, std::int64_t stated) {
   if (stated > 0) return static_cast<int>(stated);
+  if (asked.is_solid) return kBlocksInSpace;
   const double size = asked.d_max / kBlocksInAggregate;
-  const double count = std::clamp(asked.width * asked.height / (size * size),
-                                  static_cast<double>(kFewestBlocks), static_cast<double>(kMostBlocks));
+  const double count = std::clamp(asked.extent() / (size * size), static_cast<double>(kFewestBlocks),
+                                  static_cast<double>(kMostBlocks));
   return static_cast<int>(std::round(rounded(count, 2)));
 }
 
-std::string in(double value, double scale, const char* unit) {
-  return fmt::format("{:.10g} {}", value * scale, unit);
+/// Leaves to the mortar of a body in space those stones that its blocks cannot resolve.
+void leave_small_stones(Asked& a, int blocks) {
+  const double size = a.block_size(blocks);
+  const double least = std::ceil(1e4 * kBlocksInStone * size) / 1e4;
+  if (!a.is_solid || least <= a.d_min) return;
+  if (kLeastRange * least > a.d_max) {
+    const double needed = a.extent() / std::pow(a.d_max / (kLeastRange * kBlocksInStone), 3);
+    throw Error(fmt::format(
+        "--cylinder: the largest stone has {:g} mm, and {} blocks are {:.2g} mm wide: the smallest stone, of "
+        "{:g} blocks, would have {:g} mm; state --blocks {:.0f} or more, or a smaller --width and --height",
+        1e3 * a.d_max, blocks, 1e3 * size, kBlocksInStone, 1e3 * least, 100.0 * std::ceil(needed / 100.0)));
+  }
+  a.fraction *= a.share_above(least);
+  a.d_min = least;
 }
 
 std::string grading(const Asked& a) {
@@ -184,10 +235,10 @@ std::string grading(const Asked& a) {
         sieves.push_back(fmt::format("\"{:g} mm\"", size));
     return fmt::format(
         "d_min = \"{}\"            # smaller grains belong to the mortar\nd_max = \"{}\"\n"
-        "fuller_exponent = 0.45       # guess: Fuller's curve P(d) = (d / d_max)^fuller_exponent, or state "
+        "fuller_exponent = {:g}       # guess: Fuller's curve P(d) = (d / d_max)^fuller_exponent, or state "
         "`passing`\n"
         "sieves = [{}]  # bounds of the size intervals between d_min and d_max",
-        in(a.d_min, 1e3, "mm"), in(a.d_max, 1e3, "mm"), fmt::join(sieves, ", "));
+        in(a.d_min, 1e3, "mm"), in(a.d_max, 1e3, "mm"), kFuller, fmt::join(sieves, ", "));
   }
   std::vector<std::string> points;
   for (std::size_t i = 0; i < a.passing.sizes.size(); ++i)
@@ -285,8 +336,23 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
   v["HOT_OUTPUT"] = "frame_temperature = \"50 K\"   # frames while heating: at its multiples\n";
 }
 
+/// Returns the comment behind the share of aggregate.
+std::string source_of_fraction(const Asked& a, const ConcreteOptions& o) {
+  if (a.is_solid)
+    return fmt::format(
+        "  # volume of stones of {:g} mm and more, {:g} blocks, over that of the specimen; smaller ones "
+        "belong to the mortar",
+        1e3 * a.d_min, kBlocksInStone);
+  if (o.stones.empty()) return "              # area of coarse aggregate over area of the specimen";
+  return fmt::format(
+      "  # {:.3g} of {} of stones, {:g} kg/m3 their density; a section has the share of the volume "
+      "(Delesse)",
+      a.coarse, o.stones, a.rock->density.value);
+}
+
 std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions& o, bool is_hot) {
-  const double size = std::sqrt(a.width * a.height / found.blocks);
+  const double size = a.block_size(found.blocks);
+  const MortarContacts& contacts = found.contacts;
   const bool is_guess = o.from.empty();
   const auto sourced = [](std::string value, const SourcedNumber& of) {
     return fmt::format("{}  # {}", value, of.source);
@@ -309,16 +375,17 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"ROCK", std::string(a.rock->name)},
       {"F_C", in(a.strength, 1e-6, "MPa")},
       {"YOUNG", in(a.modulus, 1e-9, "GPa")},
-      {"WIDTH", in(a.width, 1e3, "mm")},
-      {"HEIGHT", in(a.height, 1e3, "mm")},
+      {"BODY", a.is_solid
+                   ? fmt::format("shape = \"cylinder\"           # it stands around the y axis\n"
+                                 "diameter = \"{}\"\nheight = \"{}\"",
+                                 in(a.width, 1e3, "mm"), in(a.height, 1e3, "mm"))
+                   : fmt::format("width = \"{}\"\nheight = \"{}\"\nthickness = \"1 m\"            # out of "
+                                 "plane; forces and energies are for this thickness",
+                                 in(a.width, 1e3, "mm"), in(a.height, 1e3, "mm"))},
+      {"EXTENT", a.is_solid ? "volume" : "area"},
+      {"ROUND", a.is_solid ? "balls" : "circles"},
       {"FRACTION", fmt::format("{:.3g}", a.fraction)},
-      {"FRACTION_SOURCE",
-       o.stones.empty()
-           ? "              # area of coarse aggregate over area of the specimen"
-           : fmt::format(
-                 "  # {:.3g} of {} of stones, {:g} kg/m3 their density; a section has the share of the "
-                 "volume (Delesse)",
-                 a.coarse, o.stones, a.rock->density.value)},
+      {"FRACTION_SOURCE", source_of_fraction(a, o)},
       {"GRADING", grading(a)},
       {"BLOCKS", std::to_string(found.blocks)},
       {"SIZE", fmt::format("{:.2g}", 1e3 * size)},
@@ -328,13 +395,30 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"MORTAR_E", quoted(in(found.mortar_modulus, 1e-9, "GPa")) + (is_guess ? "  # first guess" : "")},
       {"FACTOR", fmt::format("{:.3g}", found.factor)},
       {"FACTOR_SOURCE", is_guess ? ": first guess" : ""},
-      {"F_T", in(found.f_t, 1e-6, "MPa")},
-      {"F_CM", in(found.f_cm, 1e-6, "MPa")},
-      {"C_O", in(found.c_o, 1e-6, "MPa")},
-      {"C_RES", in(found.c_res, 1e-6, "MPa")},
-      {"G_F1", quoted(in(found.G_f1, 1.0, "N/m"))},
-      {"G_F2", quoted(in(found.G_f2, 1.0, "N/m"))},
-      {"TIME_STEP", in(std::round(1e8 * kStepOfCases * size / kSizeOfCases) / 100.0, 1.0, "us")},
+      {"NUMBERS", std::string(first_guess(a.dimension()).source)},
+      {"F_T", in(contacts.f_t, 1e-6, "MPa")},
+      {"F_CM", in(contacts.f_cm, 1e-6, "MPa")},
+      {"C_O", in(contacts.c_o, 1e-6, "MPa")},
+      {"C_RES", in(contacts.c_res, 1e-6, "MPa")},
+      {"PHI", in(contacts.phi, kDegrees, "deg")},
+      {"PHI_RES", in(contacts.phi_res, kDegrees, "deg")},
+      {"G_F1", quoted(in(contacts.G_f1, 1.0, "N/m"))},
+      {"G_F2", quoted(in(contacts.G_f2, 1.0, "N/m"))},
+      {"TIME_STEP", in(std::round(1e8 * (a.is_solid ? kStepOfCases * size / first_guess(3).block_size
+                                                    : kStepOfCases * size / kSizeOfCases)) /
+                           100.0,
+                       1.0, "us")},
+      {"CELLS",
+       a.is_solid ? "radius_spread = 0.3          # seeds differ in weight, so that blocks differ in size\n"
+                    "shortest_edge = 0.35         # shorter edges are merged: fewer zones, less moving mass"
+                  : "shortest_edge = 0.2          # edges shorter than this fraction of the mean edge are "
+                    "removed\nrelaxation = 0               # Lloyd iterations; 0 leaves the seeds at random"},
+      {"REST", a.is_solid ? "1e-3" : "1e-4"},
+      {"LOADING", a.is_solid
+                      ? fmt::format("velocity = \"{:.3g} mm/s\"\nramp_time = \"50 ms\"\nstop_strain = 0.006",
+                                    1e3 * kRateInSpace * a.height)
+                      : kControlled},
+      {"FRAMES", a.is_solid ? "5e-4" : "1e-4"},
   };
   add_hot_parts(v, a, is_hot);
   return filled(v);
@@ -350,15 +434,16 @@ double estimate(const std::string& text, const std::string& name) {
 
 /// Guesses mortar and contacts. The estimate adds compliances up, so that its reciprocal is straight over
 /// that of the mortar's modulus.
-Found guess(const Asked& a, const ConcreteOptions& o) {
-  Found found;
-  found.blocks = block_count(a, o.blocks);
+Found guess(const Asked& a, const ConcreteOptions& o, int blocks) {
+  const FirstGuess& known = first_guess(a.dimension());
+  Found found{.mortar_modulus = known.mortar_modulus, .contacts = known.contacts, .blocks = blocks};
   const auto compliance = [&](double modulus) {
     Found tried = found;
     tried.mortar_modulus = modulus;
-    return 1.0 / (kModulusOverEstimate * estimate(deck_text(a, tried, o, false), o.out.string()));
+    if (a.is_solid) tried.blocks = std::min(blocks, kBlocksOfEstimate);
+    return 1.0 / (known.modulus_over_estimate * estimate(deck_text(a, tried, o, false), o.out.string()));
   };
-  const double soft = 0.5 * kPaperMortar, stiff = 2.0 * kPaperMortar;
+  const double soft = 0.5 * known.mortar_modulus, stiff = 2.0 * known.mortar_modulus;
   const double at_soft = compliance(soft), at_stiff = compliance(stiff);
   const double slope = (at_soft - at_stiff) / (1.0 / soft - 1.0 / stiff);
   const double of_rock = at_stiff - slope / stiff;
@@ -371,10 +456,12 @@ Found guess(const Asked& a, const ConcreteOptions& o) {
         o.modulus, a.fraction, a.rock->name, a.rock->modulus.value, 1e-9 * least, 1e-9 * most,
         1e-9 / (of_rock + slope / least), 1e-9 / (of_rock + slope / most)));
   found.mortar_modulus = rounded(slope / wanted, 3);
-  const double of_stiffness = std::pow(found.mortar_modulus / kPaperMortar, kOfStiffness);
-  found.factor = rounded(std::pow(a.strength / (kStrength * of_stiffness), 1.0 / kOfFactor), 3);
-  for (double* number : {&found.f_t, &found.f_cm, &found.c_o, &found.c_res, &found.G_f1, &found.G_f2})
-    *number *= found.factor;
+  const double strength = known.strength *
+                          std::pow(found.mortar_modulus / known.mortar_modulus, known.of_stiffness) *
+                          std::pow(a.block_size(blocks) / known.block_size, known.of_block_size);
+  found.factor = rounded(std::pow(a.strength / strength, 1.0 / known.of_factor), 3);
+  MortarContacts& c = found.contacts;
+  for (double* number : {&c.f_t, &c.f_cm, &c.c_o, &c.c_res, &c.G_f1, &c.G_f2}) *number *= found.factor;
   return found;
 }
 
@@ -395,27 +482,35 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
           "from a deck of the same concrete",
           file.string(), what, there, option, asked));
   };
+  const bool is_solid = setup.specimen.prism.has_value();
+  if (o.cylinder && !is_solid)
+    throw Error(fmt::format("--from \"{}\": is no deck of a body in space, but --cylinder asks for one",
+                            file.string()));
+  a.is_solid = is_solid;
+  const Section body = root.section("specimen");
+  const double width = value_of(body, is_solid ? "diameter" : "width", unit::length);
+  const double height = value_of(body, "height", unit::length);
+  if (!o.width.empty()) require("width, in m,", width, a.width, "--width");
+  if (!o.height.empty()) require("height, in m,", height, a.height, "--height");
+  a.width = width;
+  a.height = height;
+  Found found{.blocks = setup.specimen.blocks.count};
+  leave_small_stones(a, found.blocks);
   require("share of aggregate", setup.specimen.aggregates.fraction, a.fraction, "--fraction or --stones");
   require("E of aggregate, in GPa,",
           1e-9 * value_of(root.section("materials").section("aggregate"), "E", unit::stress),
           a.rock->modulus.value, "--aggregate");
-  const specimen::Box box = setup.specimen.region.box();
-  if (!o.width.empty()) require("width, in m,", box.width(), a.width, "--width");
-  if (!o.height.empty()) require("height, in m,", box.height(), a.height, "--height");
-  a.width = box.width();
-  a.height = box.height();
   const Section contacts = root.section("contacts").section("mortar_mortar");
-  Found found;
-  const double paper = found.f_t;
   found.mortar_modulus = value_of(root.section("materials").section("mortar"), "E", unit::stress);
-  found.f_t = value_of(contacts, "f_t", unit::stress);
-  found.f_cm = value_of(contacts, "f_cm", unit::stress);
-  found.c_o = value_of(contacts, "c_o", unit::stress);
-  found.c_res = value_of(contacts, "c_res", unit::stress);
-  found.G_f1 = value_of(contacts, "G_f1", unit::fracture_energy);
-  found.G_f2 = value_of(contacts, "G_f2", unit::fracture_energy);
-  found.blocks = setup.specimen.blocks.count;
-  found.factor = found.f_t / paper;
+  found.contacts = {.f_t = value_of(contacts, "f_t", unit::stress),
+                    .G_f1 = value_of(contacts, "G_f1", unit::fracture_energy),
+                    .f_cm = value_of(contacts, "f_cm", unit::stress),
+                    .c_o = value_of(contacts, "c_o", unit::stress),
+                    .c_res = value_of(contacts, "c_res", unit::stress),
+                    .G_f2 = value_of(contacts, "G_f2", unit::fracture_energy),
+                    .phi = value_of(contacts, "phi", unit::angle),
+                    .phi_res = value_of(contacts, "phi_res", unit::angle)};
+  found.factor = found.contacts.f_t / first_guess(a.dimension()).contacts.f_t;
   return found;
 }
 
@@ -430,10 +525,9 @@ std::string missed_targets(const std::filesystem::path& file) {
 
 /// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete.
 bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o) {
-  ConcreteOptions alike = o;
-  alike.blocks = found.blocks;
-  const Found first = guess(a, alike);
-  return are_alike(found.mortar_modulus, first.mortar_modulus) && are_alike(found.f_t, first.f_t);
+  const Found first = guess(a, o, found.blocks);
+  return are_alike(found.mortar_modulus, first.mortar_modulus) &&
+         are_alike(found.contacts.f_t, first.contacts.f_t);
 }
 
 /// Returns the folder of the calibration, taken from the place of its file.
@@ -450,7 +544,7 @@ std::string study_text(const Asked& a, const ConcreteOptions& o) {
   return fmt::format(
       R"(# Finds E of the mortar and one factor on all strengths and fracture energies, so that E and f_c of the concrete are
 # met: pyroclast study run {0}
-# One compression test fixes no more than these two: f_cm, beta, c_o and G_f2 stay in the paper's ratio.
+# One compression test fixes no more than these two: f_cm, beta, c_o and G_f2 keep the ratios of the deck.
 title = "Calibration of {1} concrete: {2:g} GPa, {3:g} MPa"
 
 [study]
@@ -504,7 +598,9 @@ int write_concrete(const ConcreteOptions& options) {
     throw Error("--from takes mortar and contacts for a hot test: state --hot, such as --hot '400 degC'");
   if (!is_guess && o.blocks > 0)
     throw Error("--blocks has no meaning beside --from, whose number of blocks is kept");
-  const Found found = is_guess ? guess(asked, o) : read(o.from, o, asked);
+  const int blocks = block_count(asked, o.blocks);
+  if (is_guess) leave_small_stones(asked, blocks);
+  const Found found = is_guess ? guess(asked, o, blocks) : read(o.from, o, asked);
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   if (is_guess) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
@@ -522,7 +618,13 @@ int write_concrete(const ConcreteOptions& options) {
     write_text_file(file, text);
     fmt::print("{} is written\n", file.string());
   }
-  if (!o.stones.empty() || !asked.passing.sizes.empty())
+  if (asked.is_solid)
+    fmt::print(
+        "coarse          {:.3g} of the volume: stones from {:.3g} mm on, {:g} blocks; smaller ones belong to "
+        "the "
+        "mortar\n",
+        asked.fraction, 1e3 * asked.d_min, kBlocksInStone);
+  else if (!o.stones.empty() || !asked.passing.sizes.empty())
     fmt::print("coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm\n",
                asked.fraction, 1e3 * asked.d_min);
   if (!is_guess) {
@@ -537,10 +639,11 @@ int write_concrete(const ConcreteOptions& options) {
     fmt::print("Next:\n  pyroclast run {} --seeds 3\n", shell_path(o.out));
     return 0;
   }
-  fmt::print(
-      "first guesses   E of the mortar {:.4g} GPa, strengths {:.4g} times the paper's; {} blocks\nNext:\n"
-      "  pyroclast study run {}\n",
-      1e-9 * found.mortar_modulus, found.factor, found.blocks, shell_path(beside("calibrate")));
+  fmt::print("first guesses   E of the mortar {:.4g} GPa, strengths {:.4g} times {}; {} blocks\nNext:\n",
+             1e-9 * found.mortar_modulus, found.factor, first_guess(asked.dimension()).source, found.blocks);
+  const std::string study = shell_path(beside("calibrate"));
+  if (asked.is_solid) fmt::print("  pyroclast study check {}  # tells how many hours it takes\n", study);
+  fmt::print("  pyroclast study run {}\n", study);
   if (asked.hot)
     fmt::print("and then {} again, by this command with `--from {}` and another -o\n", beside("hot").string(),
                shell_path(o.out.parent_path() / folder_of_calibration(o) / "best.toml"));

@@ -293,14 +293,22 @@ int command_line(int argc, char** argv) {
       ->add_option("--d_min", concrete_options.d_min,
                    "Smallest coarse aggregate; smaller grains belong to the mortar")
       ->capture_default_str();
-  concrete->add_option("--width", concrete_options.width,
-                       "Width of the specimen (default: 150 mm; with --from: as in its deck)");
+  concrete->add_option(
+      "--width", concrete_options.width,
+      "Width of the specimen (default: 150 mm), diameter of a cylinder (default: 4 times its "
+      "largest aggregate); with --from: as in its deck");
   concrete->add_option("--height", concrete_options.height,
-                       "Height of the specimen (default: 300 mm; with --from: as in its deck)");
+                       "Height of the specimen (default: 300 mm, of a cylinder twice its diameter); with "
+                       "--from: as in its deck");
+  concrete->add_flag(
+      "--cylinder", concrete_options.cylinder,
+      "Make a body in space: stones of three blocks across and more; smaller ones belong to the "
+      "mortar");
   concrete
-      ->add_option(
-          "--blocks", concrete_options.blocks,
-          "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 blocks)")
+      ->add_option("--blocks", concrete_options.blocks,
+                   "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 "
+                   "blocks; 10000 "
+                   "of a cylinder)")
       ->check(whole_number(100, 1000000));
   concrete->add_option("--hot", concrete_options.hot,
                        "Also write a deck of a test at this temperature: --hot '400 degC'");

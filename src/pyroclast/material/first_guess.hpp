@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string_view>
+
+namespace pyroclast {
+
+/// Contacts within mortar, SI. The numbers belong to contacts, not to the concrete.
+struct MortarContacts {
+  double f_t, G_f1, f_cm, c_o, c_res, G_f2;
+  double phi, phi_res;  ///< friction angles, rad
+};
+
+/// What is known of a concrete before its calibration: a deck of known strength and stiffness, and how both
+/// go with the numbers of its mortar.
+struct FirstGuess {
+  std::string_view source;  ///< where the numbers of the contacts are from
+  MortarContacts contacts;
+  double mortar_modulus;         ///< E of the mortar, Pa
+  double strength;               ///< f_c with these numbers, Pa
+  double modulus_over_estimate;  ///< E of a run over the estimate of uniform stress
+  double of_stiffness;           ///< exponent with which f_c goes with E of the mortar
+  double of_factor;              ///< ... with one factor on all strengths and fracture energies
+  double block_size,
+      of_block_size;  ///< size of blocks, m, with which f_c was found, and the exponent of f_c with it
+};
+
+/// Returns what is known of bodies in the plane or in space, whose stones may part where they touch.
+const FirstGuess& first_guess(int dimension);
+
+}  // namespace pyroclast
