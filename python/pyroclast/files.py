@@ -84,7 +84,8 @@ class Table(Columns):
         """Whole lines, and at the end that which is not whole."""
         try:
             with open(self.path, "rb") as file:
-                file.seek(self._taken)
+                if self._taken:  # a pipe has no places
+                    file.seek(self._taken)
                 rest = b""
                 while more := file.read(_PIECE):
                     cut = more.rfind(b"\n") + 1

@@ -57,9 +57,7 @@ def _run(options: argparse.Namespace) -> int:
     if options.keep:
         study.setup = replace(study.setup, keep=options.keep)
     if options.dry_run:
-        _checked(study)
-        foresee(study, say)
-        return 0
+        return _foresee(study)
     if options.again:
         study.forget_failures()
     say = _speech(options)
@@ -127,6 +125,12 @@ def _shown(value: Value) -> str:
 def _checked(study: Study) -> None:
     for warning in study.check():
         complain(warning, "warning")
+
+
+def _foresee(study: Study) -> int:
+    _checked(study)
+    foresee(study, say)
+    return 0
 
 
 def _check(options: argparse.Namespace) -> int:
