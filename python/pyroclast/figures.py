@@ -42,7 +42,7 @@ from .files import GapWarning
 from .fractures import Rows, fracture, fracture_panels, select_frames, write_counts
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
-from .profiles import isotherm, read_profile, temperature_profile, write_profile
+from .profiles import isotherm, read_profile, temperature_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .programs import complain, run_program, say
 from .properties import properties, read_properties
@@ -71,8 +71,8 @@ class Picture:
 
     name: str
     draw: Callable[[], Figure]
-    write: Callable[[Path, Path], object] | None = None
-    """Writes the tables that come with it: into the folder of the figures, or that of the run."""
+    write: Callable[[Path], object] | None = None
+    """Writes the table that comes with it into the folder of the figures."""
 
 
 def figures_of(run: Results, magnification: float | None = None,
@@ -97,7 +97,7 @@ def figures_of(run: Results, magnification: float | None = None,
 
 def _fractured(name: str, drawn: Rows, magnification: float | None) -> Picture:
     return Picture(name, lambda: fracture_panels(drawn, magnification),
-                   lambda figures, _: write_counts(figures / f"{name}.csv", drawn))
+                   lambda figures: write_counts(figures / f"{name}.csv", drawn))
 
 
 def _inside(run: Results) -> Iterator[Picture]:
@@ -137,18 +137,14 @@ def _of_records(run: Results, magnification: float | None) -> Iterator[Picture]:
 
 
 def _of_conduction(run: Results) -> Iterator[Picture]:
-    if not run.has_fields or run.mesh.blocks.dimension == 3:  # the depth of heat is not drawn in a solid yet
-        yield Picture("temperature_history", lambda: temperature_history(run))
-        if run.has_fields:
-            yield Picture("temperature", lambda: temperature_field(run))
-        return
     profile = read_profile(run)
     yield Picture("temperature_history", lambda: temperature_history(run, profile))
-    yield Picture("temperature", lambda: temperature_field(run))
-    yield Picture("temperature_profile", lambda: temperature_profile(run, profile),
-                  lambda _, folder: write_profile(profile, folder))
-    if profile.isotherm.any():
-        yield Picture("isotherm", lambda: isotherm(run, profile))
+    if run.has_fields:
+        yield Picture("temperature", lambda: temperature_field(run))
+    if profile is not None:
+        yield Picture("temperature_profile", lambda: temperature_profile(run, profile))
+        if len(profile.isotherm):
+            yield Picture("isotherm", lambda: isotherm(run, profile))
 
 
 def _of_compression(run: Results, magnification: float | None) -> Iterator[Picture]:
@@ -169,8 +165,7 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
              temperatures: Sequence[float] | None = None, out: Path | None = None,
              only: Sequence[str] = ()) -> Iterator[Path]:
     """Draws all figures of a run into its figures/ folder; yields each path once written. Beside a figure of fracture
-    stands a table of its cracks. Where the run conducts heat, temperature_profile.csv and isotherm.csv are written
-    into the folder of the run.
+    stands a table of its cracks.
 
     out: folder for all of these in the place of the run's own, which is then only read.
 
@@ -197,7 +192,7 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
             try:
                 if picture.write is not None:
                     place.mkdir(parents=True, exist_ok=True)
-                    picture.write(place, out or run.folder)
+                    picture.write(place)
                 path = save(picture.draw(), place / f"{picture.name}.{file_format}")
             except Error as error:
                 said = str(error)

@@ -222,7 +222,7 @@ def temperature_history(run: Results, profile: Profile | None = None) -> Figure:
     """Least, mean and greatest temperature of the specimen, its probes and records of temperature, temperatures at
     DEPTHS, and of the hottest gas, over the time.
 
-    profile: temperatures over the depth of the frames, see `read_profile`; None: none at DEPTHS.
+    profile: temperatures over the depth, see `read_profile`; None: none at DEPTHS.
     """
     minutes = run.history["heating_time_s"] / 60.0
     figure, (axes,), beside = style.panels(3.8, beside=0.3)
@@ -248,15 +248,15 @@ def temperature_history(run: Results, profile: Profile | None = None) -> Figure:
 
 
 def _draw_depths(axes: Axes, profile: Profile, minutes: np.ndarray, watched: Sequence[np.ndarray]) -> None:
-    """At the times of the frames; none that a curve of the deck's own tells already."""
+    """None that a curve of the deck's own tells already."""
     heated = ScalarMappable(Normalize(-15.0, 65.0), "inferno_r")
     for depth in DEPTHS:
         if depth >= profile.depth[-1]:
             continue
-        values = np.array([np.interp(depth, profile.depth, temperature) for temperature in profile.temperature])
+        values = profile.at(depth)
         known = [np.interp(profile.time / 60.0, minutes[rows], own[rows]) for own in watched
                  for rows in [np.isfinite(minutes) & np.isfinite(own)] if rows.any()]
         if any(np.abs(values - own).max() < _TOLD * (np.ptp(values) or 1.0) for own in known):
             continue
-        axes.plot(profile.time / 60.0, values, "o-", color=heated.to_rgba(style.MILLI * depth), markersize=2.0,
-                  linewidth=1.0, label=f"{style.MILLI * depth:.0f} mm below\nthe {profile.face} face")
+        axes.plot(profile.time / 60.0, values, color=heated.to_rgba(style.MILLI * depth), linewidth=1.0,
+                  label=f"{style.MILLI * depth:.0f} mm below\nthe {profile.face} face")

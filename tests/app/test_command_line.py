@@ -112,7 +112,8 @@ frame_interval = "30 s"
 
         self.pyroclast("run", "wall.toml", "-o", "wall", "--no-figures", "--quiet")
         rows = (self.folder / "wall/history.csv").read_bytes().count(b"\n") - 1
-        files = [*(self.folder / "wall/fields").glob("*_*.hdf"), self.folder / "wall/history.csv"]
+        files = [*(self.folder / "wall/fields").glob("*_*.hdf"), self.folder / "wall/history.csv",
+                 self.folder / "wall/temperature_profile.csv"]
         size = sum(file.stat().st_size for file in files)
         forecast = foreseen()
         self.assertLess(abs(forecast[0] / rows - 1.0), 0.5, (forecast[0], rows))

@@ -409,14 +409,14 @@ class LeftOver(FolderTest):
         self.break_off()
         (self.out / "figures").mkdir()
         for name in ("figures/total_strain.png", "figures/heating_fracture.csv", "figures/plane_z_0.5.svg",
-                     "report.html", "figures/watch.png", "isotherm.csv", "figures/cracks.png.5dd098b8.partial", "history.csv.partial",
+                     "report.html", "figures/watch.png", "figures/cracks.png.5dd098b8.partial", "history.csv.partial",
                      "figures/mine.png", "notes.txt", "figures/morphology.png"):
             (self.out / name).write_text("old")
         before = self.files("out")
         self.assert_says(self.pyroclast("resume", "out", "--no-figures"), 0)
         self.assertEqual(before - self.files("out"), {
             "figures/total_strain.png", "figures/heating_fracture.csv", "figures/plane_z_0.5.svg", "report.html",
-            "figures/watch.png", "isotherm.csv", "figures/cracks.png.5dd098b8.partial", "history.csv.partial"})
+            "figures/watch.png", "figures/cracks.png.5dd098b8.partial", "history.csv.partial"})
         # a run that is over has the figures of its end
         (self.out / "report.html").write_text("new")
         self.assert_says(self.pyroclast("resume", "out"), 1, "the run is over")

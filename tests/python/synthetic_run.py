@@ -174,6 +174,8 @@ def write_heated_run(
     write_summary(folder, "Synthetic heating",
                   [(kind, _heated_results(heating, kind, [row for row in history if row["stage"] == number]))
                    for number, kind in enumerate(stages)])
+    if heating.spread:
+        _write_profile_of(folder, [row for row in history if row["exchange"]])
     write_mesh(folder / "fields" / "mesh.h5", section)
     saved = [row for i, row in enumerate(history)
              if i == len(history) - 1 or not row["exchange"] or row["exchange"] % FRAME_EVERY == 0]
@@ -285,6 +287,23 @@ def _write_temperature(folder: Path, number: int, row: dict, section: Section) -
         file["VTKHDF/PointData/temperature [degC]"] = temperature.astype(np.float32)
 
 
+def write_profile(folder: Path, times: list[float], depth: np.ndarray, temperature: np.ndarray) -> None:
+    """The tables of a heated line: (k, n) degC over its (n,) depth [m] at k times [s], and its isotherm of 500 degC."""
+    _write_csv(folder / "temperature_profile.csv", ["heating_time_s", "depth_m", "temperature_degC"],
+               [(time, one, value) for time, values in zip(times, temperature) for one, value in zip(depth, values)])
+    hot = [(time, float(np.interp(-500.0, -values, depth))) for time, values in zip(times, temperature)
+           if values[0] >= 500.0]
+    _write_csv(folder / "isotherm.csv", ["heating_time_s", "depth_500_degC_m"], hot)
+
+
+def _write_profile_of(folder: Path, rows: list[dict]) -> None:
+    """Falling from the greatest temperature of each row at the face to the least across."""
+    depth = np.linspace(0.0, 0.15, 121)
+    write_profile(folder, [row["heating_time_s"] for row in rows], depth,
+                  np.array([np.interp(depth, (0.0, 0.15), (row["temperature_max_degC"], row["temperature_min_degC"]))
+                            for row in rows]))
+
+
 def write_conduction(folder: Path) -> Section:
     """A run of heat conduction alone, its sides warming to 400 degC, with two probes."""
     (folder / "fields").mkdir(parents=True)
@@ -296,6 +315,7 @@ def write_conduction(folder: Path) -> Section:
              "probe_b_degC": 20.0 + 9.0 * i} for i in range(21)]
     _write_csv(folder / "history.csv", list(rows[0]), [list(row.values()) for row in rows])
     write_summary(folder, "Synthetic conduction", [("conduct", {"steady": False})])
+    _write_profile_of(folder, rows)
     write_mesh(folder / "fields" / "mesh.h5", section)
     frames = rows[::4]
     _write_csv(folder / "fields" / "frames.csv", ["frame", "stage", "temperature_degC", "heating_time_s"],

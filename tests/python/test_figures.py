@@ -398,8 +398,7 @@ class FireFigures(HeatedTest):
     def test_a_depth_that_a_probe_tells_is_not_drawn_again(self):
         run = self.wall()
         profile = read_profile(run)
-        at = np.array([np.interp(0.02, profile.depth, values) for values in profile.temperature])
-        probe = np.interp(run.history["heating_time_s"], profile.time, at)
+        probe = np.interp(run.history["heating_time_s"], profile.time, profile.at(0.02))
         with mock.patch.object(Results, "probes", {"own": probe}):
             labels = " ".join(" ".join(line.get_label().split()) for line in temperature_history(run, profile).axes[0].lines)
         self.assertIn("10 mm below", labels)
@@ -410,9 +409,9 @@ class FireFigures(HeatedTest):
         profile = read_profile(run)
         off = replace(profile, time=profile.time + 3.0)  # s
         labels = [line.get_label() for line in temperature_profile(run, off).axes[0].lines]
-        self.assertEqual(labels, ["0 min", "4 min", "8 min", "12 min", "16 min", "20 min"])
+        self.assertEqual(labels, ["0 min", "3 min", "6 min", "9 min", "11 min", "14 min", "17 min", "20 min"])
         labels = [line.get_label() for line in temperature_profile(run, replace(off, time=0.1 * off.time)).axes[0].lines]
-        self.assertEqual(labels[:3], ["0.0 min", "0.4 min", "0.8 min"])
+        self.assertEqual(labels[:3], ["0.0 min", "0.3 min", "0.6 min"])
 
 
 class CracksAndEnergies(HeatedTest):
@@ -878,7 +877,7 @@ class HeatedRunsMakePictures(HeatedTest):
                          ["total_strain", "heating_cracks", "heating_energy", "heating_fracture", "stress_strain", "cracks", "energy", "fracture"])
 
     def test_what_the_history_holds_where_no_fields_are_kept(self):
-        fields = {"fracture", "heating_fracture", "temperature", "temperature_profile", "isotherm"}
+        fields = {"fracture", "heating_fracture", "temperature"}
         folders = [self.heated("hot", Heating(critical=505.0)), self.heated("spread", Heating(spread=100.0)),
                    self.heated("cooled", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True)),
                    self.root / "conduction"]
@@ -1325,33 +1324,42 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
 class DepthOfTheHeat(HeatedTest):
     """Profiles across the specimen, and figures over minutes where it is not uniform."""
 
-    def wall(self, temperature) -> Results:
-        """A run of conduction whose last field is a function of x and y over width and height, 0 to 1."""
+    def profiled(self, *faces: float) -> Results:
+        """A run whose line falls to 20 degC across from each of these temperatures of its face, a minute apart."""
         folder = self.root / "wall"
-        section = synthetic_run.write_conduction(folder)
-        x, y = section.points[:, 0] / section.width, section.points[:, 1] / section.height
-        with h5py.File(max((folder / "fields").glob("blocks_*.hdf")), "a") as file:
-            file["VTKHDF/PointData/temperature [degC]"][...] = temperature(x, y)
+        synthetic_run.write_conduction(folder)
+        depth = np.linspace(0.0, 0.15, 7)
+        synthetic_run.write_profile(folder, [60.0 * i for i in range(len(faces))], depth,
+                                    np.array([face + (20.0 - face) * depth / 0.15 for face in faces]))
         return Results(folder)
 
-    def test_linear_field_is_read_exactly_from_its_hottest_face(self):
-        for face, temperature in (("left", lambda x, y: 900.0 - 800.0 * x), ("right", lambda x, y: 100.0 + 800.0 * x),
-                                  ("lower", lambda x, y: 900.0 - 800.0 * y), ("upper", lambda x, y: 100.0 + 800.0 * y)):
-            with self.subTest(face):
-                profile = read_profile(self.wall(temperature))
-                self.assertEqual(profile.face, face)
-                # Hexagons leave gaps at the sides: where no zone holds a point, the nearest gridpoints stand in.
-                inner = slice(20, -20)
-                expected = 900.0 - 800.0 * profile.depth / profile.depth[-1]
-                np.testing.assert_allclose(profile.temperature[-1][inner], expected[inner], atol=1e-3)
-                self.assertAlmostEqual(profile.isotherm[-1], 0.5 * profile.depth[-1], delta=1e-6)
-                shutil.rmtree(self.root / "wall")
+    def test_a_profile_is_that_of_the_table(self):
+        profile = read_profile(self.profiled(20.0, 260.0, 980.0))
+        np.testing.assert_array_equal(profile.time, [0.0, 60.0, 120.0])
+        self.assertEqual(profile.temperature.shape, (3, 7))
+        np.testing.assert_allclose(profile.at(0.075), [20.0, 140.0, 500.0])
+        np.testing.assert_allclose((profile.isotherm_time, profile.isotherm), ([120.0], [0.075]))
 
-    def test_isotherm_is_none_or_all(self):
-        for temperature, share in ((499.0, 0.0), (501.0, 1.0)):
-            profile = read_profile(self.wall(lambda x, y, t=temperature: t + 0.0 * x))
-            self.assertEqual(profile.isotherm[-1], share * profile.depth[-1])
-            shutil.rmtree(self.root / "wall")
+    def test_a_line_of_the_isotherm_is_drawn_only_where_there_is_one(self):
+        run = self.profiled(20.0, 499.0)
+        self.assertEqual(len(read_profile(run).isotherm), 0)
+        self.assertNotIn("isotherm", [picture.name for picture in figures.figures_of(run)])
+
+    def test_a_last_time_that_was_not_written_whole_is_left_out(self):
+        run = self.profiled(20.0, 260.0)
+        table = run.folder / "temperature_profile.csv"
+        table.write_text("".join(table.read_text().splitlines(keepends=True)[:-3]))
+        np.testing.assert_array_equal(read_profile(run).time, [0.0])
+
+    def test_other_depths_at_another_time_are_refused(self):
+        run = self.profiled(20.0, 260.0)
+        table = run.folder / "temperature_profile.csv"
+        lines = table.read_text().splitlines()
+        self.assertTrue(lines[10].startswith("60.0,"))
+        lines[10] = "60.0,0.06,200.0"
+        table.write_text("\n".join(lines) + "\n")
+        with self.assertRaisesRegex(Error, "same 7 depths"):
+            read_profile(run)
 
     def test_figures_are_over_minutes(self):
         run, even = Results(self.heated("a", Heating(spread=80.0))), Results(self.heated("b"))
@@ -1363,14 +1371,6 @@ class DepthOfTheHeat(HeatedTest):
         failed = Results(self.heated("c", Heating(spread=80.0, critical=505.0)))
         marks = [line for line in total_strain(failed).axes[0].lines if str(line.get_label()).startswith("failed")]
         self.assertEqual([line.get_label() for line in marks], ["failed at 97 min"])  # 485 K at 5 K/min
-
-    def test_tables_are_written_with_the_figures(self):
-        folder = self.heated("a", Heating(spread=80.0))
-        self.assertEqual(self.command("run", folder)[0], 0)
-        table, depth = Table(folder / "temperature_profile.csv"), Table(folder / "isotherm.csv")
-        self.assertEqual(table.names, ["heating_time_s", "depth_m", "temperature_degC"])
-        self.assertEqual(table.rows, 121 * depth.rows)
-        self.assertFalse(list(folder.glob("*.partial")))
 
 
 class Titles(HeatedTest):

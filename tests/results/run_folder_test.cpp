@@ -114,7 +114,7 @@ TEST_F(Results, WhatShowsHowFarARunHasComeGoesAndNothingElse) {
   for (const auto& file : kept)
     if (!fs::exists(run / file)) write_text_file(run / file, "kept");
   for (const char* drawn : {"figures/cracks.png", "figures/cracks.pdf.0123abcd.partial",
-                            "figures/fracture.csv", "report.html", "isotherm.csv", "summary.json.partial"})
+                            "figures/fracture.csv", "report.html", "summary.json.partial"})
     write_text_file(run / drawn, "drawn");
   RunFolder::remove_drawn(run);
   std::vector<fs::path> left;

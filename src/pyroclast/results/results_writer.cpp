@@ -19,6 +19,7 @@ ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
       specimen_(setup.specimen),
       references_(setup.references),
       temperatures_(setup.temperatures),
+      exposure_(setup.exposure),
       has_fields_(setup.has_fields) {
   for (const Diagnostic& warning : setup.warnings) warnings_.push_back(without_place(warning));
 }
@@ -26,6 +27,8 @@ ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
 void ResultsWriter::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
   history_.emplace(folder_ / "history.csv", run.history());
+  if (!run.simulation().field().is_uniform())
+    profile_.emplace(folder_, run.simulation(), exposure_, profile_rows_);
   if (has_fields_) fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
   lost_frames_.clear();
   for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
@@ -41,6 +44,7 @@ void ResultsWriter::begin(const Run& run) {
 
 void ResultsWriter::write(const Run& run) {
   history_->write(run.history());
+  if (profile_) profile_->write(run.simulation(), run.frame_is_due(), profile_rows_);
   if (fields_ && run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
 }
 
@@ -61,6 +65,7 @@ Summary ResultsWriter::summary(const Run& run) const {
   summary.warnings = std::move(warnings);
   summary.expansion_reading = expansion_reading_;
   summary.wall_time = wall_time();
+  if (profile_) summary.heated_face = profile_->line().face();
   return summary;
 }
 
@@ -76,6 +81,7 @@ void ResultsWriter::visit_state(StateVisitor& visitor, std::size_t rows) {
   visitor.require(
       std::ranges::adjacent_find(frames_.rows, std::ranges::greater_equal()) == frames_.rows.end(),
       "frame_rows", "does not name each row once, in order");
+  profile_rows_.visit_state(visitor);
   if (visitor.replaces()) earlier_ = time;
 }
 

@@ -8,6 +8,7 @@
 #include "pyroclast/base/clock.hpp"
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/history_file.hpp"
+#include "pyroclast/results/profile_files.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
@@ -15,7 +16,8 @@
 namespace pyroclast {
 
 /// Writer of a run's results into its folder as they come: `history.csv`, `fields/`, `specimen/`,
-/// `properties.csv`, and at the end `summary.json`:
+/// `properties.csv`, where heat is conducted `temperature_profile.csv` and `isotherm.csv`, and at the end
+/// `summary.json`:
 ///
 ///     writer.begin(run);
 ///     while (run.next()) writer.write(run);
@@ -60,9 +62,12 @@ class ResultsWriter {
   std::vector<std::string> warnings_;  ///< warnings of the deck, and of changes to the run
   std::vector<std::string> lost_frames_;
   Interval temperatures_;  ///< temperatures to which the run may come, °C
+  double exposure_;        ///< time for which boundaries act, s
   bool has_fields_;        ///< true where fields are written
   std::optional<HistoryFile> history_;
+  std::optional<ProfileFiles> profile_;
   std::optional<FieldFiles> fields_;
+  ProfileRows profile_rows_;
   FrameRows frames_;
   double earlier_ = 0.0;  ///< wall time of earlier processes, s
   Clock::time_point start_ = Clock::now();

@@ -36,6 +36,8 @@ constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,
     "history.csv",
+    "temperature_profile.csv",
+    "isotherm.csv",
     "properties.csv",
     "summary.json",
     "lock",
@@ -58,11 +60,10 @@ constexpr auto kFolders =
     std::to_array<std::string_view>({"specimen", "fields", "figures", "checkpoints", "inputs"});
 /// Files that grow line by line, and are written under their own names. Other files get theirs once they are
 /// whole.
-constexpr auto kGrowing = std::to_array<std::string_view>({"history.csv", "run.log", "fields/frames.csv"});
+constexpr auto kGrowing = std::to_array<std::string_view>(
+    {"history.csv", "temperature_profile.csv", "isotherm.csv", "run.log", "fields/frames.csv"});
 /// Files that `figures` and `report` write besides figures. Like these they show how far a run has come.
 constexpr auto kDrawn = std::to_array<const char*>({
-    "isotherm.csv",
-    "temperature_profile.csv",
     "report.html",
     "figures/fracture.csv",
     "figures/heating_fracture.csv",

@@ -241,6 +241,7 @@ void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
 }
 
 void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
+  if (!summary.heated_face.empty()) json["heated_face"] = summary.heated_face;
   const HeatWork work = run.simulation().field().conduction()->work();
   json["heat_J"] = last_values(kHeats, run.history());
   json["heat_J"]["error_over_largest"] = json_of(summary.heat_error);

@@ -34,6 +34,8 @@ struct Summary {
   std::optional<double> exchange_stress;
   /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
   std::optional<double> heat_error;
+  /// Side of the specimen from which depths count in `temperature_profile.csv`; empty where none is written.
+  std::string heated_face;
   bool is_sound = true;  ///< false where a stage has no results because its ledger does not close
   /// Warnings of the run as a whole; warnings of stages stand in their reports.
   std::vector<std::string> warnings;

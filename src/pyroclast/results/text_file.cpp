@@ -43,8 +43,8 @@ LineFile::LineFile(std::filesystem::path path, const std::string& text) : path_(
   if (!stream_) fail(path_);
 }
 
-void LineFile::line(const std::string& text) {
-  stream_ << text << '\n' << std::flush;
+void LineFile::lines(const std::string& text) {
+  stream_ << text << std::flush;
   if (!stream_) fail(path_);
 }
 

@@ -16,7 +16,9 @@ class LineFile {
  public:
   /// \param text  first text of the file, which replaces an earlier file, whole or not at all
   LineFile(std::filesystem::path path, const std::string& text);
-  void line(const std::string& text);
+  void line(const std::string& text) { lines(text + '\n'); }
+  /// Writes whole lines, each with its end.
+  void lines(const std::string& text);
 
  private:
   std::filesystem::path path_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pyroclast/base/clock.hpp"
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/fields.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
@@ -20,6 +21,8 @@ constexpr double kSecondsOfTiming = 0.5;
 constexpr double kRowsPerFrame = 4.0;
 /// Bytes of a cell of history.csv: of runs of conduct, compress and expose 11 to 13.
 constexpr double kBytesPerCell = 12.0;
+/// Bytes that a row of the history adds to temperature_profile.csv: 2,500 of about every second row.
+constexpr double kBytesPerProfile = 1250.0;
 /// Share of the largest change of a temperature at which the heat solver's steps aim, see Conduction.
 constexpr double kAimedChange = 0.8;
 
@@ -50,12 +53,17 @@ double expected_evaluations(const HeatConditions& heat, double stable_step, doub
   return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
 }
 
-/// Returns the wall time of an evaluation, s, by those that the solver does in a moment. Heats the field.
+/// Returns the wall time of an evaluation, s, by those that the solver does in a moment. Heats the field,
+/// which may leave the range of its temperatures.
 double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
   const auto start = Clock::now();
   const std::int64_t before = field.conduction()->work().stages;
-  while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
-    field.advance(largest_change, duration);
+  try {
+    while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
+      field.advance(largest_change, duration);
+  } catch (const Error&) {  // foretell_heat tells it
+    field.end_advance();
+  }
   return seconds_since(start) / static_cast<double>(field.conduction()->work().stages - before);
 }
 
@@ -76,6 +84,7 @@ Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulati
   Rehearsal cost{forecast};
   double& seconds = cost.seconds;
   cost.history_bytes = kBytesPerCell * static_cast<double>(run.history().columns().size()) * forecast.looks;
+  if (!simulation.field().is_uniform()) cost.history_bytes += kBytesPerProfile * forecast.looks;
   if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.motion());
   const double row = seconds_of([&] { run.next(); });
   seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;

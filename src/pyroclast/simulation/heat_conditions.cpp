@@ -1,13 +1,16 @@
 #include "pyroclast/simulation/heat_conditions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/base/rounding.hpp"
+#include "pyroclast/model/outline.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 
 namespace pyroclast {
@@ -16,6 +19,9 @@ namespace {
 
 /// Accuracy to which the time of the last change is found, as a fraction of the duration.
 constexpr double kTimeAccuracy = 1e-6;
+
+/// Relative difference of areas that count as equal.
+constexpr double kSameArea = 1e-6;
 
 /// Resistance of a closed crack over that of a block that is left out where cracks split by the block size.
 constexpr double kLeftOut = 0.05;
@@ -97,23 +103,29 @@ Box<Dim> bounding_box(const std::vector<OutlineFace<Dim>>& outline, const ModelO
   return box;
 }
 
+/// Returns the indices of the outline's faces on which a boundary acts.
 template <int Dim>
-std::vector<int> choose_faces(const ModelOf<Dim>& model, const Conduction<Dim>& conduction,
+std::vector<int> choose_faces(const ModelOf<Dim>& model, const std::vector<OutlineFace<Dim>>& outline,
                               const HeatedFaces& faces, const Box<Dim>& specimen) {
+  const auto chosen_by = [&](const auto& predicate) {
+    std::vector<int> chosen;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      if (predicate(outline[i])) chosen.push_back(static_cast<int>(i));
+    return chosen;
+  };
   const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // allows for rounding
   Vec<Dim> slack;
   slack.c.fill(tolerance);
-  if (faces.part == HeatedFaces::kOutline)
-    return conduction.faces([](const OutlineFace<Dim>&) { return true; });
+  if (faces.part == HeatedFaces::kOutline) return chosen_by([](const OutlineFace<Dim>&) { return true; });
   if (faces.part != HeatedFaces::kBox) {
     std::vector<int> side = model.set(faces.part);
     std::ranges::sort(side);
-    return conduction.faces([&](const OutlineFace<Dim>& face) {
+    return chosen_by([&](const OutlineFace<Dim>& face) {
       return std::ranges::all_of(face.gridpoints, [&](int g) { return std::ranges::binary_search(side, g); });
     });
   }
   const auto low = resized<Dim>(faces.box_low), high = resized<Dim>(faces.box_high);
-  auto chosen = conduction.faces(in_box<Dim>(low - slack, high + slack));
+  auto chosen = chosen_by(in_box<Dim>(low - slack, high + slack));
   if (chosen.empty())
     throw Error(fmt::format(
         "no face of the outline has its centre in the box from ({:g}) to ({:g}) m; the specimen lies from "
@@ -238,7 +250,7 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {
     try {
-      const auto faces = choose_faces(model, *conduction, boundary.faces, specimen);
+      const auto faces = choose_faces(model, conduction->outline(), boundary.faces, specimen);
       if (faces.empty())
         throw Error(fmt::format(
             "has no effect: no face of the outline lies wholly in \"{}\"; a face of the outline meets "
@@ -253,7 +265,50 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
   return conduction;
 }
 
+/// Returns how far a boundary takes temperatures away from the initial one, K.
+double drive_of(const HeatCondition& condition, double initial, double duration) {
+  if (const auto* flux = std::get_if<HeatFlux>(&condition))
+    return flux->flux.maximum(0.0, duration) > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  const Curve* const temperature = curves_of(condition).temperature;
+  if (!temperature) return 0.0;
+  return std::max(std::abs(temperature->maximum(0.0, duration) - initial),
+                  std::abs(temperature->minimum(0.0, duration) - initial));
+}
+
+template <int Dim>
+BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMaterial>& block_materials,
+                            const HeatConditions& heat, double duration) {
+  constexpr double kFaces = 0.7;  // cosine of the angle up to which a face looks along an axis, 45 degrees
+  std::vector<bool> takes_part;
+  for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
+  const auto faces = outline(model, zone_geometry(model), takes_part);
+  const Box<Dim> specimen = bounding_box(faces, model);
+  std::pair<double, double> most{-1.0, 0.0};  // drive and area
+  BoxSide side;
+  for (int axis = 0; axis < Dim; ++axis)
+    for (const bool is_upper : {false, true})
+      for (const HeatBoundaryCondition& boundary : heat.boundaries) {
+        double area = 0.0;
+        for (int face : choose_faces(model, faces, boundary.faces, specimen))
+          if ((is_upper ? 1.0 : -1.0) * faces[face].normal[axis] > kFaces) area += faces[face].area;
+        const std::pair acts{drive_of(boundary.condition, heat.initial, duration), area};
+        if (area == 0.0 || acts.first < most.first) continue;
+        // areas of equal sides differ by rounding
+        if (acts.first == most.first && !(area > most.second * (1.0 + kSameArea))) continue;
+        most = acts;
+        side = {axis, is_upper};
+      }
+  return side;
+}
+
 }  // namespace
+
+BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& block_materials,
+                         const HeatConditions& heat, double duration) {
+  return with_dimension(model, [&](const auto& of_dimension) {
+    return most_heated_side_of(of_dimension, block_materials, heat, duration);
+  });
+}
 
 std::unique_ptr<HeatSolver> make_conduction(const Model& model,
                                             const std::vector<BlockMaterial>& block_materials,

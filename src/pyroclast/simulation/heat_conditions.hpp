@@ -89,6 +89,19 @@ bool heats_or_cools(const HeatConditions& heat, double duration);
 /// is no such time.
 double constant_from(const HeatConditions& heat, double duration);
 
+/// Side of the box around a body.
+struct BoxSide {
+  int axis = 0;
+  bool is_upper = false;  ///< true for the side with the larger coordinate
+};
+
+/// Returns the side of the specimen on which boundaries act most within `duration` s: that with the largest
+/// difference to the initial temperature, where several have it the one with the largest faces. A flux into
+/// the specimen counts above all temperatures. Sides are compared in the order left, right, bottom, top,
+/// front, back.
+BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& block_materials,
+                         const HeatConditions& heat, double duration);
+
 /// Makes the heat solver of a specimen; the platens conduct no heat. `model` must outlive the solver.
 /// \param range  range of temperatures for the solver until it is widened, °C, see temperature_range; the
 ///               materials' curves must cover it

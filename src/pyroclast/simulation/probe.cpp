@@ -38,33 +38,76 @@ struct Found {
   std::vector<double> weights;
 };
 
-/// Finds the zone of the specimen in which a point lies deepest, so that rounding on an edge loses no point.
+/// Tells whether a zone lies wholly on one side of all points.
 template <int Dim>
-Found deepest_zone(const ModelOf<Dim>& model, const Vec<Dim>& point) {
+bool is_beside(const ModelOf<Dim>& model, std::size_t zone, const std::vector<Vec<Dim>>& points) {
+  for (int axis = 0; axis < Dim; ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int g : model.zones[zone]) {
+      low = std::min(low, model.position[g][axis]);
+      high = std::max(high, model.position[g][axis]);
+    }
+    const double slack = high - low;  // far more than rounding on an edge
+    const auto is_below = [&](const Vec<Dim>& p) { return p[axis] < low - slack; };
+    const auto is_above = [&](const Vec<Dim>& p) { return p[axis] > high + slack; };
+    if (std::ranges::all_of(points, is_below) || std::ranges::all_of(points, is_above)) return true;
+  }
+  return false;
+}
+
+/// Finds for each point the zone of the specimen in which it lies deepest, so that rounding on an edge loses
+/// no point. A zone far from the box of all points is passed over.
+template <int Dim>
+std::vector<Found> deepest_zones(const ModelOf<Dim>& model, const std::vector<Vec<Dim>>& points) {
   const auto geometry = zone_geometry(model);
   const auto blocks = zone_blocks(model);
-  Found deepest;
+  std::vector<Found> deepest(points.size());
   for (std::size_t z = 0; z < model.zones.size(); ++z) {
-    if (model.is_of_bearing(blocks[z])) continue;
-    const auto weights = shape_functions(model, geometry, z, point);
-    const double depth = *std::min_element(weights.begin(), weights.end());
-    if (depth <= deepest.depth) continue;
-    deepest = {depth, {model.zones[z].begin(), model.zones[z].end()}, {weights.begin(), weights.end()}};
+    if (model.is_of_bearing(blocks[z]) || is_beside(model, z, points)) continue;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto weights = shape_functions(model, geometry, z, points[i]);
+      const double depth = *std::min_element(weights.begin(), weights.end());
+      if (depth <= deepest[i].depth) continue;
+      deepest[i] = {depth, {model.zones[z].begin(), model.zones[z].end()}, {weights.begin(), weights.end()}};
+    }
   }
   return deepest;
+}
+
+/// Finds the zones of points in a body of either space.
+std::vector<Found> deepest_zones(const Model& model, const std::vector<Vec<3>>& points) {
+  return with_dimension(model, [&]<int Dim>(const ModelOf<Dim>& of_dimension) {
+    std::vector<Vec<Dim>> own;
+    for (const Vec<3>& point : points) own.push_back(resized<Dim>(point));
+    return deepest_zones<Dim>(of_dimension, own);
+  });
+}
+
+bool holds(const Found& found) {
+  return found.depth >= -kOnEdge;
 }
 
 }  // namespace
 
 Probe::Probe(const Model& model, const ProbePosition& at) : name_(at.name) {
-  Found found = with_dimension(model, [&]<int Dim>(const ModelOf<Dim>& of_dimension) {
-    return deepest_zone(of_dimension, resized<Dim>(at.position));
-  });
-  if (!(found.depth >= -kOnEdge))
+  Found found = deepest_zones(model, {at.position}).front();
+  if (!holds(found))
     throw Error(fmt::format("no zone of the specimen holds the point {} m of probe {}",
                             place_text(at.position, model.dimension(), "{:g}"), at.name));
   gridpoints_ = std::move(found.gridpoints);
   weights_ = std::move(found.weights);
+}
+
+Probe::Probe(std::string name, std::vector<int> gridpoints, std::vector<double> weights)
+    : name_(std::move(name)), gridpoints_(std::move(gridpoints)), weights_(std::move(weights)) {}
+
+std::vector<std::optional<Probe>> Probe::at(const Model& model, const std::vector<Vec<3>>& points) {
+  std::vector<std::optional<Probe>> probes;
+  for (Found& found : deepest_zones(model, points))
+    probes.push_back(holds(found)
+                         ? std::optional(Probe("", std::move(found.gridpoints), std::move(found.weights)))
+                         : std::nullopt);
+  return probes;
 }
 
 double Probe::read(const std::vector<double>& gridpoints) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,17 @@ class Probe {
   /// Throws Error when the point lies outside the specimen.
   Probe(const Model& model, const ProbePosition& at);
 
+  /// Returns a probe for each point that lies in the specimen, m; none for the others.
+  static std::vector<std::optional<Probe>> at(const Model& model, const std::vector<Vec<3>>& points);
+
   const std::string& name() const { return name_; }
 
   /// \param gridpoints  value of each gridpoint
   double read(const std::vector<double>& gridpoints) const;
 
  private:
+  Probe(std::string name, std::vector<int> gridpoints, std::vector<double> weights);
+
   std::string name_;
   std::vector<int> gridpoints_;  ///< corners of the zone
   std::vector<double> weights_;  ///< weight of each corner
