@@ -13,6 +13,7 @@
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
+#include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 
 namespace pyroclast::app {
@@ -146,6 +147,11 @@ int check(const RunOptions& options) {
   if (simulation->moves()) print_mechanics(setup, *simulation);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));
+  if (const auto told = foretell_heat(setup, *simulation)) {
+    fmt::print("                by heat alone {}\n", describe(*told));
+    if (const std::string warning = warning_of(*told, setup); !warning.empty())
+      fmt::print("{}", describe_warnings({warning}));
+  }
   if (!simulation->field().is_uniform() && simulation->moves())
     fmt::print("                {}\n", simulation->coupling_of_heat());
 

@@ -41,8 +41,9 @@ std::vector<ReadCurve> properties_of(const Setup& setup) {
 
 /// Prints the curves that the deck gives, a line each.
 void print(const std::vector<ReadCurve>& curves) {
-  for (const auto& [path, unit, curve] : curves)
-    say(fmt::format("{:<42}{} {}\n", path, curve.describe(), unit == "1" ? "" : fmt::format("[{}]", unit)));
+  for (const ReadCurve& read : curves)
+    say(fmt::format("{:<42}{} {}\n", read.path, read.curve.describe(),
+                    read.unit == "1" ? "" : fmt::format("[{}]", read.unit)));
 }
 
 }  // namespace

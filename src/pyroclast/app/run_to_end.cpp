@@ -14,6 +14,7 @@
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/shell_words.hpp"
+#include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 
 namespace pyroclast::app {
@@ -156,6 +157,10 @@ std::string describe_start(Session& session) {
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())
     text += describe(*conduction, model, opened.setup.temperatures);
+  if (opened.setup.heat.temperature_range)
+    if (const auto told = foretell_heat(opened.setup, simulation))
+      if (const std::string warning = warning_of(*told, opened.setup); !warning.empty())
+        text += describe_warnings({warning});
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
                         simulation.motion().time_step(), simulation.motion().mass_ratio());

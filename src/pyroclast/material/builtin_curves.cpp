@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -251,11 +252,11 @@ std::vector<NamedCurve> published_curves() {
        glasgow, "1", function([](double T) { return 1.0 - 0.016 * theta(T) * theta(T); }, {20.0, 810.0})},
       {"glasgow_fracture_energy",
        "fracture energy ratio 1 + 0.39 theta - 0.07 theta^2, theta = (T - 20)/100; greatest near 300 degC; "
-       "the last slope beyond 700 degC, and not below 0.2",
-       glasgow, "1", function(glasgow_fracture_energy, {20.0, 800.0}, {700.0, 738.3})},
+       "the last slope beyond 700 degC, and 0.2 from 738 degC on, a choice",
+       glasgow, "1", function(glasgow_fracture_energy, eurocode_range, {700.0, 738.3})},
       {"glasgow_free_thermal_strain",
        "free thermal strain 0.006 ln(7/(7 - theta)), theta = (T - 20)/100, constant from theta = 6", glasgow,
-       "1", function(glasgow_free_thermal_strain, {20.0, 800.0}, {620.0})},
+       "1", function(glasgow_free_thermal_strain, eurocode_range, {620.0})},
       {"glasgow_creep",
        "load-induced thermal strain for each unit of stress over strength, 0.0005 theta^2 + 0.00125 theta, "
        "theta = (T - 20)/100, with the slope growing by 0.017 from theta = 4.5",
@@ -311,10 +312,38 @@ std::vector<NamedCurve> all_curves() {
   return curves;
 }
 
+/// Property of a curve by the words with which its name ends.
+struct PropertyOfName {
+  std::string_view ending, property;
+};
+
+constexpr auto kProperties = std::to_array<PropertyOfName>({
+    {"_strength", "strength"},
+    {"_modulus", "modulus"},
+    {"_elongation", "thermal strain"},
+    {"_thermal_strain", "thermal strain"},
+    {"_expansion", "expansion"},
+    {"_fracture_energy", "fracture energy"},
+    {"_creep", "creep"},
+    {"s_conductivity", "conductivity"},
+    {"_conductivity_upper", "conductivity"},
+    {"_conductivity_lower", "conductivity"},
+    {"_specific_heat_u0", "specific heat"},
+    {"_specific_heat_u1_5", "specific heat"},
+    {"_specific_heat_u3", "specific heat"},
+});
+
+std::vector<NamedCurve> with_properties(std::vector<NamedCurve> curves) {
+  for (NamedCurve& curve : curves)
+    for (const auto& [ending, property] : kProperties)
+      if (curve.name.ends_with(ending)) curve.property = property;
+  return curves;
+}
+
 }  // namespace
 
 const CurveCatalogue& builtin_curves() {
-  static const CurveCatalogue catalogue("built-in curve", all_curves());
+  static const CurveCatalogue catalogue("built-in curve", with_properties(all_curves()));
   return catalogue;
 }
 

@@ -28,4 +28,13 @@ const NamedCurve& CurveCatalogue::at(std::string_view name) const {
                           quoted_list(names)));
 }
 
+std::vector<const NamedCurve*> CurveCatalogue::of_property(std::string_view property,
+                                                           const Interval& range) const {
+  std::vector<const NamedCurve*> found;
+  if (property.empty()) return found;
+  for (const NamedCurve& entry : entries_)
+    if (entry.property == property && entry.curve.holds(range)) found.push_back(&entry);
+  return found;
+}
+
 }  // namespace pyroclast

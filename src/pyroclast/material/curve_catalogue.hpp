@@ -16,6 +16,7 @@ struct NamedCurve {
   std::string source;       ///< clause, table, equation or publication
   std::string unit;         ///< unit of the values; "1" for a ratio or strain
   Curve curve;              ///< curve, which describes itself as "<kind> <name> (<source>)"
+  std::string property{};   ///< "modulus"; a curve may stand in the place of another one of its property
 };
 
 /// Unchangeable list of curves to look up by name.
@@ -30,6 +31,9 @@ class CurveCatalogue {
   /// Returns the curve of a name. Throws Error with the nearest name, if one is near, and all allowed names
   /// when there is no curve of this name.
   const NamedCurve& at(std::string_view name) const;
+
+  /// Returns the curves of a property that hold everywhere in a range.
+  std::vector<const NamedCurve*> of_property(std::string_view property, const Interval& range) const;
 
  private:
   std::string kind_;

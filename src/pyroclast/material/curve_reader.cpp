@@ -59,6 +59,17 @@ Curve lost_in_part(const Curve& ratio, double share) {
 
 }  // namespace
 
+std::string describe_farther(const ReadCurve& read, const Interval& range, const CurveCatalogue& builtins) {
+  std::vector<std::string> names;
+  for (const NamedCurve* entry : builtins.of_property(read.property, range)) names.push_back(entry->name);
+  if (names.empty())
+    return read.property.empty()
+               ? "give it there too"
+               : fmt::format("no built-in curve of a {} reaches as far; give it there too by a table",
+                             read.property);
+  return fmt::format("{} {} as far", fmt::join(names, ", "), names.size() == 1 ? "reaches" : "reach");
+}
+
 CurveReader::CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed,
                          const CurveCatalogue& builtins)
     : folder_(std::move(folder)), axis_(std::move(axis)), needed_(needed), builtins_(builtins) {}
@@ -91,7 +102,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
       warn_if_unusual(section, key, *curve, unit, range);
   }
   const std::string path = path_of(section, key);
-  curves_.push_back({path, unit.si, curve->named(path)});
+  curves_.push_back({path, unit.si, curve->named(path), property_of(section, key)});
   return curves_.back().curve;
 }
 
@@ -247,20 +258,37 @@ std::optional<Curve> CurveReader::read_ramp(const Section& forms, const Unit& un
                                 with_unit(to, unit), rate));
 }
 
+/// Returns the property of the built-in curve that the key names; empty where it names none.
+std::string CurveReader::property_of(const Section& section, std::string_view key) const {
+  if (!section.is_table(key)) return {};
+  const Section forms = section.section(key);
+  for (const char* const form : {"builtin", "times"}) {
+    if (!forms.ok() || !forms.has(form) || forms.is_table(form)) continue;
+    const std::string name = forms.text(form, "");
+    for (const NamedCurve& entry : builtins_.entries())
+      if (entry.name == name) return entry.property;
+  }
+  return {};
+}
+
 bool CurveReader::covers(const Section& section, std::string_view key, const Curve& curve) const {
   const Interval given = curve.range();
   if (curve.holds(needed_)) return true;
   const bool is_of_time = axis_ == time_axis();
+  std::string cure;
+  if (axis_ == temperature_axis())
+    cure = fmt::format(": {}{}",
+                       describe_farther({"", "", curve, property_of(section, key)}, needed_, builtins_),
+                       cure_(given));
+  else if (is_of_time && given.lower > needed_.lower)
+    cure = "; times count from the start of heating: where a record begins there, write start = \\"first row\\" "
+           "beside csv";
   section.error(
-      key, fmt::format("is given from {} to {} {}{}, but the run needs it from {} to {} {}; curves are not "
-                       "extrapolated{}",
+      key, fmt::format("is given from {:.6g} to {:.6g} {}{}, but the run needs it from {:.6g} to {:.6g} {}; "
+                       "curves are not extrapolated{}",
                        given.lower, given.upper, axis_.unit,
                        is_of_time ? fmt::format(" ({})", curve.description()) : "", needed_.lower,
-                       needed_.upper, axis_.unit,
-                       is_of_time && given.lower > needed_.lower
-                           ? "; times count from the start of heating: where a record begins there, write "
-                             "start = \"first row\" beside csv"
-                           : ""));
+                       needed_.upper, axis_.unit, cure));
   return false;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
@@ -21,7 +23,12 @@ struct ReadCurve {
   std::string path;  ///< path such as "materials.mortar.E"
   std::string unit;  ///< SI unit of the values
   Curve curve;
+  std::string property{};  ///< property of the built-in curve that it has, see NamedCurve; else empty
 };
+
+/// Names the built-in curves that may stand in the place of a curve and that hold everywhere in a range,
+/// "en1992_apparent_modulus reaches as far"; where there is none, says what to do.
+std::string describe_farther(const ReadCurve& read, const Interval& range, const CurveCatalogue& builtins);
 
 /// Reader of curves in a deck: properties over the temperature, or boundary values over the time. A key holds
 /// one of
@@ -55,6 +62,10 @@ class CurveReader {
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
              double fallback, Meaning meaning);
 
+  /// Sets what an error of a curve that does not cover the needed range says in the end, by the curve's
+  /// range.
+  void set_cure(std::function<std::string(const Interval& given)> cure) { cure_ = std::move(cure); }
+
   Interval needed() const { return needed_; }
   /// Returns all curves that were read from keys that are there, in order of reading.
   const std::vector<ReadCurve>& curves() const { return curves_; }
@@ -70,6 +81,7 @@ class CurveReader {
   std::optional<Curve> read_builtin(const Section& section, std::string_view key, const Unit& unit) const;
   std::optional<Curve> read_expression(const Section& forms, const Unit& unit) const;
   std::optional<Curve> read_ramp(const Section& forms, const Unit& unit) const;
+  std::string property_of(const Section& section, std::string_view key) const;
   bool covers(const Section& section, std::string_view key, const Curve& curve) const;
   bool within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
               const Range& range) const;
@@ -86,6 +98,7 @@ class CurveReader {
   Interval needed_;
   const CurveCatalogue& builtins_;
   std::vector<ReadCurve> curves_;
+  std::function<std::string(const Interval&)> cure_ = [](const Interval&) { return std::string(); };
 };
 
 }  // namespace pyroclast

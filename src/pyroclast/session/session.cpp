@@ -23,6 +23,11 @@ std::unique_ptr<Simulation> make_simulation_of(const Opened& opened, std::option
   return make_simulation(opened.setup, opened.team);
 }
 
+/// Error of a file that could not be written: nothing is wrong with the run.
+struct NotWritten : Error {
+  using Error::Error;
+};
+
 std::string key_of(const std::string& change) {
   return change.substr(0, change.find('='));
 }
@@ -57,6 +62,19 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
 
 }  // namespace
 
+/// Returns the result of `act`, which writes. An Error of `act` then tells from where the run can go on.
+template <class Act>
+auto Session::telling_where_to_go_on(Act act) {
+  try {
+    return act();
+  } catch (const Error& error) {
+    if (last_checkpoint_.empty()) throw;
+    throw NotWritten(
+        fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
+                    error.what(), last_checkpoint_.string(), shell_path(folder_)));
+  }
+}
+
 Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
                  std::optional<MadeSpecimen> specimen)
     : lock_(std::move(lock)),
@@ -68,10 +86,11 @@ Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesyste
       run_(*simulation_, std::move(opened_.setup.stages)) {
   run_.stop_when([this] { return stop_asked_(); });
   run_.between_batches([this](Run& run) {
-    if (checkpoints_) {
-      checkpoints_->between_batches(run, std::exchange(checkpoint_is_due_, false) || stop_asked_());
-      last_checkpoint_ = checkpoints_->last();
-    }
+    if (checkpoints_)
+      telling_where_to_go_on([&] {
+        checkpoints_->between_batches(run, std::exchange(checkpoint_is_due_, false) || stop_asked_());
+        last_checkpoint_ = checkpoints_->last();
+      });
     between_batches_();
   });
 }
@@ -126,24 +145,21 @@ void Session::stop_when(const std::function<bool()>& asked) {
   stop_asked_ = asked;
 }
 
-/// Returns the result of `act`. An Error of `act` then tells from where the run can go on.
-template <class Act>
-auto Session::telling_where_to_go_on(Act act) {
+bool Session::next() {
+  run_.go_on();
   try {
-    return act();
+    if (!run_.next()) return false;
+  } catch (const NotWritten&) {
+    throw;
   } catch (const Error& error) {
     if (last_checkpoint_.empty()) throw;
     throw Error(
-        fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
-                    error.what(), last_checkpoint_.string(), shell_path(folder_)));
+        fmt::format("{}\nthe run is broken off, and would be there again if it were resumed: change the deck "
+                    "and run it anew",
+                    error.what()));
   }
-}
-
-bool Session::next() {
+  if (!checkpoints_) return true;
   return telling_where_to_go_on([&] {
-    run_.go_on();
-    if (!run_.next()) return false;
-    if (!checkpoints_) return true;
     writer_.write(run_);
     if (run_.stage_is_over()) {
       checkpoints_->end_stage(run_);

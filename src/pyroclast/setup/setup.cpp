@@ -333,6 +333,21 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
   return true;
 }
 
+/// Returns what an error of a curve that ends too early says in the end: how the run may come to need less.
+std::string cure_of_short_curve(const HeatConditions& heat, const Interval& needed, const Interval& given) {
+  const bool begins_late =
+      given.lower > std::max(needed.lower, std::min(kReferenceTemperature, heat.initial));
+  if (begins_late) return "";
+  if (heat.uniform) return fmt::format("; or heat to {:.6g} degC at most", given.upper);
+  if (heat.temperature_range)
+    return fmt::format("; or end heat.temperature_range at {:.6g} degC, if the specimen stays colder",
+                       given.upper);
+  return fmt::format(
+      "; or state heat.temperature_range = [\"{:.6g} degC\", \"{:.6g} degC\"], if the specimen stays "
+      "colder than the gas: `pyroclast check` then tells whether it does",
+      needed.lower, given.upper);
+}
+
 std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
   std::vector<std::string> names;
   for (const Bearing& bearing : bearings)
@@ -415,6 +430,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     setup.probes = read_probes(root, setup.specimen);
   CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
+  curves.set_cure(
+      [&](const Interval& given) { return cure_of_short_curve(setup.heat, setup.temperatures, given); });
   if (!setup.heat.uniform) setup.heat.cracks = read_crack_heat(root, curves);
   if (read.any_moves)
     read_moving(
