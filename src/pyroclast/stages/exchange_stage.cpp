@@ -49,6 +49,12 @@ ExchangeResponse exchange_response(const History& history, RowRange rows, Outcom
   return r;
 }
 
+/// Returns what the answer whether a specimen fails holds for.
+std::string conditions_of_answer(int dimension) {
+  return fmt::format("of this one specimen of plain concrete{}: no steel, no spalling, no member",
+                     dimension == 2 ? " in plane stress" : "");
+}
+
 PlatenControl read_platen(const Section& s) {
   return s.choice<PlatenControl>(
       "platen",
@@ -104,7 +110,7 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
 }
 
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables) {
-  ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature};
+  ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature, tables.dimension};
   if (const auto other = own.optional_section("coupling", "in the place of [coupling], for this stage"))
     keys.coupling = tables.coupling_table
                         ? read_coupling(other->with_defaults_of("coupling"), &tables.coupling)
@@ -166,6 +172,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {"load_stress_MPa", value_if(kept_.has_press, kept_.load_stress * 1e-6), ResultOf::computation},
       {"critical_temperature_degC", value_if(failed, r.critical_temperature.value_or(0.0))},
       {"critical_time_s", value_if(failed, r.critical_time)},
+      {"answer_is", conditions_of_answer(keys_.dimension), ResultOf::computation},
       {"highest_temperature_degC", value_if(has_rows, r.highest), ResultOf::computation},
       {"largest_exchange_increment_K", coupling().increment, ResultOf::computation},
       {"exchanges", r.exchanges, ResultOf::computation},
@@ -175,6 +182,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {"largest_thrust_MPa", value_if(has_rows && kept_.has_press, r.largest_thrust)},
   };
   if (!has_rows) return report;
+  const std::string conditions = conditions_of_answer(keys_.dimension);
   report.lines.push_back(fmt::format(
       "{:.0f} to {:.0f} degC{} in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
       kept_.first_temperature, r.last_mean,
@@ -183,7 +191,8 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
   const std::string how =
-      failed ? fmt::format("critical temperature {:.0f} degC", *r.critical_temperature) : "no failure";
+      failed ? fmt::format("critical temperature {:.0f} degC, {}", *r.critical_temperature, conditions)
+             : fmt::format("no failure {}", conditions);
   if (!kept_.has_press)
     report.lines.push_back(how);
   else if (coupling().platen == PlatenControl::fixed)

@@ -15,6 +15,7 @@ class ExchangeStage : public Stage {
   struct Keys {
     Coupling coupling;
     double frame_temperature = 0.0;  ///< interval, see OutputIntervals
+    int dimension = 2;               ///< dimension of the body
   };
 
   void begin(Simulation& simulation) final;
