@@ -100,13 +100,16 @@ struct ConcreteOptions {
   std::string strength, modulus, rock, fraction, stones, d_max, hot;
   std::string d_min = "4.75 mm", width, height;
   std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %", or a file
+  std::string fire, minutes, faces = "left,right", level = "0.3";
+  std::vector<std::string> columns;  ///< columns of a furnace record: time, temperature
   std::int64_t blocks = 0;           ///< 0: by the largest aggregate
   bool cylinder = false;             ///< true for a body in space
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
   std::filesystem::path out;
   std::string command;  ///< command as typed, for the deck
 };
-/// Writes the deck of a concrete with first guesses, a study that calibrates it, and a deck of a hot test.
+/// Writes the deck of a concrete with first guesses, a study that calibrates it, and a deck of a hot
+/// test or of a fire.
 int write_concrete(const ConcreteOptions& options);
 
 /// Returns the places of all keys that a deck may have, such as "stages[].kind"; NAME stands for a name of

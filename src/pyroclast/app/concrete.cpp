@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/concrete_fire.hpp"
 #include "pyroclast/app/concrete_template.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
@@ -84,6 +84,7 @@ struct Asked {
   const Rock* rock = nullptr;
   specimen::GradingCurve passing;  ///< empty: Fuller's curve
   std::optional<double> hot;       ///< °C
+  std::optional<AskedFire> fire;
 
   int dimension() const { return is_solid ? 3 : 2; }
   /// Returns the area of the specimen, m², of a cylinder its volume, m³.
@@ -191,6 +192,7 @@ Asked asked_of(const ConcreteOptions& o) {
                       "placed. Finer aggregate belongs to the mortar: state --passing, or a larger --d_min",
                       o.stones, a.fraction));
   }
+  if (!o.fire.empty()) a.fire = asked_fire(o, o.out.parent_path());
   if (!o.hot.empty()) a.hot = quantity_of("--hot", o.hot, unit::temperature, 20.0, 800.0);
   return a;
 }
@@ -324,7 +326,7 @@ void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool i
       "[[stages]]                   # ... is heated evenly, with its load held ...\nkind = \"heat\"\nto = "
       "\"{:g} degC\"\n"
       "rate = \"5 K/min\"\nplaten = \"force\"\n\n",
-      in(a.strength, 1e-6, "MPa"), *a.hot);
+      in(a.strength, 1e-6, "MPa"), a.hot.value_or(0.0));
   v["HOT_COUPLING"] =
       "[coupling]                   # temperatures are handed over in steps\nexchange_increment = \"4 K\"\n"
       "unbalanced_ratio = 1e-3      # each ends when the body rests: unbalanced over applied forces,\n"
@@ -370,7 +372,10 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
            : fmt::format("# E of the mortar and the numbers of the contacts come from {}.\n",
                          o.from.string())},
       {"COMMAND", o.command},
-      {"TITLE", fmt::format("{} of {} concrete, {:g} MPa", is_hot ? "Hot strength" : "Compression",
+      {"TITLE", fmt::format("{}{} concrete, {:g} MPa",
+                            is_hot && a.fire ? ""
+                            : is_hot         ? "Hot strength of "
+                                             : "Compression of ",
                             a.rock->name, a.strength * 1e-6)},
       {"ROCK", std::string(a.rock->name)},
       {"F_C", in(a.strength, 1e-6, "MPa")},
@@ -421,7 +426,9 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"FRAMES", a.is_solid ? "5e-4" : "1e-4"},
   };
   add_hot_parts(v, a, is_hot);
-  return filled(v);
+  if (!is_hot || !a.fire) return filled(v);
+  add_fire_parts(v, *a.fire, in(a.strength, 1e-6, "MPa"));
+  return without_compression(filled(v));
 }
 
 /// Estimates E of a deck, Pa, as `check` does.
@@ -535,11 +542,6 @@ std::string folder_of_calibration(const ConcreteOptions& o) {
   return fmt::format("runs/{}-calibrate", o.out.stem().string());
 }
 
-/// Returns a text as a value of TOML. Its basic strings escape as JSON's do.
-std::string in_toml(const std::string& text) {
-  return nlohmann::json(text).dump();
-}
-
 std::string study_text(const Asked& a, const ConcreteOptions& o) {
   return fmt::format(
       R"(# Finds E of the mortar and one factor on all strengths and fracture energies, so that E and f_c of the concrete are
@@ -593,23 +595,29 @@ int write_concrete(const ConcreteOptions& options) {
   const auto beside = [&](const char* ending) {
     return o.out.parent_path() / fmt::format("{}-{}.toml", o.out.stem().string(), ending);
   };
-  const bool is_guess = o.from.empty();
-  if (!is_guess && !asked.hot)
-    throw Error("--from takes mortar and contacts for a hot test: state --hot, such as --hot '400 degC'");
+  const bool is_guess = o.from.empty(), is_heated = asked.hot || asked.fire;
+  if (!is_guess && !is_heated)
+    throw Error(
+        "--from takes mortar and contacts for a hot test or a fire: state --hot, such as --hot '400 degC', "
+        "or "
+        "--fire, such as --fire iso834 --minutes 90");
   if (!is_guess && o.blocks > 0)
     throw Error("--blocks has no meaning beside --from, whose number of blocks is kept");
   const int blocks = block_count(asked, o.blocks);
   if (is_guess) leave_small_stones(asked, blocks);
   const Found found = is_guess ? guess(asked, o, blocks) : read(o.from, o, asked);
+  if (asked.fire && asked.is_solid)
+    throw Error("--fire burns plane specimens alone: a cylinder has no sides left and right");
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   if (is_guess) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
     files.emplace_back(beside("calibrate"), study_text(asked, o));
   }
   const std::string missed = is_guess ? std::string() : missed_targets(o.from);
-  if (asked.hot)
-    files.emplace_back(is_guess ? beside("hot") : o.out,
-                       (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
+  const std::filesystem::path heated = is_guess ? beside(asked.fire ? "fire" : "hot") : o.out;
+  if (is_heated)
+    files.emplace_back(heated, (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
+  if (asked.fire) read_setup(Deck::parse(files.back().second, heated.string()), o.out.parent_path());
   for (const auto& [file, text] : files)
     if (std::filesystem::exists(file))
       throw Error(
@@ -636,7 +644,10 @@ int write_concrete(const ConcreteOptions& options) {
     if (!missed.empty())
       fmt::print("warning         {} is of a calibration that failed{}\n", o.from.string(),
                  missed.substr(missed.find(':')));
-    fmt::print("Next:\n  pyroclast run {} --seeds 3\n", shell_path(o.out));
+    if (asked.fire)
+      fmt::print("Next:\n  pyroclast check {0}\n  pyroclast run {0}\n", shell_path(o.out));
+    else
+      fmt::print("Next:\n  pyroclast run {} --seeds 3\n", shell_path(o.out));
     return 0;
   }
   fmt::print("first guesses   E of the mortar {:.4g} GPa, strengths {:.4g} times {}; {} blocks\nNext:\n",
@@ -644,8 +655,8 @@ int write_concrete(const ConcreteOptions& options) {
   const std::string study = shell_path(beside("calibrate"));
   if (asked.is_solid) fmt::print("  pyroclast study check {}  # tells how many hours it takes\n", study);
   fmt::print("  pyroclast study run {}\n", study);
-  if (asked.hot)
-    fmt::print("and then {} again, by this command with `--from {}` and another -o\n", beside("hot").string(),
+  if (is_heated)
+    fmt::print("and then {} again, by this command with `--from {}` and another -o\n", heated.string(),
                shell_path(o.out.parent_path() / folder_of_calibration(o) / "best.toml"));
   return 0;
 }

@@ -312,8 +312,26 @@ int command_line(int argc, char** argv) {
       ->check(whole_number(100, 1000000));
   concrete->add_option("--hot", concrete_options.hot,
                        "Also write a deck of a test at this temperature: --hot '400 degC'");
-  concrete->add_option("--from", concrete_options.from,
-                       "Take mortar and contacts of the hot test from this deck, such as the calibrated one");
+  auto* fire = concrete->add_option("--fire", concrete_options.fire,
+                                    "Also write a deck of a fire: iso834, hydrocarbon, another one of "
+                                    "`pyroclast list fires`, or the file of a "
+                                    "furnace record");
+  concrete->add_option("--minutes", concrete_options.minutes, "Minutes of fire: --minutes 90")->needs(fire);
+  concrete->add_option("--faces", concrete_options.faces, "Sides in the fire: left, right, or both")
+      ->capture_default_str()
+      ->needs(fire);
+  concrete->add_option("--level", concrete_options.level, "Load that is held in the fire, over f_c")
+      ->capture_default_str()
+      ->needs(fire);
+  concrete
+      ->add_option("--columns", concrete_options.columns,
+                   "Columns of a furnace record with more than two: --columns time 'Furnace mean'")
+      ->expected(2)
+      ->needs(fire);
+  concrete->add_option(
+      "--from", concrete_options.from,
+      "Take mortar and contacts of the hot test or the fire from this deck, such as the calibrated "
+      "one");
   concrete->add_option("-o,--out", concrete_options.out, "File for the deck")->required();
 
   app::KeysOptions keys_options;

@@ -281,7 +281,7 @@ bool CurveReader::covers(const Section& section, std::string_view key, const Cur
                        describe_farther({"", "", curve, property_of(section, key)}, needed_, builtins_),
                        cure_(given));
   else if (is_of_time && given.lower > needed_.lower)
-    cure = "; times count from the start of heating: where a record begins there, write start = \\"first row\\" "
+    cure = "; times count from the start of heating: where a record begins there, write start = \"first row\" "
            "beside csv";
   section.error(
       key, fmt::format("is given from {:.6g} to {:.6g} {}{}, but the run needs it from {:.6g} to {:.6g} {}; "

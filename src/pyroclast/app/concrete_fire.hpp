@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pyroclast/app/commands.hpp"
+
+namespace pyroclast::app {
+
+/// Returns a text as a value of TOML. Its basic strings escape as JSON's do.
+std::string in_toml(const std::string& text);
+
+/// Fire on sides of a specimen, as it is asked for.
+struct AskedFire {
+  std::string gas;                 ///< value of `gas_temperature` in the deck
+  std::string name;                ///< what the fire is called in titles
+  double hottest_gas = 0.0;        ///< °C; 0: not known
+  double convection = 0.0;         ///< coefficient of heat transfer on these sides, W/(m² K)
+  double minutes = 0.0;            ///< duration
+  double level = 0.0;              ///< load over the strength
+  std::vector<std::string> faces;  ///< sides in the fire
+};
+
+/// Reads the options of a fire. Throws Error where they do not go together.
+/// \param folder  folder of the deck, from which the deck names a furnace record
+AskedFire asked_fire(const ConcreteOptions& options, const std::filesystem::path& folder);
+
+/// Replaces the parts of a deck that is heated evenly by those of a fire, see add_hot_parts.
+/// \param strength  strength of the concrete, as a quantity
+void add_fire_parts(std::map<std::string, std::string>& values, const AskedFire& fire,
+                    const std::string& strength);
+
+/// Returns a deck without its stages that compress to failure.
+std::string without_compression(std::string deck);
+
+}  // namespace pyroclast::app

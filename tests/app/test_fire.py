@@ -1,0 +1,182 @@
+"""A fire of an hour and a half: what check foretells, what a broken run says, depths over time, a deck in one command."""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+PROGRAM = os.environ["PYROCLAST"]
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+CONCRETE = ("--f_c", "38 MPa", "--E", "32 GPa", "--fraction", "0.4", "--d_max", "20 mm", "--blocks", "100",
+            "--width", "60 mm", "--height", "120 mm")
+
+
+class InAFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
+        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                              check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def table(self, name: str) -> list[dict]:
+        with open(self.folder / name, newline="", encoding="utf-8") as file:
+            return [{key: float(cell or "nan") for key, cell in row.items()} for row in csv.DictReader(file)]
+
+
+class Foretold(InAFolder):
+    """Heat alone tells beforehand that the curves end too early; what is said names the cure."""
+
+    def wall(self, *changes: tuple[str, str]) -> tuple[str, ...]:
+        text = (CASES / "fire_one_side.toml").read_text()
+        for was, now in (("count = 2000", "count = 200"), ('duration = "30 min"', 'duration = "90 min"'),
+                         ('exchange_increment = "5 K"', 'exchange_increment = "40 K"'), *changes):
+            self.assertIn(was, text)
+            text = text.replace(was, now)
+        (self.folder / "wall.toml").write_text(text)
+        return ("wall.toml", "--quiet", "--no-figures")
+
+    def test_check_tells_when_the_range_is_left_and_which_curves_reach_farther(self):
+        self.wall()
+        seen = self.pyroclast("check", "wall.toml").stdout
+        self.assertRegex(seen, r"leaves heat.temperature_range, 20 to 800 degC, at 3\d of 90 min, and the run would be")
+        self.assertIn("materials.mortar.E ends at 800 degC (en1992_apparent_modulus reaches as far)", seen)
+        self.assertIn("en1992_siliceous_expansion", seen)
+
+    def test_other_fires_are_told_at_their_own_minute(self):
+        for fire, minute in (("en1991_hydrocarbon", r"\d(\.\d)?"), ("rws", r"\d(\.\d)?"), ("astm_e119", r"[34]\d")):
+            with self.subTest(fire):
+                self.wall(('builtin = "iso834"', f'builtin = "{fire}"'))
+                self.assertRegex(self.pyroclast("check", "wall.toml").stdout, rf"800 degC, at {minute} of 90 min")
+
+    def test_a_range_that_holds_is_no_warning_and_the_hottest_place_is_told(self):
+        self.wall(('duration = "90 min"', 'duration = "30 min"'))
+        seen = self.pyroclast("check", "wall.toml").stdout
+        self.assertRegex(seen, r"by heat alone the hottest place comes to 7\d\d degC after 30 min")
+        self.assertNotIn("leaves", seen)
+
+    def test_a_run_that_is_broken_off_gives_no_advice_that_does_not_help(self):
+        deck = self.wall(("20 degC\", \"800 degC", "20 degC\", \"300 degC"))
+        said = self.pyroclast("run", *deck, "-o", "out", code=1).stderr
+        self.assertIn("leaves the run's range of 20 to 300 degC", said)
+        self.assertNotIn("pyroclast resume", said)
+        self.assertIn("change the deck", said)
+
+    def test_a_deck_without_a_range_is_refused_with_the_curves_that_reach_farther(self):
+        self.wall(('temperature_range = ["20 degC", "800 degC"]', "#"))
+        said = self.pyroclast("check", "wall.toml", code=1).stderr
+        for line in said.splitlines():
+            self.assertIn('heat.temperature_range = ["20 degC", "800 degC"]', line)
+        self.assertIn("materials.mortar.E: is given from 20 to 800 degC, but the run needs it from 20 to 1005.99 degC; "
+                      "curves are not extrapolated: en1992_apparent_modulus reaches as far", said)
+        self.assertIn("en1992_siliceous_expansion, en1992_calcareous_expansion reach as far", said)
+
+    def test_no_failure_carries_its_conditions(self):
+        deck = self.wall(('duration = "90 min"', 'duration = "2 min"'))
+        self.pyroclast("run", *deck, "-o", "out")
+        log = (self.folder / "out/run.log").read_text()
+        self.assertIn("no failure of this one specimen of plain concrete in plane stress: no steel, no spalling, no member",
+                      log)
+        results = json.loads((self.folder / "out/summary.json").read_text())["stages"][-1]["results"]
+        self.assertIn("plain concrete in plane stress", results["answer_is"])
+
+
+class Depths(InAFolder):
+    """Depths over time come from rows, and the isotherm begins when its temperature is reached."""
+
+    def wall(self, minutes: int, *changes: str, is_solid: bool = False) -> None:
+        text = (CASES / "thermal_wall.toml").read_text().split("[[probes]]")[0]
+        text += "[output]\nframe_interval = '5 min'\n"
+        if is_solid:
+            text = re.sub('thickness = "1 m".*', 'depth = "40 mm"', text)
+        (self.folder / "wall.toml").write_text(text)
+        words = [word for change in ("blocks.count=200", f"stages[0].duration={minutes} min",
+                                     f"output.frame_interval={minutes} min", *changes) for word in ("--set", change)]
+        self.pyroclast("run", "wall.toml", "--quiet", "--no-figures", "-o", "out", *words)
+        self.history, self.isotherm = self.table("out/history.csv"), self.table("out/isotherm.csv")
+
+    def assert_begins_with_the_face(self):
+        hot = [row["temperature_max_degC"] >= 500.0 for row in self.history].index(True)
+        before, after = (self.history[i]["heating_time_s"] for i in (hot - 1, hot))
+        first = self.isotherm[0]
+        self.assertLessEqual(before, first["heating_time_s"] + 60.0)
+        self.assertGreaterEqual(first["heating_time_s"], before)
+        self.assertEqual(first["depth_500_degC_m"], 0.0)
+        self.assertLess(self.isotherm[1]["depth_500_degC_m"], 1.5e-3)
+
+    def test_isotherm_is_written_without_figures_and_begins_when_the_face_is_there(self):
+        self.wall(30)
+        self.assert_begins_with_the_face()
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["heated_face"], "left")
+        times = {row["heating_time_s"] for row in self.table("out/temperature_profile.csv")}
+        self.assertGreater(len(times), 20)  # of rows, not of the two frames
+
+    def test_the_face_is_the_one_in_the_fire(self):
+        self.wall(30, "heat.boundaries[0].faces=right", "heat.boundaries[1].faces=right", "heat.boundaries[2].faces=left")
+        self.assert_begins_with_the_face()
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["heated_face"], "right")
+
+    def test_no_row_where_the_temperature_is_not_reached(self):
+        self.wall(6)
+        self.assertEqual(self.isotherm, [])
+
+    def test_a_run_without_fields_has_depths_too(self):
+        self.wall(30, "output.fields=false")
+        self.assert_begins_with_the_face()
+
+    def test_a_solid_has_depths_too(self):
+        self.wall(30, "output.fields=false", is_solid=True)
+        self.assert_begins_with_the_face()
+
+
+class OneCommand(InAFolder):
+    def test_a_deck_of_ninety_minutes_stays_within_its_curves(self):
+        for rock, fire, faces in (("quartzite", "iso834", "left,right"), ("limestone", "hydrocarbon", "left"),
+                                  ("basalt", "rws", "right")):
+            with self.subTest(fire):
+                self.pyroclast("concrete", *CONCRETE, "--aggregate", rock, "--fire", fire, "--minutes", "90", "--faces",
+                               faces, "--level", "0.25", "-o", f"{rock}.toml")
+                deck = tomllib.loads((self.folder / f"{rock}-fire.toml").read_text())
+                self.assertEqual([stage["kind"] for stage in deck["stages"]], ["settle", "load", "expose"])
+                self.assertEqual(deck["stages"][1]["level"], 0.25)
+                self.assertEqual({b["faces"] for b in deck["heat"]["boundaries"] if b["kind"] == "radiation"},
+                                 set(faces.split(",")))
+                seen = self.pyroclast("check", f"{rock}-fire.toml").stdout
+                self.assertIn("after 90 min" if fire != "rws" else "leaves heat.temperature_range, 20 to 1200 degC", seen)
+
+    def test_a_deck_runs_to_its_end_from_a_furnace_record(self):
+        (self.folder / "records").mkdir()
+        (self.folder / "records/furnace.csv").write_text("time [s],mean [degC],TC3 [degC]\n0,20,20\n600,700,650\n")
+        fire = ("--fire", "records/furnace.csv", "--columns", "time", "TC3", "--minutes", "10")
+        self.pyroclast("concrete", *CONCRETE, "--aggregate", "granite", *fire, "-o", "mine.toml")
+        self.pyroclast("concrete", *CONCRETE[:8], "--aggregate", "granite", *fire, "--from", "mine.toml", "-o", "2.toml")
+        self.assertEqual(tomllib.loads((self.folder / "2.toml").read_text())["blocks"]["count"], 100)
+        self.pyroclast("run", "2.toml", "--quiet", "--no-figures", "-o", "out", "--set",
+                       "coupling.exchange_increment=40 K")
+
+    def test_what_cannot_be_is_refused_and_nothing_is_written(self):
+        (self.folder / "short.csv").write_text("time [s],T [degC]\n0,20\n600,700\n")
+        for words, told in ((("--fire", "iso"), "--minutes is needed"),
+                            (("--fire", "iso", "--minutes", "90"), "is neither a fire (iso834,"),
+                            (("--fire", "iso834", "--minutes", "400"), "must be a number from 1 to 360"),
+                            (("--fire", "iso834", "--minutes", "90", "--faces", "top"), "--faces \"top\""),
+                            (("--fire", "iso834", "--minutes", "90", "--level", "1.2"), "--level \"1.2\""),
+                            (("--fire", "iso834", "--minutes", "90", "--hot", "400 degC"), "--fire and --hot"),
+                            (("--fire", "short.csv", "--minutes", "90"), "is given from 0 to 600 s")):
+            with self.subTest(told):
+                self.assertIn(told, self.pyroclast("concrete", *CONCRETE, "--aggregate", "granite", *words, "-o",
+                                                   "mine.toml", code=1).stderr)
+                self.assertEqual([file.name for file in self.folder.iterdir()], ["short.csv"])
+
+
+if __name__ == "__main__":
+    unittest.main()
