@@ -72,6 +72,8 @@ def change_cells(path, random):
     drawn = [i for i, name in enumerate(lines[0]) if name in DRAWN]
     column = drawn[random.integers(len(drawn))] if drawn and random.random() < 0.7 else random.integers(len(lines[0]))
     odd = ODD_CELLS[random.integers(len(ODD_CELLS))]
+    if len(lines) == 1:  # a table without rows gets one
+        lines.append(["0"] * len(lines[0]))
     rows = range(1, len(lines)) if random.random() < 0.3 else random.integers(1, len(lines), 3)
     for row in rows:
         lines[row][column] = odd
