@@ -112,13 +112,13 @@ class Changing(FolderTest):
     def test_of_a_run_that_begins_anew_the_page_is_that_of_the_new_one(self):
         run = self.copy(RUNS / "starter")
 
-        def begin_anew(results):
+        def begin_anew(results, _reload_every):
             shutil.rmtree(run)
             (self.copy(RUNS / "compression") / "manifest.json").touch()  # a copy keeps the time
             return "half of one run, half of another"
 
         steps = iter([begin_anew, run_page])
-        with mock.patch("pyroclast.report.run_page", side_effect=lambda results: next(steps)(results)):
+        with mock.patch("pyroclast.report.run_page", side_effect=lambda *words: next(steps)(*words)):
             self.assertIn("5,000 blocks", self.page_of(run).read_text())
         with mock.patch("pyroclast.report.run_page", side_effect=begin_anew), \
                 self.assertRaisesRegex(Error, "begins anew in this folder again and again"):
