@@ -7,18 +7,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pyroclast/base/characters.hpp"
+
 namespace pyroclast {
-namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_previous(b.size() + 1);

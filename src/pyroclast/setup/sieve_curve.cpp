@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
@@ -32,8 +33,7 @@ bool says(const ColumnHeader& column, const ColumnMeaning& what) {
 /// Tells whether a column has the shares that its sieve and all larger ones retain.
 bool is_sum_retained(const ColumnHeader& column) {
   if (!says(column, meaning::retained)) return false;
-  std::string name = column.written;
-  for (char& c : name) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const std::string name = lower_case(column.written);
   return std::ranges::any_of(std::array<std::string_view, 6>{"cum", "kum", "total", "summe", "gesamt", "Σ"},
                              [&](std::string_view word) { return name.find(word) != name.npos; });
 }

@@ -109,11 +109,8 @@ bool is_capital(char c) {
 
 /// Returns one character as it stands, a longer word in small letters.
 std::string folded(std::string_view word) {
-  std::string text(word);
   const auto count = std::ranges::count_if(word, [](char c) { return (c & 0xC0) != 0x80; });
-  if (count > 1)
-    for (char& c : text) c = static_cast<char>(is_capital(c) ? c - 'A' + 'a' : c);
-  return text;
+  return count > 1 ? lower_case(word) : std::string(word);
 }
 
 /// Splits a name into words, without digits: "xCenter_1" is x and center.

@@ -191,8 +191,7 @@ bool is_ratio(std::string_view text) {
 /// Tells whether a word means a share or may mean one: "percent", "mstrain", "permil", "ppt", "x1000".
 bool may_be_share(std::string_view word) {
   if (!share_unit(word).empty()) return true;
-  std::string text(word);
-  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const std::string text = lower_case(word);
   for (const std::string_view begin :
        {"permil", "promil", "percen", "procen", "prozen", "milli", "micro", "pp"})
     if (text.starts_with(begin)) return true;

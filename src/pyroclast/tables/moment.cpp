@@ -199,7 +199,7 @@ std::optional<DateOrder> order_of_letters(std::string_view text) {
   std::string letters;
   char before = '\0';
   for (const char c : text) {
-    const char small = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    const char small = lower_case(c);
     const char part = small == 'j' ? 'y' : small == 't' ? 'd' : small;  // Jahr, Tag
     if (part != before && std::string_view("-/.").find(part) == std::string_view::npos) letters += part;
     before = part;

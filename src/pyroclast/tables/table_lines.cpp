@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/base/shown.hpp"
@@ -59,9 +60,7 @@ bool is_comment(std::string_view line) {
 /// Returns the delimiter of "sep=;", as spreadsheets write and read it.
 std::optional<char> stated_delimiter(std::string_view line) {
   if (line.starts_with('"') && line.ends_with('"') && line.size() > 1) line = line.substr(1, line.size() - 2);
-  std::string word(line.substr(0, 4));
-  for (char& c : word) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return word == "sep=" && line.size() == 5 ? std::optional(line[4]) : std::nullopt;
+  return lower_case(line.substr(0, 4)) == "sep=" && line.size() == 5 ? std::optional(line[4]) : std::nullopt;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/characters.hpp"
 #include "pyroclast/base/nearest.hpp"
 
 namespace pyroclast {
@@ -97,11 +98,6 @@ const std::vector<Spelling>& spellings() {
   return all;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return text;
-}
-
 /// Unit of a share, with the texts that mean it and nothing else.
 struct ShareUnit {
   std::string_view unit;
@@ -152,7 +148,7 @@ std::string plain_share(std::string_view text) {
     plain += mark == kMarks.end() ? text.substr(0, 1) : mark->second;
     text.remove_prefix(mark == kMarks.end() ? 1 : mark->first.size());
   }
-  plain = lower(std::move(plain));
+  plain = lower_case(plain);
   return plain.starts_with("x10") || plain.starts_with("*10") ? plain.substr(1) : plain;
 }
 
@@ -223,7 +219,8 @@ std::string_view meant_spelling(std::string_view given, const Unit& unit) {
   };
   if (const auto same = find([&](const std::string& word) { return word == written; }); !same.empty())
     return same;
-  if (const auto same = find([&](const std::string& word) { return lower(word) == lower(written); });
+  if (const auto same =
+          find([&](const std::string& word) { return lower_case(word) == lower_case(written); });
       !same.empty())
     return same;
   const auto near = nearest(written, words);
