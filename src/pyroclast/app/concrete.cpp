@@ -54,9 +54,9 @@ constexpr double kSizeOfCases = 3e-3, kStepOfCases = 10e-6;
 constexpr double kRateInSpace = 5e-3;  ///< 1/s, as in cases/starter_3d.toml
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr const char* kControlled =
-    "velocity = \"0.2 mm/s\"\nfastest_velocity = \"8 mm/s\"\nunbalanced_ratio = 1e-4\nkinetic_over_strain = "
-    "5e-3\n"
-    "platen_difference = 0.01\ndissipation_rate = \"1 1/s\"\nramp_time = \"20 ms\"\nstop_strain = 0.015";
+    "velocity = \"0.2 mm/s\"\nfastest_velocity = \"8 mm/s\"\nunbalanced_ratio = 1e-4\n"
+    "kinetic_over_strain = 5e-3\nplaten_difference = 0.01\ndissipation_rate = \"1 1/s\"\nramp_time = \"20 "
+    "ms\"\nstop_strain = 0.015";
 
 /// Exponent of Fuller's curve P(d) = (d / d_max)^exponent.
 constexpr double kFuller = 0.45;
@@ -629,8 +629,7 @@ int write_concrete(const ConcreteOptions& options) {
   if (asked.is_solid)
     fmt::print(
         "coarse          {:.3g} of the volume: stones from {:.3g} mm on, {:g} blocks; smaller ones belong to "
-        "the "
-        "mortar\n",
+        "the mortar\n",
         asked.fraction, 1e3 * asked.d_min, kBlocksInStone);
   else if (!o.stones.empty() || !asked.passing.sizes.empty())
     fmt::print("coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm\n",

@@ -23,7 +23,7 @@ constexpr double kCurvesEnd = 1200.0;
 // fires, 3.2.3; sides that are not in the fire, radiation included, 3.1.
 constexpr double kConvection = 25.0, kConvectionOfHydrocarbon = 50.0;
 constexpr int kFrames = 18;
-constexpr const char* kLongest = "360";  // min, the end of the standard fires
+constexpr double kLongest = 360.0;  // min, the end of the standard fires
 
 double share_of(const std::string& text) {
   try {
@@ -37,9 +37,9 @@ double share_of(const std::string& text) {
 double minutes_of(const std::string& text) {
   double minutes = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), minutes);
-  if (error != std::errc() || end != text.data() + text.size() || !(minutes >= 1.0 && minutes <= 360.0))
-    throw Error(
-        fmt::format("--minutes \"{}\": must be a number from 1 to {}, the minutes of fire", text, kLongest));
+  if (error != std::errc() || end != text.data() + text.size() || !(minutes >= 1.0 && minutes <= kLongest))
+    throw Error(fmt::format("--minutes \"{}\": must be a number from 1 to {:g}, the minutes of fire", text,
+                            kLongest));
   return minutes;
 }
 
@@ -61,26 +61,21 @@ std::vector<std::string> faces_of(const std::string& text) {
 /// Sets the gas of a fire of the catalogue, or of a furnace record.
 void set_gas(AskedFire& fire, const ConcreteOptions& o, const std::filesystem::path& folder) {
   const std::string name = o.fire == "hydrocarbon" ? "en1991_hydrocarbon" : o.fire;
-  for (const NamedCurve& entry : fire_curves().entries())
-    if (entry.name == name) {
-      if (!o.columns.empty())
-        throw Error("--columns has no meaning beside a standard fire: it is for a furnace record");
-      fire.gas = fmt::format("{{ builtin = \"{}\" }}", name);
-      fire.name = entry.name;
-      fire.convection =
-          name.find("hydrocarbon") == std::string::npos ? kConvection : kConvectionOfHydrocarbon;
-      if (!entry.curve.holds({0.0, 60.0 * fire.minutes}))
-        throw Error(fmt::format("--minutes {:g}: the fire {} is given for {:g} min", fire.minutes, name,
-                                entry.curve.range().upper / 60.0));
-      fire.hottest_gas = entry.curve.maximum(0.0, 60.0 * fire.minutes);
-      return;
-    }
-  if (!std::filesystem::is_regular_file(o.fire)) {
-    std::vector<std::string> names;
-    for (const NamedCurve& entry : fire_curves().entries()) names.push_back(entry.name);
-    throw Error(fmt::format("--fire \"{}\": is neither a fire ({}) nor a file with a furnace record", o.fire,
-                            fmt::join(names, ", ")));
+  if (const NamedCurve* const known = fire_curves().find(name)) {
+    if (!o.columns.empty())
+      throw Error("--columns has no meaning beside a standard fire: it is for a furnace record");
+    fire.gas = fmt::format("{{ builtin = \"{}\" }}", name);
+    fire.name = name;
+    fire.convection = name.find("hydrocarbon") == std::string::npos ? kConvection : kConvectionOfHydrocarbon;
+    if (!known->curve.holds({0.0, 60.0 * fire.minutes}))
+      throw Error(fmt::format("--minutes {:g}: the fire {} is given for {:g} min", fire.minutes, name,
+                              known->curve.range().upper / 60.0));
+    fire.hottest_gas = known->curve.maximum(0.0, 60.0 * fire.minutes);
+    return;
   }
+  if (!std::filesystem::is_regular_file(o.fire))
+    throw Error(fmt::format("--fire \"{}\": is neither a fire ({}) nor a file with a furnace record", o.fire,
+                            fmt::join(fire_curves().names(), ", ")));
   const auto file = std::filesystem::proximate(o.fire, folder.empty() ? "." : folder);
   fire.gas = fmt::format("{{ csv = {}", in_toml(file.generic_string()));
   if (!o.columns.empty()) {
@@ -112,18 +107,17 @@ std::string boundaries(const AskedFire& fire) {
   for (const char* side : {"left", "right"}) {
     if (std::ranges::find(fire.faces, side) == fire.faces.end()) {
       text += fmt::format(
-          "[[heat.boundaries]]          # the air of a room; EN 1991-1-2, radiation included\nfaces = "
-          "\"{}\"\n"
+          "[[heat.boundaries]]          # the air of a room; EN 1991-1-2, radiation included\n"
+          "faces = \"{}\"\n"
           "kind = \"convection\"\ncoefficient = \"9 W/(m2 K)\"\ngas_temperature = \"20 degC\"\n\n",
           side);
       continue;
     }
     text += fmt::format(
-        "[[heat.boundaries]]\nfaces = \"{0}\"\nkind = \"convection\"\ncoefficient = \"{2:g} W/(m2 K)\"  # EN "
-        "1991-1-2\n"
-        "gas_temperature = {1}\n\n[[heat.boundaries]]\nfaces = \"{0}\"\nkind = \"radiation\"\nemissivity = "
-        "0.7  # EN "
-        "1992-1-2\ngas_temperature = {1}\n\n",
+        "[[heat.boundaries]]\nfaces = \"{0}\"\nkind = \"convection\"\n"
+        "coefficient = \"{2:g} W/(m2 K)\"  # EN 1991-1-2\ngas_temperature = {1}\n\n"
+        "[[heat.boundaries]]\nfaces = \"{0}\"\nkind = \"radiation\"\n"
+        "emissivity = 0.7  # EN 1992-1-2\ngas_temperature = {1}\n\n",
         side, fire.gas, fire.convection);
   }
   return text;
@@ -158,11 +152,9 @@ void add_fire_parts(std::map<std::string, std::string>& v, const AskedFire& fire
   v["MORTAR_E"] = modulus_in_fire(v["MORTAR_E"]);
   v["HOT_STRENGTH"] = fmt::format(
       "# Of f_t, f_cm and c; fitted to a siliceous concrete to 600 degC (docs/validation/hot_concrete.md); "
-      "0.01 from\n"
-      "# 765 degC on.\n"
-      "temperature_ratio = {{ expression = \"max(1 - 0.01784*((T-20)/100)^2, 0.01)\", range = [\"20 degC\", "
-      "\"{:g} "
-      "degC\"] }}\n",
+      "0.01 from\n# 765 degC on.\n"
+      "temperature_ratio = {{ expression = \"max(1 - 0.01784*((T-20)/100)^2, 0.01)\", "
+      "range = [\"20 degC\", \"{:g} degC\"] }}\n",
       kCurvesEnd);
   // A furnace record may be hotter than the curves; its specimen then has to stay colder.
   const bool may_pass_curves = fire.hottest_gas == 0.0 || fire.hottest_gas > kCurvesEnd;

@@ -307,15 +307,13 @@ int command_line(int argc, char** argv) {
   concrete
       ->add_option("--blocks", concrete_options.blocks,
                    "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 "
-                   "blocks; 10000 "
-                   "of a cylinder)")
+                   "blocks; 10000 of a cylinder)")
       ->check(whole_number(100, 1000000));
   concrete->add_option("--hot", concrete_options.hot,
                        "Also write a deck of a test at this temperature: --hot '400 degC'");
   auto* fire = concrete->add_option("--fire", concrete_options.fire,
                                     "Also write a deck of a fire: iso834, hydrocarbon, another one of "
-                                    "`pyroclast list fires`, or the file of a "
-                                    "furnace record");
+                                    "`pyroclast list fires`, or the file of a furnace record");
   concrete->add_option("--minutes", concrete_options.minutes, "Minutes of fire: --minutes 90")->needs(fire);
   concrete->add_option("--faces", concrete_options.faces, "Sides in the fire: left, right, or both")
       ->capture_default_str()

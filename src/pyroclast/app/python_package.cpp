@@ -54,9 +54,7 @@ class Strings {
 /// What the package needs; ends messages.
 constexpr auto kNeeded =
     "Python 3.9 or later, for studies 3.11, with NumPy, h5py and Matplotlib is needed; PYROCLAST_PYTHON in "
-    "the environment "
-    "names "
-    "another Python";
+    "the environment names another Python";
 
 /// Python code that runs a module as a program. `@` stands for the module, `?` for what it needs. Python
 /// takes no module from the current folder. While the module loads, Ctrl-C ends it as it ends any program;

@@ -17,15 +17,24 @@ CurveCatalogue::CurveCatalogue(std::string kind, std::vector<NamedCurve> entries
   }
 }
 
-const NamedCurve& CurveCatalogue::at(std::string_view name) const {
+const NamedCurve* CurveCatalogue::find(std::string_view name) const {
   const auto found = std::ranges::find(entries_, name, &NamedCurve::name);
-  if (found != entries_.end()) return *found;
-  std::vector<std::string> names;
-  for (const NamedCurve& entry : entries_) names.push_back(entry.name);
-  const auto meant = nearest(name, names);
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> CurveCatalogue::names() const {
+  std::vector<std::string> all;
+  for (const NamedCurve& entry : entries_) all.push_back(entry.name);
+  return all;
+}
+
+const NamedCurve& CurveCatalogue::at(std::string_view name) const {
+  if (const NamedCurve* found = find(name)) return *found;
+  const std::vector<std::string> allowed = names();
+  const auto meant = nearest(name, allowed);
   throw Error(fmt::format("there is no {} \"{}\"{}; allowed are {}", kind_, name,
-                          meant ? fmt::format(", the nearest is \"{}\"", names[*meant]) : "",
-                          quoted_list(names)));
+                          meant ? fmt::format(", the nearest is \"{}\"", allowed[*meant]) : "",
+                          quoted_list(allowed)));
 }
 
 std::vector<const NamedCurve*> CurveCatalogue::of_property(std::string_view property,

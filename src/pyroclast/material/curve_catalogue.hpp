@@ -32,6 +32,10 @@ class CurveCatalogue {
   /// when there is no curve of this name.
   const NamedCurve& at(std::string_view name) const;
 
+  /// Returns the curve of a name; none where there is no such curve.
+  const NamedCurve* find(std::string_view name) const;
+  std::vector<std::string> names() const;
+
   /// Returns the curves of a property that hold everywhere in a range.
   std::vector<const NamedCurve*> of_property(std::string_view property, const Interval& range) const;
 

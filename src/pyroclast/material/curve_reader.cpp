@@ -59,14 +59,15 @@ Curve lost_in_part(const Curve& ratio, double share) {
 
 }  // namespace
 
-std::string describe_farther(const ReadCurve& read, const Interval& range, const CurveCatalogue& builtins) {
+std::string describe_farther(std::string_view property, const Interval& range,
+                             const CurveCatalogue& builtins) {
   std::vector<std::string> names;
-  for (const NamedCurve* entry : builtins.of_property(read.property, range)) names.push_back(entry->name);
+  for (const NamedCurve* entry : builtins.of_property(property, range)) names.push_back(entry->name);
   if (names.empty())
-    return read.property.empty()
+    return property.empty()
                ? "give it there too"
                : fmt::format("no built-in curve of a {} reaches as far; give it there too by a table",
-                             read.property);
+                             property);
   return fmt::format("{} {} as far", fmt::join(names, ", "), names.size() == 1 ? "reaches" : "reach");
 }
 
@@ -264,9 +265,7 @@ std::string CurveReader::property_of(const Section& section, std::string_view ke
   const Section forms = section.section(key);
   for (const char* const form : {"builtin", "times"}) {
     if (!forms.ok() || !forms.has(form) || forms.is_table(form)) continue;
-    const std::string name = forms.text(form, "");
-    for (const NamedCurve& entry : builtins_.entries())
-      if (entry.name == name) return entry.property;
+    if (const NamedCurve* const entry = builtins_.find(forms.text(form, ""))) return entry->property;
   }
   return {};
 }
@@ -277,12 +276,12 @@ bool CurveReader::covers(const Section& section, std::string_view key, const Cur
   const bool is_of_time = axis_ == time_axis();
   std::string cure;
   if (axis_ == temperature_axis())
-    cure = fmt::format(": {}{}",
-                       describe_farther({"", "", curve, property_of(section, key)}, needed_, builtins_),
-                       cure_(given));
+    cure =
+        fmt::format(": {}{}", describe_farther(property_of(section, key), needed_, builtins_), cure_(given));
   else if (is_of_time && given.lower > needed_.lower)
-    cure = "; times count from the start of heating: where a record begins there, write start = \"first row\" "
-           "beside csv";
+    cure =
+        "; times count from the start of heating: where a record begins there, write start = \"first row\" "
+        "beside csv";
   section.error(
       key, fmt::format("is given from {:.6g} to {:.6g} {}{}, but the run needs it from {:.6g} to {:.6g} {}; "
                        "curves are not extrapolated{}",

@@ -28,7 +28,9 @@ struct ReadCurve {
 
 /// Names the built-in curves that may stand in the place of a curve and that hold everywhere in a range,
 /// "en1992_apparent_modulus reaches as far"; where there is none, says what to do.
-std::string describe_farther(const ReadCurve& read, const Interval& range, const CurveCatalogue& builtins);
+/// \param property  property of the curve, see NamedCurve; may be empty
+std::string describe_farther(std::string_view property, const Interval& range,
+                             const CurveCatalogue& builtins);
 
 /// Reader of curves in a deck: properties over the temperature, or boundary values over the time. A key holds
 /// one of

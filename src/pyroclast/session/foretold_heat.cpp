@@ -95,8 +95,7 @@ std::string warning_of(const ForetoldHeat& heat, const Setup& setup) {
   const bool is_too_hot = heat.hottest > range.upper - kChange;
   std::string text = fmt::format(
       "by heat alone a temperature leaves heat.temperature_range, {:.6g} to {:.6g} degC, at {} of {} min, "
-      "and the run "
-      "would be broken off there",
+      "and the run would be broken off there",
       range.lower, range.upper, minutes(*heat.leaves_at), minutes(heat.exposure));
   if (!is_too_hot) return text + ": state a wider range";
   const bool is_known = heat.followed >= heat.exposure;
@@ -106,7 +105,7 @@ std::string warning_of(const ForetoldHeat& heat, const Setup& setup) {
   for (const ReadCurve& read : setup.curves)
     if (!read.curve.holds(wanted))
       cures.push_back(fmt::format("{} ends at {:.6g} degC ({})", read.path, read.curve.range().upper,
-                                  describe_farther(read, wanted, builtin_curves())));
+                                  describe_farther(read.property, wanted, builtin_curves())));
   text += is_known ? fmt::format(": end the range at {:.0f} degC", wanted.upper)
                    : std::string(": end the range higher");
   return cures.empty() ? text

@@ -283,15 +283,23 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
   const auto faces = outline(model, zone_geometry(model), takes_part);
   const Box<Dim> specimen = bounding_box(faces, model);
+  struct DrivenFaces {
+    double drive;
+    std::vector<int> faces;
+  };
+  std::vector<DrivenFaces> boundaries;
+  for (const HeatBoundaryCondition& boundary : heat.boundaries)
+    boundaries.push_back({drive_of(boundary.condition, heat.initial, duration),
+                          choose_faces(model, faces, boundary.faces, specimen)});
   std::pair<double, double> most{-1.0, 0.0};  // drive and area
   BoxSide side;
   for (int axis = 0; axis < Dim; ++axis)
     for (const bool is_upper : {false, true})
-      for (const HeatBoundaryCondition& boundary : heat.boundaries) {
+      for (const auto& [drive, chosen] : boundaries) {
         double area = 0.0;
-        for (int face : choose_faces(model, faces, boundary.faces, specimen))
+        for (const int face : chosen)
           if ((is_upper ? 1.0 : -1.0) * faces[face].normal[axis] > kFaces) area += faces[face].area;
-        const std::pair acts{drive_of(boundary.condition, heat.initial, duration), area};
+        const std::pair acts{drive, area};
         if (area == 0.0 || acts.first < most.first) continue;
         // areas of equal sides differ by rounding
         if (acts.first == most.first && !(area > most.second * (1.0 + kSameArea))) continue;
