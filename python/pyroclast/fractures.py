@@ -170,7 +170,7 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
     magnification of displacements: the same in all panels; when None, the largest round one at which, in the
     last panel of each row, 95 % of the gridpoints move by less than 6 % of the height.
     """
-    drawn = _chosen(drawn, style.page().panels)
+    drawn = _chosen(drawn, style.page())
     lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in drawn.rows]
     if magnification is None:
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
@@ -191,13 +191,12 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
     return _draw_lines(drawn, lines, look)
 
 
-def _chosen(drawn: Rows, numbers: Sequence[int]) -> Rows:
+def _chosen(drawn: Rows, page: style.Page) -> Rows:
     """Returns what the page wants of each row. Raises Error where nothing with a frame is left in one."""
-    rows = [(label, [panel for i, panel in enumerate(panels, 1) if not numbers or i in numbers])
-            for label, panels in drawn.rows]
+    rows = [(label, page.kept(panels)) for label, panels in drawn.rows]
     if not all(any(panel.frame for panel in panels) for _, panels in rows):
         raise Error(f"a row has {max(len(panels) for _, panels in drawn.rows)} panels, and none of the numbers "
-                    f"{', '.join(map(str, numbers))}")
+                    f"{', '.join(map(str, page.panels))}")
     return replace(drawn, rows=rows)
 
 

@@ -146,13 +146,8 @@ def _panel(run: Results, frame: Frame) -> Panel:
 @style.in_style
 def temperature_field(run: Results) -> Figure:
     """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
-    frames = _spread(run.heated_frames)
     blocks, page = run.mesh.blocks, style.page()
-    if page.panels:
-        chosen = [frame for i, frame in enumerate(frames, 1) if i in page.panels]
-        if not chosen:
-            raise Error(f"has {len(frames)} panels, and none of the numbers {', '.join(map(str, page.panels))}")
-        frames = chosen
+    frames = page.chosen(_spread(run.heated_frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]

@@ -21,8 +21,8 @@ _PATIENCE = 2.0  # s from the first signal, after which another one ends a progr
 
 
 def load_libraries(is_alone: bool) -> None:
-    """Loads Matplotlib with its own settings. Without this, Matplotlib would look for a matplotlibrc as it loads, in the
-    current folder first.
+    """Loads Matplotlib with its own settings. Without this, Matplotlib would look for a matplotlibrc as it loads, in
+    the current folder first.
 
     is_alone: nothing else runs in this process or is started by it; then HDF5 loads no filters, which are code.
     """

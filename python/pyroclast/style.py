@@ -29,6 +29,7 @@ from .texts import seen_on_a_line
 from .writing import whole
 
 Made = TypeVar("Made")
+_T = TypeVar("_T")
 
 WIDTH = 7.2
 """Width of a page of two columns, inches."""
@@ -91,6 +92,17 @@ class Page:
     def highest(self) -> float:
         """Inches, of a picture."""
         return min(_HIGHEST, _HIGHEST_OF_WIDTH * self.width) if self.is_column else float("inf")
+
+    def kept(self, panels: Sequence[_T]) -> list[_T]:
+        """Returns those panels of a figure that the page wants."""
+        return [panel for i, panel in enumerate(panels, 1) if not self.panels or i in self.panels]
+
+    def chosen(self, panels: Sequence[_T]) -> list[_T]:
+        """Returns `kept`. Raises Error where the page wants others alone."""
+        kept = self.kept(panels)
+        if self.panels and not kept:
+            raise Error(f"has {len(panels)} panels, and none of the numbers {', '.join(map(str, self.panels))}")
+        return kept
 
     def said(self, text: str, short: str) -> str:
         """Returns what a legend says: a short text in a column, where its axes or the caption say the rest."""
@@ -261,7 +273,7 @@ def settle(figure: Figure) -> Figure:
     axes that have a legend on top until it covers nothing. Returns the figure.
     """
     of_page = getattr(figure, "of_page", Page())
-    _choose_panels(figure, of_page.panels)
+    _choose_panels(figure, of_page)
     if not of_page.is_column:
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
@@ -283,16 +295,14 @@ def settle(figure: Figure) -> Figure:
     return figure
 
 
-def _choose_panels(figure: Figure, numbers: Sequence[int]) -> None:
+def _choose_panels(figure: Figure, of_page: Page) -> None:
     """Takes away the panels that the page does not want, and their share of the height. Raises Error where the figure
     has none of those that it wants.
     """
     listed: list[Axes] = getattr(figure, "numbered", [])
-    if not numbers or len(listed) < 2:
+    if not of_page.panels or len(listed) < 2:
         return
-    kept = [axes for i, axes in enumerate(listed, 1) if i in numbers]
-    if not kept:
-        raise Error(f"has {len(listed)} panels, and none of the numbers {', '.join(map(str, numbers))}")
+    kept = of_page.chosen(listed)
     for above, axes in zip(listed, listed[1:] + [listed[-1]]):  # a label below serves all panels above it
         if above in kept and not above.get_xlabel():
             follows = next(one for one in listed[listed.index(axes):] if one.get_xlabel() or one is listed[-1])

@@ -4,8 +4,8 @@ import unicodedata
 
 
 def seen(text: str, kept: str = "\n\t") -> str:
-    """Returns a text in which characters that would act unseen are written out, such as \\x1b. Blanks of any width stay.
-    kept: others that stay.
+    """Returns a text in which characters that would act unseen are written out, such as \\x1b. Blanks of any width
+    stay. kept: others that stay.
     """
     return "".join(c if c.isprintable() or unicodedata.category(c) == "Zs" or c in kept
                    else c.encode("unicode_escape").decode() for c in text)

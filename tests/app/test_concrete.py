@@ -3,7 +3,6 @@
 import csv
 import json
 import math
-import os
 import pathlib
 import re
 import shutil
@@ -12,7 +11,8 @@ import tempfile
 import tomllib
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import PROGRAM, InAFolder
+
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 LIMESTONE = ("--f_c", "45 MPa", "--E", "32 GPa", "--aggregate", "limestone")
 FULLER = ("--fraction", "0.40", "--d_max", "20 mm")
@@ -20,17 +20,7 @@ SIEVES = ("--f_c", "38 MPa", "--E", "30 GPa", "--aggregate", "quartzite", "--sto
           "8 mm=58 %", "16 mm=88 %", "22.4 mm=100 %")
 
 
-class Concrete(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300,
-                              check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done
-
+class Concrete(InAFolder):
     def deck(self, name: str = "mine.toml") -> dict:
         return tomllib.loads((self.folder / name).read_text())
 

@@ -2,38 +2,25 @@
 
 import csv
 import json
-import os
 import pathlib
 import re
-import shutil
-import subprocess
-import tempfile
 import tomllib
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import InAFolder
+
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 CONCRETE = ("--f_c", "38 MPa", "--E", "32 GPa", "--fraction", "0.4", "--d_max", "20 mm", "--blocks", "100",
             "--width", "60 mm", "--height", "120 mm")
 
 
-class InAFolder(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300,
-                              check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done
-
+class InTheFire(InAFolder):
     def table(self, name: str) -> list[dict]:
         with open(self.folder / name, newline="", encoding="utf-8") as file:
             return [{key: float(cell or "nan") for key, cell in row.items()} for row in csv.DictReader(file)]
 
 
-class Foretold(InAFolder):
+class Foretold(InTheFire):
     """Heat alone tells beforehand that the curves end too early; what is said names the cure."""
 
     def wall(self, *changes: tuple[str, str]) -> tuple[str, ...]:
@@ -90,7 +77,7 @@ class Foretold(InAFolder):
         self.assertIn("plain concrete in plane stress", results["answer_is"])
 
 
-class Depths(InAFolder):
+class Depths(InTheFire):
     """Depths over time come from rows, and the isotherm begins when its temperature is reached."""
 
     def wall(self, minutes: int, *changes: str, is_solid: bool = False) -> None:
@@ -138,7 +125,7 @@ class Depths(InAFolder):
         self.assert_begins_with_the_face()
 
 
-class OneCommand(InAFolder):
+class OneCommand(InTheFire):
     def test_a_deck_of_ninety_minutes_stays_within_its_curves(self):
         for rock, fire, faces in (("quartzite", "iso834", "left,right"), ("limestone", "hydrocarbon", "left"),
                                   ("basalt", "rws", "right")):

@@ -71,8 +71,9 @@ def run_page(run: Results, reload_every: float | None = None) -> str:
     facts = [*map(_without_formulas, style.facts_of(run)), *_temperature(run), _tested(run)]
     body = data["body"]
     data["properties"] = _properties(run)
-    return page("run.html", _SCRIPTS, data, reload_every=reload_every, title=run.title, outcome=run.outcome, facts=facts, level=worst(reasons),
-                cards=_cards(run, data), reasons=reasons, notes=notes, stages=_stages(run), has_body=body is not None,
+    return page("run.html", _SCRIPTS, data, reload_every=reload_every, title=run.title, outcome=run.outcome,
+                facts=facts, level=worst(reasons), cards=_cards(run, data), reasons=reasons, notes=notes,
+                stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
                 can_crack=bool(run.moves and run.crack_modes), has_properties=bool(data["properties"]))

@@ -94,7 +94,8 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         complain(error)
         return False
     values = [p.distribution.at(u) for p, u in zip(setup.parameters, found["best"]["u"])]
-    say("best point      " + ", ".join(f"{p.name} = {_shown(v)} {p.unit}".rstrip() for p, v in zip(setup.parameters, values)))
+    say("best point      " + ", ".join(f"{p.name} = {_shown(v)} {p.unit}".rstrip()
+                                       for p, v in zip(setup.parameters, values)))
     units = {output.name: "" if output.unit == "1" else f" {output.unit}" for output in setup.outputs}
     far, doubts = [], found["best"]["doubts"]
     for target, y in zip(setup.targets, found["best"]["y"]):
@@ -111,7 +112,8 @@ def _say_best(study: Study, say: Callable[[str], None]) -> bool:
         for line in far:
             say(f"warning         {line}")
         return True
-    at_end = [f"{p.name} = {_shown(v)}" for p, v, u in zip(setup.parameters, values, found["best"]["u"]) if not 0.0 < u < 1.0]
+    at_end = [f"{p.name} = {_shown(v)}" for p, v, u in zip(setup.parameters, values, found["best"]["u"])
+              if not 0.0 < u < 1.0]
     end = [f"{' and '.join(at_end)}: at the end of the range"] if at_end else []
     in_doubt = [f"{output}: {why}" for output, why in doubts.items()]
     complain(f"the targets are not met: {'; '.join([found['finished'], *end, *far, *in_doubt])}")

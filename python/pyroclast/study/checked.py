@@ -10,20 +10,16 @@ import json
 import subprocess
 import sys
 
-from ..errors import Error
+from ..programs import run_program
 from .hashes import require_unchanged
 from .start import environment
 
 
-def main(words: list[str]) -> int:
-    files = json.loads(words[0])
-    try:
-        require_unchanged(files)
-        return subprocess.run(words[1:], env=environment(files), check=False).returncode
-    except (Error, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+def main(files: dict[str, str], command: list[str]) -> int:
+    """Returns the exit code of the command."""
+    require_unchanged(files)
+    return subprocess.run(command, env=environment(files), check=False).returncode
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run_program(lambda: main(json.loads(sys.argv[1]), sys.argv[2:])))

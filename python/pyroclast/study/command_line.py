@@ -53,7 +53,8 @@ def parser() -> argparse.ArgumentParser:
                        "half and double the block size; the same as `pyroclast converge DECK`")
     converge.add_argument("--seeds", type=_positive, default=3, help="number of specimens of each variant (default: 3)")
     for several in (scatter, converge):
-        several.add_argument("--dry-run", action="store_true", help="tell the number of runs and their time; run nothing")
+        several.add_argument("--dry-run", action="store_true",
+                             help="tell the number of runs and their time; run nothing")
         several.add_argument("--seed", type=int, default=1, help="first seed (default: 1)")
         several.add_argument("--set", action="append", metavar="KEY=VALUE",
                              help="change a key of the deck, or add a key")

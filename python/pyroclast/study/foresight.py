@@ -12,7 +12,8 @@ from ..writing import make_folder
 from .driver import StudyForecast
 from .study import Study
 
-_DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
+_DISK = {"summary": (20e3, "summary"), "history": (700e3, "history too"), "all": (30e6, "whole folder")}
+"""By `keep`: bytes of a run, of the order of those that 5,000 blocks leave, and their name."""
 
 
 def foresee(study: Study, say: Callable[[str], None]) -> None:
@@ -27,9 +28,9 @@ def foresee(study: Study, say: Callable[[str], None]) -> None:
     say_time(study, seen, say)
     if setup.runner.kind == "pyroclast":
         there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
-        say(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
-              f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
-              f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
+        disk, what = _DISK[setup.keep]
+        say(f"disk            about {seen.left * disk / 1e6:.0f} MB to keep of each run its {what}; "
+            f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
 
 
 def say_time(study: Study, seen: StudyForecast, say: Callable[[str], None]) -> None:

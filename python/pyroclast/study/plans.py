@@ -323,7 +323,7 @@ class _ToTargets(_Plan):
         return self._of_targets(answers)[0] if answers.has_all() else None
 
     def _doubts(self, ask: Ask, u: Array) -> dict[str, str]:
-        """By target that is not counted as met at a point (k,): how many of its seeds are in doubt, and why the first is."""
+        """By target that is not counted as met at a point (k,): how many seeds are in doubt, and why the first is."""
         answers = ask(u[None, :], self.study.seeds)
         doubts = {t.output: list(answers.doubts[t.output].values()) for t in self.study.targets}
         return {output: f"{len(texts)} of {len(self.study.seeds)} seeds {'is' if len(texts) == 1 else 'are'} in doubt: "
@@ -413,7 +413,9 @@ class _Secant(_ToTargets):
         error = y.std(axis=0, ddof=1) / math.sqrt(n) if n > 1 else np.full(y.shape[1], math.nan)
         back = np.argsort(self._order)  # from the order of the parameters to that of the targets
         doubts = self._doubts(ask, best)
-        finished = "the means meet all targets, but some values are in doubt" if found.is_met and doubts else found.finished
+        finished = found.finished
+        if found.is_met and doubts:
+            finished = "the means meet all targets, but some values are in doubt"
         return _plain({"finished": finished, "is_met": found.is_met and not doubts, "targets": self._targets,
                        "rounds": {"u": found.points, "y": found.means[:, back]},
                        "best": {"u": best, "y": y.mean(axis=0), "round": found.best, "error": error, "doubts": doubts}})

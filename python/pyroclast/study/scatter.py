@@ -120,7 +120,8 @@ def _change(text: str) -> tuple[str, Any]:
 
 
 def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:
-    lines = [f"result          mean of {seeds} seeds ± half its 95 % interval (Student's t), standard deviation of one specimen"]
+    lines = [f"result          mean of {seeds} seeds ± half its 95 % interval (Student's t), standard deviation of one "
+             "specimen"]
     width = max(map(len, found))
     for name, s in found.items():
         digits = _digits(s)

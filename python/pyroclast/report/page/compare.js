@@ -174,7 +174,8 @@ class ComparePage {
       const x = run.course.of(this.axes.over);
       let best = 0;
       run.frames.forEach((f, k) => {
-        if (!isFinite(x[run.frames[best].row]) || Math.abs(x[f.row] - place) < Math.abs(x[run.frames[best].row] - place)) best = k;
+        const of_best = x[run.frames[best].row];
+        if (!isFinite(of_best) || Math.abs(x[f.row] - place) < Math.abs(of_best - place)) best = k;
       });
       run.frame = best;
       run.specimen.frame = best;

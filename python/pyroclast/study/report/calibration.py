@@ -57,7 +57,8 @@ def sections(seen: Seen) -> list[Section]:
 def standing(found: dict[str, Any]) -> str:
     """Whether a search is done, and why."""
     said = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
-    return " ".join([said, *(f"{output} does not count as met: {why}." for output, why in found["best"]["doubts"].items())])
+    doubts = found["best"]["doubts"].items()
+    return " ".join([said, *(f"{output} does not count as met: {why}." for output, why in doubts)])
 
 
 def generation_size(seen: Seen) -> int:

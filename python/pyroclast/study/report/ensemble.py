@@ -50,7 +50,8 @@ def _sentence(summary: dict[str, Any]) -> str:
     lost = summary["missing"]
     missing = f" {lost} {'runs' if lost > 1 else 'run'} gave no value." if lost else ""
     wanted = ensemble.seeds_for(_SHARE, summary["variation"] or np.nan)
-    more = f" If they go on so, {wanted} seeds give the mean ± {percent(_SHARE)}." if wanted and wanted > summary["n"] else ""
+    is_short = wanted is not None and wanted > summary["n"]
+    more = f" If they go on so, {wanted} seeds give the mean ± {percent(_SHARE)}." if is_short else ""
     return (f"The mean of {summary['n']} seeds is {number(summary['mean'])}, 95 % interval "
             f"{between(summary['low'], summary['high'])}{relative}. Single runs scatter by "
             f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{more}{missing}")

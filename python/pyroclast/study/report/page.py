@@ -98,7 +98,8 @@ def _warnings(seen: Seen) -> Markup:
             said.append(f"{name} is missing in {_counted(len(reasons), 'run')} of {len(seen.rows)}: "
                         f"{Counter(reasons).most_common(1)[0][0]}.")
     if doubted := [row["reason"] for row in seen.rows if row["state"] == DONE and row["reason"]]:
-        said.append(f"{_counted(len(doubted), 'run')} of {len(seen.rows)} gave values to be looked at first: {doubted[0]}.")
+        said.append(f"{_counted(len(doubted), 'run')} of {len(seen.rows)} gave values to be looked at first: "
+                    f"{doubted[0]}.")
     if len(versions := _versions(seen)) > 1:
         said.append(f"The runs are of several physics versions: {', '.join(versions)}.")
     return together(*(element("p", text, class_="warn") for text in said))
