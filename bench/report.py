@@ -26,7 +26,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
-from pyroclast import style  # noqa: E402
+from pyroclast.draw import style  # noqa: E402
 
 _NANO, _MEGA, _GIGA = 1e-9, 1e6, 1e9
 _CASE_ZONES = 27_000  #: as pyroclast_bench names the specimen of cases/compression.toml

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "validation")]
 
 import runs  # noqa: E402
-from pyroclast.results import Results  # noqa: E402
+from pyroclast.stored.results import Results  # noqa: E402
 
 RUNS = ROOT / "runs/hot_concrete"
 HEATED = ROOT / "cases/anderberg_thelandersson.toml"

@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
-from pyroclast.results import Results  # noqa: E402
+from pyroclast.stored.results import Results  # noqa: E402
 
 COLUMNS = ("physics_version", "kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak",
            "quasi_static", "strain_500", "critical_degC", "not_converged", "wall_time_s")

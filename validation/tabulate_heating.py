@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 
-from pyroclast.reference import strain_band  # noqa: E402
-from pyroclast.results import Results  # noqa: E402
+from pyroclast.stored.reference import strain_band  # noqa: E402
+from pyroclast.stored.results import Results  # noqa: E402
 
 TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
 

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pyroclast
-from pyroclast.reference import EXPERIMENT
+from pyroclast.stored.reference import EXPERIMENT
 
 deck = pyroclast.Deck(Path(__file__).parents[2] / "cases" / "starter.toml")
 deck.update(blocks={"count": int(sys.argv[1]) if len(sys.argv) > 1 else 1000})

@@ -24,71 +24,76 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from . import parallel as parallel
-    from . import units as units
     from ._core import Body as Body
     from ._core import commit as commit
     from ._core import instruction_sets as instruction_sets
     from ._core import version as version
-    from .decks import Deck as Deck
     from .errors import DeckError as DeckError
     from .errors import Diagnostic as Diagnostic
     from .errors import Error as Error
-    from .functions import Function as Function
-    from .laws import Law as Law
-    from .results import Results as Results
-    from .results import SpecimenFolder as SpecimenFolder
-    from .results import read as read
-    from .session import Fields as Fields
-    from .session import History as History
-    from .session import Observer as Observer
-    from .session import Run as Run
-    from .session import Sets as Sets
-    from .session import State as State
-    from .session import Views as Views
-    from .specimen import SolidSpecimen as SolidSpecimen
-    from .specimen import Specimen as Specimen
-    from .stages import Key as Key
-    from .stages import Stage as Stage
-    from .stages import Verdict as Verdict
+    from .live import grains as grains
+    from .live import units as units
+    from .live.decks import Deck as Deck
+    from .live.functions import Function as Function
+    from .live.laws import Law as Law
+    from .live.run import Fields as Fields
+    from .live.run import History as History
+    from .live.run import Observer as Observer
+    from .live.run import Run as Run
+    from .live.run import Sets as Sets
+    from .live.run import State as State
+    from .live.run import Views as Views
+    from .live.specimen import SolidSpecimen as SolidSpecimen
+    from .live.specimen import Specimen as Specimen
+    from .live.stages import Key as Key
+    from .live.stages import Stage as Stage
+    from .live.stages import Verdict as Verdict
+    from .live.units import GPa as GPa
+    from .live.units import K as K
+    from .live.units import MPa as MPa
+    from .live.units import N as N
+    from .live.units import Pa as Pa
+    from .live.units import Quantity as Quantity
+    from .live.units import degC as degC
+    from .live.units import hour as hour
+    from .live.units import kN as kN
+    from .live.units import m as m
+    from .live.units import minute as minute
+    from .live.units import mm as mm
+    from .live.units import s as s
+    from .stored.results import Results as Results
+    from .stored.results import SpecimenFolder as SpecimenFolder
+    from .stored.results import read as read
     from .study.study import Study as Study
-    from .units import GPa as GPa
-    from .units import K as K
-    from .units import MPa as MPa
-    from .units import N as N
-    from .units import Pa as Pa
-    from .units import Quantity as Quantity
-    from .units import degC as degC
-    from .units import hour as hour
-    from .units import kN as kN
-    from .units import m as m
-    from .units import minute as minute
-    from .units import mm as mm
-    from .units import s as s
 else:
     # Imported when first asked for: figures must not need the compiled part.
+    _MODULES = {"grains": "live.grains", "parallel": "parallel", "units": "live.units"}
     _PLACES = {
         "_core": ("Body", "commit", "instruction_sets", "version"),
-        "decks": ("Deck",),
         "errors": ("DeckError", "Diagnostic", "Error"),
-        "functions": ("Function",),
-        "laws": ("Law",),
-        "results": ("Results", "SpecimenFolder", "read"),
-        "session": ("Fields", "History", "Observer", "Run", "Sets", "State", "Views"),
-        "specimen": ("SolidSpecimen", "Specimen"),
-        "stages": ("Key", "Stage", "Verdict"),
+        "stored.results": ("Results", "SpecimenFolder", "read"),
+        "live.decks": ("Deck",),
+        "live.functions": ("Function",),
+        "live.laws": ("Law",),
+        "live.run": ("Fields", "History", "Observer", "Run", "Sets", "State", "Views"),
+        "live.specimen": ("SolidSpecimen", "Specimen"),
+        "live.stages": ("Key", "Stage", "Verdict"),
+        "live.units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
         "study.study": ("Study",),
-        "units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
     }
 
     def __getattr__(name):
         import importlib
 
-        if name in ("parallel", "units"):
-            return importlib.import_module(f".{name}", __name__)
-        for module, names in _PLACES.items():
+        if name in _MODULES:
+            return importlib.import_module(f".{_MODULES[name]}", __name__)
+        for place, names in _PLACES.items():
             if name in names:
-                return getattr(importlib.import_module(f".{module}", __name__), name)
+                module = importlib.import_module(f".{place}", __name__)
+                for pictured in {"Results", "Run"}.intersection(names):
+                    importlib.import_module(".display", __name__).give_pictures(getattr(module, pictured))
+                return getattr(module, name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__():
-        return sorted([*globals(), "parallel", *(name for names in _PLACES.values() for name in names)])
+        return sorted([*globals(), *_MODULES, *(name for names in _PLACES.values() for name in names)])

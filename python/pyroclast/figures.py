@@ -35,22 +35,22 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from .comparisons import KINDS, compare_runs, compare_seeds
-from .curves import stress_strain
+from .draw.comparisons import KINDS, compare_runs, compare_seeds
+from .draw.curves import stress_strain
+from .draw.fractures import Rows, fracture, fracture_panels, select_frames, write_counts
+from .draw.heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
+from .draw.heating import convergence, temperature_history, thrust, total_strain
+from .draw.profiles import isotherm, read_profile, temperature_profile
+from .draw.progress import cracks, energy, heating_course, heating_cracks, loading_course
+from .draw.properties import properties, read_properties
+from .draw.records import record_course, record_fracture, records, records_of
+from .draw.sections import gradation, morphology
+from .draw.solid_sections import cracks_inside, plane_section
+from .draw.style import page_of, save
 from .errors import Error
-from .files import GapWarning
-from .fractures import Rows, fracture, fracture_panels, select_frames, write_counts
-from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
-from .heating import convergence, temperature_history, thrust, total_strain
-from .profiles import isotherm, read_profile, temperature_profile
-from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .programs import complain, run_program, say
-from .properties import properties, read_properties
-from .records import record_course, record_fracture, records, records_of
-from .results import Results, SpecimenFolder
-from .sections import gradation, morphology
-from .solid_sections import cracks_inside, plane_section
-from .style import page_of, save
+from .stored.files import GapWarning
+from .stored.results import Results, SpecimenFolder
 from .writing import make_folder, shell_path
 
 if sys.version_info >= (3, 11):

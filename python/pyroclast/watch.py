@@ -44,19 +44,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import style
+from .draw import style
+from .draw.fractures import draw_specimen, fracture_legend
+from .draw.heated_sections import draw_temperature
+from .draw.heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
+from .draw.progress import MINUTES_LABEL, Course, heating_course, loading_course
+from .draw.records import leading, record_course, records_of
+from .draw.style import save
+from .draw.textplot import curve, plain_label
 from .errors import Error
-from .files import GapWarning, Lock, Writer, read_json
-from .fractures import draw_specimen, fracture_legend
-from .heated_sections import draw_temperature
-from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .programs import complain, run_program, say
-from .progress import MINUTES_LABEL, Course, heating_course, loading_course
-from .records import leading, record_course, records_of
 from .report import PAGE, write_page
-from .results import Frame, GrowingResults
-from .style import save
-from .textplot import curve, plain_label
+from .stored.files import GapWarning, Lock, Writer, read_json
+from .stored.frames import Frame
+from .stored.results import GrowingResults
 from .texts import seen_on_a_line
 from .writing import shell_path
 

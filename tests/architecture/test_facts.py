@@ -96,7 +96,7 @@ class ObjectsOfTheMesh(unittest.TestCase):
 
         program = names("src/pyroclast/setup/hdf5_reader.cpp", "kInMesh[]", "};")
         self.assertGreater(len(program), 10)
-        self.assertEqual(program, names("python/pyroclast/files.py", "_IN_MESH = ", "))"))
+        self.assertEqual(program, names("python/pyroclast/stored/files.py", "_IN_MESH = ", "))"))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Imports of the Python package run one way, and a name of a class stands for one thing."""
+"""Imports of the Python package run one way, down its floors, and a name of a class stands for one thing."""
 
 import ast
 import pathlib
@@ -6,32 +6,37 @@ import tempfile
 import unittest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "python" / "pyroclast"
+FLOORS = (
+    ("_core", "errors", "libraries", "parallel", "programs", "texts", "writing"),
+    ("stored",),
+    ("live",),
+    ("draw",),
+    ("display",),
+    ("doctor", "figures", "manual", "report", "study", "watch"),
+    ("",),  # the package itself, which hands names on
+)
+"""From the ground up: the files and folders of the package. A module imports from its own floor and from those below
+it."""
 
 
 def modules(package: pathlib.Path) -> dict[str, pathlib.Path]:
-    """The files of a package, by names such as "study.file"; a package's own is that of its folder, "" at the top."""
+    """Returns the files of a package, stubs of compiled modules among them, by names such as "study.file"; a package
+    has the name of its folder, "" at the top.
+    """
     found = {}
-    for path in sorted(package.rglob("*.py")):
+    for path in sorted([*package.rglob("*.py"), *package.rglob("*.pyi")]):
         parts = path.relative_to(package).with_suffix("").parts
         found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return found
 
 
-def statements(node: ast.AST) -> list[ast.Import | ast.ImportFrom]:
-    """Imports at any depth, but for those that only a type checker sees."""
-    found = []
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
-            found += [entry for other in child.orelse for entry in statements(ast.Module([other], []))]
-        elif isinstance(child, (ast.Import, ast.ImportFrom)):
-            found.append(child)
-        else:
-            found += statements(child)
-    return found
+def statements(tree: ast.AST) -> list[ast.Import | ast.ImportFrom]:
+    """Returns imports at any depth, those that only a type checker sees among them."""
+    return [node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom))]
 
 
 def imports(package: pathlib.Path) -> dict[str, list[str]]:
-    """Which modules of the package each of them imports, in its functions too."""
+    """Returns the modules of the package that each of them imports, in its functions too."""
     there = modules(package)
     found = {}
     for name, path in there.items():
@@ -57,7 +62,7 @@ def imports(package: pathlib.Path) -> dict[str, list[str]]:
 
 
 def circles(package: pathlib.Path) -> list[str]:
-    """Circles of imports, as "a -> b -> a": for each import that closes one, one of the shortest."""
+    """Returns circles of imports, as "a -> b -> a": for each import that closes one, one of the shortest."""
     arrows = imports(package)
     found = set()
     for start, firsts in arrows.items():
@@ -79,10 +84,27 @@ def circles(package: pathlib.Path) -> list[str]:
     return sorted(found)
 
 
+def floor_of(module: str) -> int | None:
+    """Returns the number of a module's floor; None where FLOORS does not have it."""
+    return next((number for number, names in enumerate(FLOORS) if module.split(".")[0] in names), None)
+
+
+def climbs(package: pathlib.Path) -> list[str]:
+    """Returns modules without a floor, and imports from a floor above, as "a: above it stands b"."""
+    found = []
+    for module, named in imports(package).items():
+        floor = floor_of(module)
+        if floor is None:
+            found.append(f"{module}: has no floor; name it in FLOORS")
+            continue
+        found += [f"{module}: above it stands {other}" for other in named if (floor_of(other) or 0) > floor]
+    return found
+
+
 def twice(package: pathlib.Path) -> list[str]:
-    """Classes of one name, as "Name: file, file"; what begins with an underscore is its module's own."""
+    """Returns classes of one name, as "Name: file, file"; what begins with an underscore is its module's own."""
     files: dict[str, list[str]] = {}
-    for path in modules(package).values():
+    for path in sorted(package.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 files.setdefault(node.name, []).append(path.relative_to(package).as_posix())
@@ -111,7 +133,24 @@ class Package(unittest.TestCase):
                  "part/__init__.py": "from . import inner\n", "part/inner.py": "from ..part.other import a\n",
                  "part/other.py": "from .inner import b\n"}
         self.assertEqual(circles(self.package(files)),
-                         ["one -> two -> three -> one", "part.inner -> part.other -> part.inner"])
+                         ["five -> four -> five", "one -> two -> three -> one",
+                          "part.inner -> part.other -> part.inner"])
+
+    def test_imports_go_down_the_floors(self):
+        self.assertEqual(climbs(PACKAGE), [])
+
+    def test_an_import_from_above_is_found_and_so_is_a_file_without_a_floor(self):
+        files = {"errors.py": "", "stored/results.py": "def f():\n    from ..draw import style\n",
+                 "draw/style.py": "from ..errors import Error\nfrom ..stored.results import f\n",
+                 "live/run.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from ..watch import Watch\n",
+                 "watch.py": "", "mine.py": "", "other/new.py": ""}
+        self.assertEqual(climbs(self.package(files)),
+                         ["live.run: above it stands watch", "mine: has no floor; name it in FLOORS",
+                          "other.new: has no floor; name it in FLOORS", "stored.results: above it stands draw.style"])
+
+    def test_figures_import_openly_what_they_draw(self):
+        self.assertEqual([path.name for path in sorted((PACKAGE / "draw").glob("*.py"))
+                          if "TYPE_CHECKING" in path.read_text(encoding="utf-8")], [])
 
     def test_no_class_has_the_name_of_another(self):
         self.assertEqual(twice(PACKAGE), [])

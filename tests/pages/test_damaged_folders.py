@@ -11,9 +11,9 @@ import numpy as np
 from browser import RUNS, FolderTest
 
 from pyroclast.errors import Error
-from pyroclast.files import Table
 from pyroclast.report.run_page import run_page
-from pyroclast.results import Results, read, read_at_once
+from pyroclast.stored.files import Table
+from pyroclast.stored.results import Results, read, read_at_once
 
 _CELLS = "VTKHDF/CellData"
 

@@ -9,7 +9,7 @@ import numpy as np
 from pyroclast.report.bodies import chosen_frames
 from pyroclast.report.packing import packed_floats, packed_steps, packed_whole, unpacked
 from pyroclast.report.shell import page
-from pyroclast.results import Frame
+from pyroclast.stored.frames import Frame
 
 
 class Packing(unittest.TestCase):

@@ -20,7 +20,7 @@ from browser import RUNS, PageTest, begin, browser
 from matplotlib.path import Path
 
 import pyroclast
-from pyroclast.properties import panels, read_properties
+from pyroclast.draw.properties import panels, read_properties
 from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
 

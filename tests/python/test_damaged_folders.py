@@ -25,13 +25,14 @@ sys.path[:0] = [str(HERE), str(PACKAGE)]
 
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
-from pyroclast import figures, style  # noqa: E402
-from pyroclast.comparisons import compare_runs  # noqa: E402
+from pyroclast import figures
+from pyroclast.draw import style  # noqa: E402
+from pyroclast.draw.comparisons import compare_runs  # noqa: E402
+from pyroclast.draw.fractures import fracture_panels  # noqa: E402
+from pyroclast.draw.heated_sections import levels  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
-from pyroclast.files import GapWarning  # noqa: E402
-from pyroclast.fractures import fracture_panels  # noqa: E402
-from pyroclast.heated_sections import levels  # noqa: E402
-from pyroclast.results import Results  # noqa: E402
+from pyroclast.stored.files import GapWarning  # noqa: E402
+from pyroclast.stored.results import Results  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
 
 DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try

@@ -35,21 +35,26 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
 
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
-from pyroclast import figures, reference, style  # noqa: E402
-from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
-from pyroclast.crack_styles import CRACKS, count_cracks, cracked  # noqa: E402
-from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
+from pyroclast import figures
+from pyroclast.draw import style  # noqa: E402
+from pyroclast.draw.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
+from pyroclast.draw.crack_styles import CRACKS, count_cracks, cracked  # noqa: E402
+from pyroclast.draw.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
+from pyroclast.draw.fractures import fracture, fracture_legend, fracture_panels, select_frames  # noqa: E402
+from pyroclast.draw.heated_sections import (ISOTHERMS, frame_near, levels, select_heated_frames,  # noqa: E402
+                                            temperature_field)
+from pyroclast.draw.heating import strain_limits, temperature_history, total_strain  # noqa: E402
+from pyroclast.draw.profiles import read_profile, temperature_profile  # noqa: E402
+from pyroclast.draw.progress import cracks, energy, heating_course, loading_course  # noqa: E402
+from pyroclast.draw.properties import read_properties  # noqa: E402
+from pyroclast.draw.records import record_fracture, records  # noqa: E402
+from pyroclast.draw.sections import morphology  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
-from pyroclast.fractures import fracture, fracture_legend, fracture_panels, select_frames  # noqa: E402
-from pyroclast.heated_sections import ISOTHERMS, frame_near, levels, select_heated_frames, temperature_field  # noqa: E402
-from pyroclast.heating import strain_limits, temperature_history, total_strain  # noqa: E402
-from pyroclast.mesh import specimen_box  # noqa: E402
-from pyroclast.profiles import read_profile, temperature_profile  # noqa: E402
-from pyroclast.progress import cracks, energy, heating_course, loading_course  # noqa: E402
-from pyroclast.properties import read_properties  # noqa: E402
-from pyroclast.records import record_fracture, records  # noqa: E402
-from pyroclast.results import Frame, Results, SpecimenFolder, Table  # noqa: E402
-from pyroclast.sections import morphology  # noqa: E402
+from pyroclast.stored import reference
+from pyroclast.stored.files import Table  # noqa: E402
+from pyroclast.stored.frames import Frame  # noqa: E402
+from pyroclast.stored.mesh import specimen_box  # noqa: E402
+from pyroclast.stored.results import Results, SpecimenFolder  # noqa: E402
 
 
 # A fifth of what users get: what is drawn is the same, and half of the time goes into pictures' compression.

@@ -25,9 +25,9 @@ sys.path[:0] = [str(HERE), str(PACKAGE)]
 
 import pyroclast  # noqa: E402
 import synthetic_run  # noqa: E402
-from pyroclast import fields  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
-from pyroclast.results import GrowingResults, Results  # noqa: E402
+from pyroclast.stored import fields  # noqa: E402
+from pyroclast.stored.results import GrowingResults, Results  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 
 FRAMES = 14

@@ -28,11 +28,11 @@ sys.path[:0] = [str(HERE), str(PACKAGE)]
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from test_figures import png_size  # noqa: E402
-from pyroclast import style  # noqa: E402
+from pyroclast.draw import style  # noqa: E402
+from pyroclast.draw.textplot import curve  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
-from pyroclast.files import GrowingTable, Lock, Writer  # noqa: E402
-from pyroclast.results import Results  # noqa: E402
-from pyroclast.textplot import curve  # noqa: E402
+from pyroclast.stored.files import GrowingTable, Lock, Writer  # noqa: E402
+from pyroclast.stored.results import Results  # noqa: E402
 from pyroclast.watch import PICTURE, Watch  # noqa: E402
 
 DECK = """title = "Watched"

@@ -61,7 +61,7 @@ class Examples(unittest.TestCase):
 class Figures(unittest.TestCase):
     def test_figures_do_not_need_the_compiled_part(self):
         code = ("import sys; sys.modules['pyroclast._core'] = None\n"
-                "import pyroclast.figures, pyroclast.results\n"
+                "import pyroclast.figures, pyroclast.stored.results\n"
                 "try:\n    import pyroclast; pyroclast.Deck\nexcept ImportError: print('no core')")
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         self.assertEqual(done.stdout.strip(), "no core")

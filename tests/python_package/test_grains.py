@@ -11,7 +11,8 @@ import unittest
 import numpy as np
 
 import pyroclast
-from pyroclast import grains, m, mm
+from pyroclast import m, mm
+from pyroclast import grains
 
 MM = ("0 mm", "0 mm", "100 mm", "100 mm")  # corners of a box
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"

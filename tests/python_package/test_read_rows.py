@@ -4,7 +4,8 @@ import unittest
 
 import numpy as np
 
-from pyroclast import _core, files
+from pyroclast import _core
+from pyroclast.stored import files
 
 
 class Rows(unittest.TestCase):

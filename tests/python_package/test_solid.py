@@ -12,7 +12,8 @@ import unittest
 
 import numpy as np
 import pyroclast
-from pyroclast import cut, solid_sections
+from pyroclast.draw import solid_sections
+from pyroclast.stored import cut
 
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"

@@ -9,7 +9,8 @@ import meshio
 import numpy as np
 
 import pyroclast
-from pyroclast import label_image, m, mm
+from pyroclast import m, mm
+from pyroclast.live import label_image
 from small import PROGRAM, Case, deck, plate
 
 SQUARES = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [4, 5, 9, 8], [6, 7, 11, 10], [8, 9, 13, 12], [9, 10, 14, 13],

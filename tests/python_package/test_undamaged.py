@@ -5,7 +5,8 @@ import io
 import unittest
 
 import pyroclast
-from pyroclast import figures, read, report, solid_sections, watch
+from pyroclast import figures, read, report, watch
+from pyroclast.draw import solid_sections
 from small import Case
 
 SHAPES = {3: 'shape = "cylinder"\ndiameter = "60 mm"\nheight = "60 mm"',

@@ -80,7 +80,7 @@ class ReportTest(StudyTest):
     def setUp(self) -> None:
         super().setUp()
         self.model.write_text(MODEL)
-        dots = mock.patch("pyroclast.style.DPI", 40)  # quicker
+        dots = mock.patch("pyroclast.draw.style.DPI", 40)  # quicker
         dots.start()
         self.addCleanup(dots.stop)
 

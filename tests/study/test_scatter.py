@@ -11,7 +11,7 @@ from unittest import mock
 
 import numpy as np
 import pyroclast
-from pyroclast.comparisons import compare_seeds
+from pyroclast.draw.comparisons import compare_seeds
 from pyroclast.errors import Error
 from pyroclast.report import write_page
 from pyroclast.study import converge, scatter

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import Error
-from ..results import is_of_run, read_at_once, runs_in
+from ..stored.results import is_of_run, read_at_once, runs_in
 from ..writing import write_text
 from .compare_page import compare_page
 from .index_page import index_page

@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 import warnings
 
-from ..files import GapWarning
 from ..programs import run_program, say
+from ..stored.files import GapWarning
 from . import write_page
 from .command_line import parser
 

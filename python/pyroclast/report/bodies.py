@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..results import Frame, Results
+from ..stored.frames import Frame
+from ..stored.results import Results
 from .plane_body import PackedBody, body_of
 from .solid_body import solid_body_of
 

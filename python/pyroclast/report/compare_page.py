@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..curves import ends_apart
-from ..deck_differences import DeckPath, differing_keys, tells_nothing, values_of, written
+from ..draw.curves import ends_apart
+from ..draw.style import warnings_of
 from ..errors import Error
-from ..results import Results
-from ..style import warnings_of
+from ..stored.deck_differences import DeckPath, differing_keys, tells_nothing, values_of, written
+from ..stored.results import Results
 from .course import OVER_LOAD
 from .judging import Card, cards, verdict, worst
 from .run_page import MOST_TEXT, run_data

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .. import style
-from ..heating import GAS
-from ..progress import ENERGY_IN, energies_out, extent_of_cracks
-from ..records import abscissa, leading, records_of
-from ..reference import TRANSIENT_STRAIN, strain_band
-from ..results import Results
+from ..draw import style
+from ..draw.heating import GAS
+from ..draw.progress import ENERGY_IN, energies_out, extent_of_cracks
+from ..draw.records import abscissa, leading, records_of
+from ..stored.reference import TRANSIENT_STRAIN, strain_band
+from ..stored.results import Results
 from .marks import Mark, marks
 from .packing import packed_floats
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from ..errors import Error
-from ..results import Results, read, runs_in
+from ..stored.results import Results, read, runs_in
 from .judging import BAD, Card, cards, verdict, worst
 from .markup import Markup, picture
 from .shell import page

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..results import Results
+from ..stored.results import Results
 
 GOOD, DOUBT, BAD = "good", "doubt", "bad"
 _LEVELS = (GOOD, DOUBT, BAD)  # from good to bad

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..progress import extent_of_cracks
-from ..results import Results
+from ..draw.progress import extent_of_cracks
+from ..stored.results import Results
 
 _CRACK_LENGTH = 1.0  # m, of damaged contacts
 _CRACK_SHARE = 0.01  # of the area of all contacts of a solid

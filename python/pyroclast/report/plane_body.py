@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import Error
-from ..files import names_in, read_array
-from ..mesh import Mesh
-from ..results import Frame, Results
+from ..stored.files import names_in, read_array
+from ..stored.mesh import Mesh
+from ..stored.frames import Frame
+from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
 
 MEET = 1e-9  # of the size of a body: points so near to each other are one

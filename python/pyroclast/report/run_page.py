@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import style
+from ..draw import style
+from ..draw.progress import energies_out, extent_of_cracks
+from ..draw.properties import panels, read_properties
 from ..errors import Error
-from ..progress import energies_out, extent_of_cracks
-from ..properties import panels, read_properties
-from ..results import Results, SpecimenFolder
+from ..stored.results import Results, SpecimenFolder
+from .bodies import fitted
 from .course import course_of, rows_of_frames
 from .judging import Card, cards, stage_verdict, verdict, worst
-from .bodies import fitted
 from .shell import page
 
 _SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "outside.js", "specimen.js", "downloads.js",

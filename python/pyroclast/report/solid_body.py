@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ..files import read_array
-from ..mesh import BlockMesh
-from ..results import Frame, Results
+from ..stored.files import read_array
+from ..stored.mesh import BlockMesh
+from ..stored.frames import Frame
+from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
 from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite
 

@@ -7,9 +7,9 @@ import io
 import numpy as np
 from PIL import Image, ImageDraw
 
-from ..crack_styles import cracked, cracks_of
-from ..results import Results
-from ..style import phase_colours
+from ..draw.crack_styles import cracked, cracks_of
+from ..draw.style import phase_colours
+from ..stored.results import Results
 from .plane_body import outline_of
 
 _HEIGHT = 132  # pixels

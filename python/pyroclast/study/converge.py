@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..decks import toml
 from ..errors import Error
+from ..live.decks import toml
 from ..writing import make_folder, write_text
 from .driver import duration
 from .foresight import folder_of_runs

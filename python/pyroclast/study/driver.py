@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..errors import Error
-from ..results import Results
+from ..stored.results import Results
 from ..texts import seen_on_a_line
 from ..writing import write_text
 from .code import StudyCode

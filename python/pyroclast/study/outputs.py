@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import Error
 
 if TYPE_CHECKING:
-    from ..files import Table
+    from ..stored.files import Table
 
 _HISTORY = re.compile(r"(?P<column>\S+)"
                       r"(?: (?P<place>last|largest|least)"
@@ -102,7 +102,7 @@ class Output:
         return math.nan, str(own.get(_because(name, "none")) or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
-        from ..files import Table  # numpy and h5py, which a task that takes no history does without
+        from ..stored.files import Table  # numpy and h5py, which a task that takes no history does without
 
         found = _HISTORY.fullmatch(self._place)
         assert found

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Union
 
-from ..decks import toml
 from ..errors import Error
+from ..live.decks import toml
 
 Value = Union[float, int, str, bool]
 """Of a parameter: a number in its unit, or one of its choices."""

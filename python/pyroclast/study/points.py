@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..decks import toml
 from ..errors import CodeNotAllowed, DeckError, Diagnostic, Error
+from ..live.decks import toml
 from .code import StudyCode, code_of, words_of
 from .file import StudySetup
 from .outputs import Offer, Output

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..comparisons import compare_seeds
+from ..draw.comparisons import compare_seeds
+from ..draw.style import save
 from ..errors import Error
-from ..results import Results
-from ..style import save
+from ..stored.results import Results
 from ..writing import write_text
 from .foresight import folder_of_runs, foresee
 from .methods import ensemble

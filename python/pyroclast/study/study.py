@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from ..decks import is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
+from ..live.decks import is_list_of_tables, table_text, toml
 from .choices import EXECUTORS
 from .code import StudyCode, code_of, require_code, require_options
 from .driver import Driver, StudyForecast, free_cores

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ...style import save
+from ...draw.style import save
 from ...writing import make_folder, write_text
 from ..study import Study
 from . import calibration, ensemble, indices, posterior, responses, secant

@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ... import style
+from ...draw import style
 from ..methods.calibration import NOT_DETERMINED, usual_population
 from ..parameters import Parameter, Value
 from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_value_ticks, output_label, panels,

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from ... import style
+from ...draw import style
 from ..outputs import Output
 from ..parameters import Parameter, Value
 from .seen import numbers

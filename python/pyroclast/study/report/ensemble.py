@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy import stats
 
-from ... import style
+from ...draw import style
 from ..methods import ensemble
 from ..outputs import Output
 from .drawing import output_label

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ... import style
+from ...draw import style
 from ..methods.surrogate import LEAST_Q2
 from ..outputs import Output
 from ..parameters import Parameter

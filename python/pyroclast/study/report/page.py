@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ... import _core
-from ...decks import toml
+from ...live.decks import toml
 from ...report.markup import Markup, element, picture, together
 from ...report.shell import page
 from ..driver import NOT_RUN, duration

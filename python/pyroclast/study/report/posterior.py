@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ... import style
+from ...draw import style
 from ..methods.calibration import NOT_DETERMINED
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, along, ends, grey_patch, legend_above, name_bars, output_label, parameter_label,

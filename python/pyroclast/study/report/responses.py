@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ... import style
+from ...draw import style
 from ..methods import main_effects
 from ..methods.seeds import LEAST
 from ..outputs import Output

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ...errors import Error
 from ...report import write_page
-from ...results import is_of_run
+from ...stored.results import is_of_run
 from ..driver import NOT_RUN
 from ..store import DONE
 from .drawing import output_label

@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ... import style
+from ...draw import style
 from .calibration import residuals_figure, standing
 from .drawing import output_label, panels, parameter_label, value_text
 from .section import PageTable, Section, Shown

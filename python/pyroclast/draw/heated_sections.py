@@ -1,0 +1,241 @@
+"""Pictures of the heated section: fracture at chosen temperatures, and the temperature field."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from ..errors import Error
+from ..stored.mesh import BlockMesh
+from ..stored.frames import Frame
+from ..stored.results import Results
+from . import style
+from .fractures import Panel, Rows, broken_share
+from .sections import draw_scale_bar, frame_section, height_over_width
+from .solid_sections import draw_temperature_cut_open
+
+TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
+"""°C, near which fracture is drawn unless others are asked for."""
+LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
+"""°C, the columns of `levels` unless others are asked for, before the last frame."""
+
+_NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
+_NOTE = "Broken: share of the length, in space of the area, of all contacts that can break."
+_MOST_PANELS = 5
+_FIELDS = 4
+_NARROWEST, _LEAST_WIDTH = 1.5, 0.85  # inches, of a panel in a column: as it stands well, and at least
+_ROOM = 20.0  # °C, from which the colours of temperatures start
+_MEET = 1e-6  # of the size of a body: gridpoints so near to each other are one
+ISOTHERMS = (300.0, 500.0, 700.0)
+"""°C, of the lines in fields of temperature."""
+
+
+def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
+    """The frame nearest to a temperature [°C] on the way up to the hottest; None when none is within 25 K.
+
+    frames: heated ones, in order, at least one.
+    """
+    hottest = max(range(len(frames)), key=lambda i: frames[i].temperature)
+    nearest = min(frames[:hottest + 1], key=lambda frame: abs(frame.temperature - temperature))
+    return nearest if abs(nearest.temperature - temperature) <= _NEAR else None
+
+
+def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
+    """At most five frames: those nearest to TEMPERATURES, the last, and, if the run failed, the one before.
+
+    When these are too many, the coolest go.
+    frames: heated ones, in order, at least one.
+    """
+    last = frames[-1]
+    before = [frame for frame in frames if frame.step < last.step]
+    ends = [*before[-1:], last] if failed else [last]
+    choice = before if failed and before else [*before, last]
+    near = [frame_near(choice, temperature) for temperature in TEMPERATURES]
+    selected = {frame.step: frame for frame in [*near, *ends] if frame}
+    return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
+
+
+def heating_fracture(run: Results, temperatures: Sequence[float] | None = None) -> Rows:
+    """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
+
+    temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
+    when None, as `select_heated_frames` has it.
+    """
+    frames = run.heated_frames
+    if temperatures is None:
+        failed = run.critical_temperature is not None
+        selected = select_heated_frames(frames, failed) if run.uniform else _spread(frames)
+    else:
+        selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
+    panels = [_panel(run, frame) for frame in selected]
+    return Rows([("", panels)], style.title_of(run), _NOTE)
+
+
+def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) -> Frame:
+    frame = frame_near(frames, temperature)
+    if frame is None:
+        reach = [frame.temperature for frame in frames]
+        path = run.folder / "fields" / "frames.csv"
+        raise Error(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
+                       f"frames of the heating are from {min(reach):.0f} to {max(reach):.0f} °C")
+    return frame
+
+
+def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES) -> Rows:
+    """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
+
+    temperatures: °C; a panel stays empty where a run has no frame within 25 K.
+    """
+    if not runs:
+        raise Error("levels: no runs were given")
+    ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
+    rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
+    return Rows(rows, "", _NOTE)
+
+
+def _row_labels(runs: Sequence[Results]) -> list[str]:
+    """Load, and where that does not tell the runs apart also the folder; then warnings."""
+    loads = [style.load_label(run) for run in runs]
+    labels = []
+    for run, load in zip(runs, loads):
+        told_apart = load and loads.count(load) == 1
+        name = load if told_apart else ", ".join(filter(None, [load, run.folder.resolve().name]))
+        labels.append("\n".join([name, *style.warnings_of(run)]))
+    return labels
+
+
+def _row(run: Results, temperatures: Sequence[float]) -> list[Panel]:
+    frames, failed = run.heated_frames, run.critical_temperature is not None
+    choice = frames[:-1] if failed else frames
+    return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
+
+
+def _panel_near(run: Results, frames: Sequence[Frame], temperature: float) -> Panel:
+    if frames and (frame := frame_near(frames, temperature)):
+        return _panel(run, frame)
+    missing = f"no frame within\n{_NEAR:g} K"
+    if run.history.known("temperature_degC", run.standing).max() < temperature - _NEAR:
+        missing = "not reached" if run.critical_temperature is None else "failed before"
+    return Panel(run, None, f"{temperature:g} °C", missing)
+
+
+def _panel(run: Results, frame: Frame) -> Panel:
+    last = frame.step == run.heated_frames[-1].step
+    title, mean = f"{frame.temperature:.0f} °C", ""
+    if not run.uniform and _is_timed(frame):
+        title, mean = f"{frame.heating_time / 60.0:.0f} min", f"mean {title}\n"
+    if last and run.critical_temperature is not None:
+        title = f"failed, {title}"
+    elif last:
+        title = f"end, {title}"
+    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if run.restrained else ""
+    strain = "" if mean and stress else (f"$\\varepsilon_{{\\mathrm{{tot}}}} = "
+                                         f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}$\n")
+    return Panel(run, frame, title, f"{mean}{strain}{stress}broken {100.0 * broken_share(run, frame):.2g} %")
+
+
+@style.in_style
+def temperature_field(run: Results) -> Figure:
+    """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
+    blocks, page = run.mesh.blocks, style.page()
+    frames = page.chosen(_spread(run.heated_frames))
+    fields = [run.gridpoint_temperature(frame) for frame in frames]
+    specimen = blocks.zones[~blocks.of_bearing]
+    within = [field[np.unique(specimen)] for field in fields]
+    scale = _scale_of(within)
+    across = page.fitting(_NARROWEST) if page.is_column else _FIELDS
+    ratio = height_over_width(blocks)
+    while page.is_column and across < len(frames) and page.width / (across + 1) >= _LEAST_WIDTH and \
+            -(-len(frames) // across) * (page.width / (across + 0.4) * ratio + 0.75) + 0.6 > page.highest:
+        across += 1
+    lines = -(-len(frames) // across)
+    panel_height = (page.width / (across + 0.4) - 0.12) * height_over_width(blocks)
+    figure = style.new_figure(lines * (panel_height + 0.75) + 0.35)
+    all_axes = figure.subplots(lines, min(across, len(frames)), squeeze=False).ravel()
+    for axes in all_axes[len(frames):]:
+        axes.axis("off")
+    for axes, frame, field, values in zip(all_axes, frames, fields, within):
+        colours = _draw_temperature(axes, run, field, scale)
+        mean = f"mean {frame.temperature:.0f} °C"
+        axes.set_title(f"{frame.heating_time / 60.0:.0f} min" if _is_timed(frame) else mean, fontweight="bold")
+        axes.set_xlabel((f"{mean}\n" if _is_timed(frame) else "") + f"{values.min():.0f} to {values.max():.0f} °C",
+                        fontsize=page.size(7.0), linespacing=1.4)
+    draw_scale_bar(all_axes[0], blocks)
+    figure.colorbar(colours, ax=list(all_axes), label="Temperature [°C]", shrink=0.8, pad=0.02)
+    figure.suptitle(style.title_of(run), fontsize=page.size(9.0))
+    return figure
+
+
+def _scale_of(fields: Sequence[np.ndarray]) -> Normalize:
+    """From room temperature, or what is cooler, to the hottest."""
+    coolest, hottest = min(field.min() for field in fields), max(field.max() for field in fields)
+    return Normalize(min(_ROOM, coolest), max(_ROOM + 1.0, hottest))
+
+
+def _is_timed(frame: Frame) -> bool:
+    return frame.heating_time is not None and bool(np.isfinite(frame.heating_time))
+
+
+def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
+    """The temperature of the specimen, alone in its axes, coloured up to its hottest. Returns what has the colours."""
+    blocks = run.mesh.blocks
+    field = run.gridpoint_temperature(frame)
+    within = field[np.unique(blocks.zones[~blocks.of_bearing])]
+    colours = _draw_temperature(axes, run, field, _scale_of([within]))
+    draw_scale_bar(axes, blocks)
+    return colours
+
+
+def _spread(frames: Sequence[Frame]) -> list[Frame]:
+    """Up to four of the frames, evenly among those of different temperature, the last among them."""
+    different = [frame for before, frame in zip([None, *frames], frames)
+                 if before is None or frame.temperature != before.temperature]
+    steps = np.linspace(0, len(different) - 1, min(_FIELDS + 1, len(different)))[-_FIELDS:]
+    return [different[round(step)] for step in steps]
+
+
+def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> ScalarMappable:
+    blocks = run.mesh.blocks
+    if blocks.dimension == 3:
+        colours = draw_temperature_cut_open(axes, blocks, field, scale)
+        frame_section(axes, blocks)
+        return colours
+    outlines, material = blocks.outlines
+    of_bearing = np.isin(material, blocks.bearing_materials)
+    bearings = [style.MILLI * blocks.points[outline] for outline, is_one in zip(outlines, of_bearing) if is_one]
+    axes.add_collection(PolyCollection(bearings, color=style.PLATEN_COLOUR, linewidths=0.3, rasterized=True))
+    x, y = style.MILLI * blocks.points.T
+    zones = blocks.zones[~blocks.of_bearing]
+    colours = axes.tripcolor(Triangulation(x, y, zones), field, norm=scale, cmap=style.HEAT_MAP, shading="gouraud",
+                             rasterized=True)
+    frame_section(axes, blocks)
+    _draw_isotherms(axes, blocks, zones, field)
+    return colours
+
+
+def _draw_isotherms(axes: Axes, blocks: BlockMesh, zones: np.ndarray, field: np.ndarray) -> None:
+    """Lines of ISOTHERMS with their temperatures, through all blocks whose gridpoints meet."""
+    within = field[np.unique(zones)]
+    passed = [level for level in ISOTHERMS if within.min() < level < within.max()]
+    if not passed:
+        return
+    # blocks have gridpoints of their own: those in one place become one, so that lines run on from block to block
+    cell = _MEET * np.ptp(blocks.points, axis=0).max()
+    _, first, joined = np.unique(np.round(blocks.points / cell).astype(np.int64), axis=0, return_index=True,
+                                 return_inverse=True)
+    joined = joined.ravel()
+    mean = np.bincount(joined, weights=field) / np.bincount(joined)
+    x, y = style.MILLI * blocks.points[first].T
+    corners = joined[zones]
+    apart = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    lines = axes.tricontour(Triangulation(x, y, corners[apart]), mean, levels=passed, colors=style.BLACK,
+                            linewidths=0.6)
+    for label in axes.clabel(lines, fmt="%g", fontsize=style.page().size(6.0), inline_spacing=1):
+        label.set_clip_on(True)

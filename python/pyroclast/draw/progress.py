@@ -1,0 +1,237 @@
+"""How cracks and energy grow over a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import cycle
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..errors import Error
+from ..stored.results import Results
+from . import style
+
+ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
+              "energy_mass_scaling_J")
+ENERGY_OUT = (
+    ("energy_zones_J", "stored in zones", "#9ecae1", None),
+    ("energy_contacts_J", "stored in contacts", style.BLUE, None),
+    ("energy_kinetic_J", "kinetic", style.BLACK, None),
+    ("dissipated_tension_J", "tension softening", style.VERMILLION, None),
+    ("dissipated_shear_J", "shear softening", style.SHEAR_COLOUR, None),
+    ("dissipated_friction_J", "friction", style.ORANGE, "////"),
+    ("dissipated_compression_J", "crushing", style.YELLOW, None),
+    ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
+    ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
+)
+_LEAST_SHARE = 5e-4  # of the energy turned over, that an energy needs to be drawn and listed
+_MORE_LOSSES = (style.PURPLE, "#8c6d31", "#66c2a4")  # colours
+_MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
+MINUTES_LABEL = "Time of heating [min]"
+_COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
+
+
+@dataclass(frozen=True)
+class Course:
+    """Rows of a run's history, and what they are drawn over."""
+
+    run: Results
+    rows: np.ndarray  #: (rows of the history,) bool
+    over: np.ndarray  #: (n,) in the unit of the label
+    label: str
+    start: float  #: left end of the axis
+    ordered: bool = True  #: False when time stands in for a temperature that also falls
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """(n,) a column of the history."""
+        return self.run.history[name][self.rows]
+
+
+def loading_course(run: Results) -> Course:
+    """The last stage, over strain."""
+    return Course(run, run.loaded, style.PER_MILLE * run.loaded_strain, style.STRAIN_LABEL, start=0.0)
+
+
+def heating_course(run: Results) -> Course:
+    """The heating, over temperature, or over time when the run is `timed` or also cools."""
+    temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
+    if run.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
+        start = run.history.known("heating_time_s", run.heated)[0] / 60.0
+        return Course(run, run.heated, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
+    return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
+
+
+def heating_minutes(run: Results) -> np.ndarray:
+    """Time of heating [min] over the rows of `heated`."""
+    return run.heated_history("heating_time_s") / 60.0
+
+
+def temperature_label(run: Results) -> str:
+    return "Temperature [°C]" if run.uniform else "Mean temperature of the specimen [°C]"
+
+
+@style.in_style
+def cracks(run: Results) -> Figure:
+    """Length of cracks, of a solid their area, by mode over strain, the stress curve behind."""
+    figure, (axes,), below = style.panels(4.8, below=0.16)
+    axes.set_title(style.title_of(run))
+    course = loading_course(run)
+    run.history.known("strain", run.loaded)
+    _draw_stress_behind(axes, course)
+    _draw_extents(axes, course)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel(course.label)
+    style.draw_legend(below, axes, loc="center", ncol=2)
+    return figure
+
+
+@style.in_style
+def heating_cracks(run: Results) -> Figure:
+    """Length of cracks, of a solid their area, by mode, and the mean opening, while heated."""
+    figure, (lengths, opening), below = style.panels(5.4, (1.0, 0.6), below=0.2)
+    lengths.set_title(style.title_of(run))
+    course = heating_course(run)
+    _draw_extents(lengths, course)
+    opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
+    opening.set_ylabel("Mean opening of contacts\ndamaged in tension or mixed mode [µm]")
+    opening.set_ylim(bottom=0.0)
+    opening.sharex(lengths)
+    lengths.tick_params(labelbottom=False)
+    lengths.set_xlim(course.start, np.nanmax(course.over))
+    opening.set_xlabel(course.label)
+    style.draw_legend(below, lengths, loc="center", ncol=2)
+    return figure
+
+
+def extent_of_cracks(run: Results) -> tuple[str, str, str]:
+    """What cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
+    in_space = any(f"{mode}_{interface}_area_m2" in run.history.names for mode, interfaces in run.crack_modes.items()
+                   for interface in interfaces)  # and not a record of that ending
+    return ("Area", "m²", "area_m2") if in_space else ("Length", "m", "length_m")
+
+
+def crack_extent(course: Course, mode: str, is_broken: bool) -> np.ndarray:
+    """(n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage."""
+    ending = ("broken_" if is_broken else "") + extent_of_cracks(course.run)[2]
+    interfaces = course.run.crack_modes.get(mode, [])
+    return sum((course[f"{mode}_{name}_{ending}"] for name in interfaces), np.zeros(len(course.over)))
+
+
+def _draw_extents(axes: Axes, course: Course) -> None:
+    """On a logarithmic axis, on which a tenth of all cracks can be seen: broken as lines, damaged as light areas."""
+    what, unit, _ = extent_of_cracks(course.run)
+    drawn = [(mode, is_broken, crack_extent(course, mode, is_broken)) for is_broken in (False, True)
+             for mode in course.run.crack_modes]
+    drawn = [(mode, is_broken, values) for mode, is_broken, values in drawn if (values > 0.0).any()]
+    axes.set_ylabel(f"{what} of cracks [{unit}]")
+    if not drawn:
+        axes.set_ylim(0.0, 1.0)
+        axes.set_title(f"{axes.get_title()}\nno contact is damaged".lstrip())
+        return
+    axes.set_yscale("log")
+    least = 0.7 * min(values[values > 0.0].min() for *_, values in drawn)
+    for mode, is_broken, values in drawn:
+        colour, seen = _MODE_COLOURS[mode], np.where(values > 0.0, values, np.nan)
+        rows = style.kept(course.over, seen)
+        if is_broken:
+            axes.plot(course.over[rows], seen[rows], color=colour, linewidth=1.8,
+                      label=f"{mode}, " + style.page().said("broken ($D=1$)", "broken"))
+        else:
+            axes.fill_between(course.over[rows], least, seen[rows], color=colour, alpha=0.18, linewidth=0.0,
+                              label=style.page().said(f"{mode}, damaged ($D>0$), the broken among them",
+                                                      f"{mode}, $D>0$"))
+    axes.set_ylim(least, 1.5 * max(np.nanmax(values) for *_, values in drawn))
+
+
+def _draw_stress_behind(axes: Axes, course: Course) -> None:
+    behind = axes.twinx()
+    behind.plot(*style.thinned(course.over, course["stress_MPa"]), color=style.FAINT, linewidth=0.8)
+    behind.set_ylim(bottom=0.0)
+    behind.set_ylabel("Axial stress [MPa]", color="#6a6a6a")
+    behind.tick_params(axis="y", colors="#6a6a6a")
+    behind.grid(False)
+    behind.spines["right"].set_visible(True)
+    axes.set_zorder(behind.get_zorder() + 1)
+    axes.patch.set_visible(False)
+
+
+@style.in_style
+def energy(course: Course) -> Figure:
+    """Where the work went, stacked, against the work put in; below, what the change of properties put in, where
+    properties changed, and the ledger's error.
+
+    Shares are of the energy turned over: all that was put in or taken out, each by its size.
+    """
+    changes = course["energy_property_change_J"]
+    heights = (1.0, 0.45, 0.3) if changes.any() else (1.0, 0.3)
+    figure, all_axes, beside = style.panels(4.8 if len(heights) == 2 else 5.6, heights, beside=0.4)
+    upper, lower = all_axes[0], all_axes[-1]
+    for axes in all_axes[1:]:
+        axes.sharex(upper)
+    for axes in all_axes[:-1]:
+        axes.tick_params(labelbottom=False)
+    figure.suptitle(style.title_of(course.run), fontsize=style.page().size(9.0))
+    parts = [course[name] for name in ENERGY_IN if name in course.run.history]
+    work_in = sum(parts)
+    turned_over = sum(map(np.abs, parts))
+    if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
+        raise Error(f"{course.run.history.path}: no row has all energies that were put in")
+    turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
+    _draw_stack(upper, course, turnover)
+    upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
+               label=style.page().said("work put in (loading,\ngravity, change of\nproperties, mass scaling)",
+                                       "work put in"))
+    upper.set_xlim(course.start, np.nanmax(course.over))
+    if not (work_in < 0.0).any():
+        upper.set_ylim(bottom=0.0)
+    upper.set_ylabel("Energy since the start [J]")
+    handles, labels = upper.get_legend_handles_labels()
+    style.draw_legend(beside, upper, handles[::-1], labels[::-1], loc="upper left", alignment="left",
+                      title=style.page().said("at the end, share of\nthe energy turned over", "share at the end"))
+    if len(all_axes) == 3:
+        all_axes[1].plot(*style.thinned(course.over, changes), color=style.PURPLE, linewidth=1.4)
+        all_axes[1].axhline(0.0, color=style.BLACK, linewidth=0.6)
+        all_axes[1].set_ylabel(style.page().said("Put in by\nthe change of\nproperties [J]",
+                                                 "Changed\nproperties\n[J]"))
+
+    lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
+    lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
+    lower.set_ylabel(style.page().said("Ledger error\n[% of energy\nturned over]", "Ledger\nerror [%]"))
+    lower.set_xlabel(course.label)
+    return figure
+
+
+def energies_out(run: Results) -> list[tuple[str, str, str, str | None]]:
+    """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
+    known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
+    others = [name for name in run.history.names
+              if name.startswith("dissipated_") and name not in {column for column, *_ in ENERGY_OUT}]
+    return known + [(name, name.removeprefix("dissipated_").removesuffix("_J").replace("_", " "), colour, "++")
+                    for name, colour in zip(others, cycle(_MORE_LOSSES))]
+
+
+def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
+    energies = energies_out(course.run)
+    rows, top = np.zeros(len(course.over), dtype=bool), np.zeros_like(course.over)
+    for column, *_ in energies:
+        top = top + course[column]
+        rows |= style.kept(course.over, top)
+    over, below = course.over[rows], np.zeros(np.count_nonzero(rows))
+    for column, name, colour, hatch in energies:
+        values = course[column]
+        if np.nanmax(np.abs(values), initial=0.0) < _LEAST_SHARE * turnover:
+            continue
+        known = values[np.isfinite(values)]
+        name = style.page().said(name, name.removeprefix("stored ").removesuffix(" softening"))
+        axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,
+                          edgecolor="white", linewidth=0.3, label=f"{name}: {_share(known, turnover)}")
+        below = below + values[rows]
+
+
+def _share(known: np.ndarray, turnover: float) -> str:
+    if not len(known):
+        return "not known"
+    share = known[-1] / turnover
+    return f"{100.0 * share:.1f}\u00a0%" if abs(share) >= _LEAST_SHARE else "none left"

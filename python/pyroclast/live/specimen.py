@@ -1,0 +1,548 @@
+"""Specimens from arrays, meshes and labelled images."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Hashable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..errors import Error
+from ..libraries import library
+from ..stored import mesh_cells
+from . import label_image
+from .units import Quantity, length
+
+if TYPE_CHECKING:
+    import meshio
+
+Label = Union[int, str]
+_Core = TypeVar("_Core", _core.Specimen, _core.SolidSpecimen)
+
+_FLAT = 1e-6  # of the size of a mesh: coordinates in single precision are off by up to 6e-8 of it
+_USUAL = (0.01, 10.0)  # width and height of a body, m, as for a deck
+
+
+class _Blocks(Generic[_Core]):
+    """Blocks in the plane or in space: what the core knows of them alike."""
+
+    _core: _Core
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of what blocks can be made of."""
+        return self._core.phases
+
+    @property
+    def phase(self) -> NDArray[np.int32]:
+        """(blocks,): indices into `phases`."""
+        return self._core.phase
+
+    @property
+    def stone(self) -> NDArray[np.int32] | None:
+        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
+        return self._core.stone if len(self._core.stone) else None
+
+    @property
+    def block_size(self) -> NDArray[np.float64] | None:
+        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
+        return np.array(self._core.block_size) if self._core.block_size else None
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of the area that each phase takes [1]; in space of the volume."""
+        return dict(zip(self._core.phases, self._core.shares))
+
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
+        return f"<{type(self).__name__} of {len(self._core.phase)} blocks: {shares}>"
+
+
+class Specimen(_Blocks[_core.Specimen]):
+    """Blocks, and what each is made of. A deck takes one in the place of what it says of the specimen itself:
+
+        deck["specimen"] = pyroclast.Specimen.from_arrays(vertices, cells, labels)
+
+    Its run keeps the blocks in its folder, so that the deck there gives the same run without the script. Arrays are
+    copies, in m.
+    """
+
+    shape = "cells"  #: what a deck calls it
+
+    def __init__(self, core: _core.Specimen, agreement: float | None = None):
+        self._core = core
+        self._agreement = agreement
+
+    @classmethod
+    def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
+                    labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
+                    block_size: ArrayLike | None = None, stone: ArrayLike | None = None,
+                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
+        """A specimen of cells that are made elsewhere.
+
+        vertices: (n, 2), in `unit`.
+        cells: for each the numbers of its vertices in turn, from 0, in either sense; neighbours share vertices.
+        labels: of each cell, the name of its phase, or what `phases` has the name for; an array may have any shape
+            that has one label for each cell, such as (cells, 1).
+        phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
+        block_size: (cells,), in `unit`: size that each was to have, which its contact stiffness follows; None: alike.
+        stone: (cells,): number of the stone of each, from 0, -1: none; a deck's `between_stones` needs it.
+        unit: of the vertices: "m", "mm", ...; None: they are taken in m, with a warning.
+        join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
+            does not have them become corners of it ("1 um"); None: cells share the vertices that they name.
+
+        Each phase needs its tables of [materials] and [contacts]. Where cells leave places free, there are holes;
+        `sides` has what the sides are called. Messages count cells and vertices from 0. Warns of an outline that is
+        not 10 mm to 10 m wide and high.
+
+        Raises Error, naming the cell, where one is not convex, names a vertex that there is not, has a label without a
+        name or does not fit together with its neighbours; and where the cells are not one piece.
+        """
+        unit = _stated(unit, "the vertices")
+        made = _from_cells(vertices, cells, labels, phases, unit, join, () if block_size is None else block_size,
+                           () if stone is None else stone)
+        _warn_of_size(made, f"the vertices are in {_unit_name(unit)}")
+        return cls(made)
+
+    @classmethod
+    def from_meshio(cls, mesh: meshio.Mesh, data: str | None = None, phases: Mapping[Any, str] | None = None, *,
+                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
+        """A specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of triangles
+        and quads of a higher order the corners count, so that their sides are straight.
+
+        data: name of the cell data that label the cells, such as "gmsh:physical"; None: the cell sets say what they
+            are of (`*ELSET` of Abaqus), or where there are none the physical groups of gmsh.
+        phases: the name of each label's phase; a label is a value of the cell data, the name of a cell set or that of
+            a physical group. None: cell sets and physical groups are called as their phases are. Of cell sets those
+            count that are named here.
+        unit: of the points: "m", "mm", ...; a mesh does not say it. None: they are taken in m, with a warning.
+        join: as for `from_arrays`: joins parts of a mesh that do not share points.
+
+        Messages count from 0 the cells that are taken, in their order.
+
+        Raises Error for other cells, for a mesh that does not lie in a plane z = const., for cell data or sets that are
+        not there, for a cell in no set or in two, and as `from_arrays`.
+        """
+        points = np.asarray(mesh.points, float)
+        taken: list[int] = []
+        cells: list[NDArray[Any]] = []
+        for number, block in enumerate(mesh.cells):
+            if (corners := mesh_cells.corners_of_type(block.type)) is None:
+                continue
+            taken.append(number)
+            cells += [np.asarray(cell)[:corners or None] for cell in block.data]
+        size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+        if points.ndim == 2 and points.shape[1] == 3 and len(points) and np.ptp(points[:, 2]) > _FLAT * size:
+            raise Error(f"the mesh does not lie in a plane z = const., to {_FLAT:g} of its size: z goes from "
+                        f"{points[:, 2].min():g} to {points[:, 2].max():g}; turn it into one. A specimen of a mesh is "
+                        f"of the plane; {mesh_cells.IN_SPACE}")
+        labels, names = mesh_cells.labels_of(mesh, data, phases, taken)
+        if not cells:
+            raise Error(f"the mesh has no cells that can be blocks: {', '.join(mesh_cells.KINDS)}")
+        used, numbers = np.unique(np.concatenate(cells), return_inverse=True)
+        ends = np.cumsum([len(cell) for cell in cells])[:-1]
+        unit = _stated(unit, "the points of the mesh")
+        made = _from_cells(points[used.astype(int), :2], np.split(numbers, ends), labels, names, unit, join)
+        _warn_of_size(made, f"the points of the mesh are in {_unit_name(unit)}")
+        return cls(made)
+
+    @classmethod
+    def from_image(cls, image: ArrayLike | str | Path, pixel: str | Quantity, phases: Mapping[Any, str | None], *,
+                   blocks: int, seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
+                   radius_spread: float = 0.0) -> Specimen:
+        """A specimen of Voronoi blocks, each of the phase that most of its pixels are of.
+
+        image: (rows, columns) of labels, the first row on top: the rectangle from [0, 0] to columns and rows times
+            `pixel`. Or the name of a file that holds it: .npy, or .png and .tif of one page whose grey values, or
+            numbers of colours of a palette, are the labels; it is turned as its tag Orientation says. Labels are whole
+            numbers, or texts.
+        pixel: the side of one, with its unit ("0.2 mm").
+        phases: the name of each label's phase. A key may be several labels, as a range, a tuple or a frozenset, or
+            `...` for all labels that have no key: `{0: "mortar", ...: "aggregate"}` names the stones of a watershed.
+            None: there is nothing, so that blocks there are left out, and pieces that do not hang together with the
+            largest.
+        blocks: their number in the rectangle.
+        seed, shortest_edge, relaxation, radius_spread: as a deck's keys of these names.
+
+        Labels that share a phase are stones, each with a number of its own in `stone`, by which a deck's
+        `between_stones` knows them. The label of a phase of one label is none.
+
+        `agreement` tells which share of the image is of the phase of its block. Blocks must be smaller than what they
+        shall show, and larger than a pixel; a smaller one is of the pixel in its middle. Warns of a phase that pixels
+        are of and no block, which keeps its place in `phases`, and of an image that is not 10 mm to 10 m wide and high.
+
+        Raises Error for labels without a name, telling how many pixels have each label and where the first is, for
+        numbers that are not whole, for pixels that are masked or NaN, for an image without anything, and for a file
+        that is no such image.
+        """
+        pixels, source = label_image.pixels_of(image)
+        side = length("pixel", pixel, "0.2 mm")
+        for key, name in phases.items():
+            if name is not None and not isinstance(name, str):
+                raise Error(f"phases: {'...' if key is ... else repr(key)} has the phase {name!r}; it must be a "
+                            "name, or None where there is nothing")
+        names = list(dict.fromkeys(name for name in phases.values() if name is not None))
+        labels, place = label_image.numbered(pixels)
+        keys = label_image.keys_of(labels, place, phases, source)
+        places: dict[str | None, int] = {None: -1} | {name: i for i, name in enumerate(names)}
+        number = np.array([places[phases[key]] for key in keys])  # phase of each label
+        rows, columns = place.shape
+        made = _core.Specimen.rectangle(columns * side, rows * side, blocks, shortest_edge, relaxation, radius_spread,
+                                        seed)
+        seen = _pixels_of_blocks(made, place, side)
+        votes = np.array([np.bincount(number[some] + 1, minlength=len(names) + 1) for some in seen])
+        phase = votes.argmax(axis=1) - 1
+        cells = made.cells
+        if None in phases.values():
+            phase = _one_piece(cells, phase, votes)
+        kept = np.flatnonzero(phase >= 0)
+        if not len(kept):
+            raise Error(f"{source}there is nothing in the image that is as large as a block; it has "
+                        f"{label_image.counted(labels, place)}")
+        alike = float(np.take_along_axis(votes, phase[:, None] + 1, axis=1).sum() / votes.sum())
+        used, numbers = np.unique(np.concatenate([cells[i] for i in kept]), return_inverse=True)
+        ends = np.cumsum([len(cells[i]) for i in kept])[:-1]
+        stone = _stones([seen[i] for i in kept], phase[kept], number, label_image.are_of_stones(keys, phases))
+        whole = _from_cells(made.vertices[used], np.split(numbers, ends), phase[kept], dict(enumerate(names)), "m",
+                            None, stone=stone)
+        for i, name in enumerate(names):
+            if (count := np.count_nonzero(number[place] == i)) and not (phase[kept] == i).any():
+                warnings.warn(f"{source}phase {name!r} is of {count} pixel{'' if count == 1 else 's'} and of no block: "
+                              f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
+        _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
+        return cls(whole, alike)
+
+    @classmethod
+    def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
+        """From a file as `save` writes it, or with another unit in the name of its vertices (`vertices_mm`).
+
+        join: as for `from_arrays`.
+
+        Raises Error, which names the file.
+        """
+        made = _core.Specimen.read(str(file), _join(join))
+        _warn_of_size(made, str(file))
+        return cls(made)
+
+    def save(self, file: str | Path) -> None:
+        """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "cells"` and `file`."""
+        Path(file).write_text(self._core.text(), encoding="utf-8")
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(vertices, 2), m."""
+        return self._core.vertices
+
+    @property
+    def cells(self) -> list[NDArray[np.int32]]:
+        """For each block the numbers of its vertices, counter-clockwise."""
+        return self._core.cells
+
+    @property
+    def area(self) -> float:
+        """m²."""
+        return self._core.area
+
+    @property
+    def extent(self) -> float:
+        """The area, m²; of a `SolidSpecimen` the volume, m³."""
+        return self._core.area
+
+    @property
+    def sides(self) -> list[str]:
+        """What the sides are called: `bottom`, `right`, `top`, `left` of a rectangle along the axes; of another outline
+        `side_1`, `side_2`, ... from its lowest corner on, counter-clockwise; then `hole_1`, ...
+        """
+        return self._core.sides
+
+    @property
+    def agreement(self) -> float | None:
+        """Share of an image that is of the phase of its block [1]; None where there was no image."""
+        return self._agreement
+
+    def to_meshio(self) -> meshio.Mesh:
+        """As polygons in space, z = 0, with the cell data `phase`."""
+        phase, cells = self.phase, self.cells
+        size = np.array([len(cell) for cell in cells])
+        of_size = [np.flatnonzero(size == n) for n in np.unique(size)]
+        points = np.column_stack([self.vertices, np.zeros(len(self.vertices))])
+        polygons = [("polygon", np.array([cells[i] for i in some])) for some in of_size]
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            points, polygons, cell_data={"phase": [phase[some] for some in of_size]})
+        return mesh
+
+
+class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
+    """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them. A
+    deck takes one in the place of what it says of the specimen itself:
+
+        deck["specimen"] = pyroclast.SolidSpecimen.read("cylinder.json")
+
+    Arrays are copies, in m.
+    """
+
+    shape = "polyhedra"  #: what a deck calls it
+
+    def __init__(self, core: _core.SolidSpecimen):
+        self._core = core
+
+    @classmethod
+    def read(cls, file: str | Path, join: str | Quantity | None = None) -> SolidSpecimen:
+        """From a file as `save` writes it; it has no `balls`.
+
+        join: vertices nearer to each other than this length become one, and faces that then have the same corners one
+            face between two blocks ("1 um"); None: blocks share the vertices and faces that the file says.
+
+        Raises Error, which names the file.
+        """
+        return cls(_core.SolidSpecimen.read(str(file), _join(join)))
+
+    def save(self, file: str | Path) -> None:
+        """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "polyhedra"` and `file`."""
+        Path(file).write_text(self._core.text(), encoding="utf-8")
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(vertices, 3), m."""
+        return self._core.vertices
+
+    @property
+    def faces(self) -> list[NDArray[np.int32]]:
+        """For each face the numbers of its vertices, counter-clockwise seen from outside of its first neighbour."""
+        return self._core.faces
+
+    @property
+    def neighbours(self) -> NDArray[np.int32]:
+        """(faces, 2): the blocks on both sides of each face; the second is -1 on the outline."""
+        return self._core.neighbours
+
+    @property
+    def cells(self) -> list[NDArray[np.int32]]:
+        """For each block the numbers of its faces."""
+        return self._core.cells
+
+    @property
+    def volume(self) -> float:
+        """m³."""
+        return self._core.volume
+
+    @property
+    def extent(self) -> float:
+        """The volume, m³; of a `Specimen` the area, m²."""
+        return self._core.volume
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Of the box around it, along x, y and z, m."""
+        return self._core.size
+
+    @property
+    def balls(self) -> NDArray[np.float64]:
+        """(balls, 4): x, y, z and diameter of each aggregate as it was placed, m; none where blocks were read."""
+        return self._core.balls
+
+    @property
+    def sides(self) -> list[str]:
+        """What the sides are called: those of the section, then `front` and `back`; of a cylinder `rim`, `bottom`,
+        `top`.
+        """
+        return self._core.sides
+
+    def to_meshio(self) -> meshio.Mesh:
+        """As polyhedra, with the cell data `phase`; meshio writes them as VTU. Blocks stand in the order of their
+        number of vertices.
+        """
+        faces, own, phase = self.faces, self.cells, self.phase
+        by_size: dict[int, list[int]] = {}
+        for block, cell in enumerate(own):
+            by_size.setdefault(len(np.unique(np.concatenate([faces[i] for i in cell]))), []).append(block)
+        cells = [(f"polyhedron{size}", [[faces[i] for i in own[block]] for block in some])
+                 for size, some in sorted(by_size.items())]
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            self.vertices, cells, cell_data={"phase": [phase[some] for _, some in sorted(by_size.items())]})
+        return mesh
+
+
+def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpecimen:
+    """A specimen that was made, in the plane or in space."""
+    return SolidSpecimen(core) if isinstance(core, _core.SolidSpecimen) else Specimen(core)
+
+
+def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
+                labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None, unit: str | Quantity,
+                join: str | Quantity | None, block_size: ArrayLike = (), stone: ArrayLike = ()) -> _core.Specimen:
+    metres = length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
+    at = np.asarray(vertices, float)
+    if at.ndim != 2 or at.shape[1] != 2:
+        raise Error(f"vertices must be (n, 2), not {at.shape}"
+                    + (f"; {mesh_cells.IN_SPACE}" if at.ndim == 2 and at.shape[1] == 3 else ""))
+    sizes = np.asarray(block_size, float).ravel()
+    if metres != 1.0:
+        at, sizes = (x * metres if metres > 1.0 else x / (1.0 / metres) for x in (at, sizes))  # nearest double of mm
+    stones = np.asarray(stone).ravel()
+    if len(stones) and (stones.dtype.kind not in "iu" or stones.min() < -1 or stones.max() >= 2**31):
+        raise Error("stone must be the number of a stone of each cell, from 0, or -1 for none")
+    rows = [_corners(cell, number) for number, cell in enumerate(cells)]
+    if not rows:
+        raise Error("there are no cells")
+    names, phase = _named(labels, phases, len(rows))
+    first = np.cumsum([0, *map(len, rows)]).astype(np.int32)
+    return _core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase, sizes.tolist(),
+                                     stones.astype(np.int32), _join(join))
+
+
+def _corners(cell: ArrayLike, number: int) -> NDArray[np.int32]:
+    corners = np.asarray(cell)
+    if corners.ndim != 1 or corners.dtype.kind not in "iu":
+        raise Error(f"cell {number} (from 0) must be a list of vertices by their numbers")
+    if len(corners) and not 0 <= corners.min() <= corners.max() < 2**31:
+        raise Error(f"cell {number} (from 0) names vertex {corners.min() if corners.min() < 0 else corners.max()}, "
+                    "which cannot be")
+    return corners.astype(np.int32)
+
+
+def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None,
+           cells: int) -> tuple[list[str], NDArray[np.int32]]:
+    """Names of phases, and of each cell an index into them."""
+    values: list[Any] = labels.ravel().tolist() if isinstance(labels, np.ndarray) else list(labels)
+    if len(values) != cells:
+        shape = f", in shape {labels.shape}" if isinstance(labels, np.ndarray) else ""
+        raise Error(f"there are {cells} cells, but the labels of {len(values)}{shape}")
+    values = [label.item() if isinstance(label, np.ndarray) and label.size == 1 else label for label in values]
+    values = [label[0] if isinstance(label, (list, tuple)) and len(label) == 1 else label for label in values]
+    names = list(dict.fromkeys(label for label in values if isinstance(label, str))
+                 if phases is None else dict.fromkeys(phases.values()))
+    for number, label in enumerate(values):
+        if phases is None and not isinstance(label, str):
+            raise Error(f"cell {number} (from 0) has the label {label!r}; say by phases={{{label!r}: ...}} its name")
+        if phases is not None and (not isinstance(label, Hashable) or label not in phases):
+            raise Error(f"cell {number} (from 0) has the label {label!r}, for which there is no phase; there are "
+                        f"{', '.join(map(repr, phases)) or 'none'}")
+    place = {name: i for i, name in enumerate(names)}
+    return names, np.array([place[label if phases is None else phases[label]] for label in values], np.int32)
+
+
+def _join(join: str | Quantity | None) -> float:
+    return 0.0 if join is None else length("join", join, "1 um")
+
+
+def _stated(unit: str | Quantity | None, what: str) -> str | Quantity:
+    """What is taken where nobody says it."""
+    if unit is None:
+        warnings.warn(f"{what} are taken in m, as no unit is stated; say unit=\"m\", or which it is", stacklevel=3)
+    return unit or "m"
+
+
+def _unit_name(unit: str | Quantity) -> str:
+    return unit if isinstance(unit, str) else unit.unit if unit.value == 1.0 else str(unit)
+
+
+def _warn_of_size(made: _core.Specimen, why: str) -> None:
+    """Warns the caller's caller of an outline that is not as large as specimens are."""
+    width, height = made.size
+    if min(width, height) < _USUAL[0] or max(width, height) > _USUAL[1]:
+        warnings.warn(f"the outline is {width:.6g} m wide and {height:.6g} m high, but usually it is between "
+                      f"{_USUAL[0]:g} and {_USUAL[1]:g} m: {why}", stacklevel=3)
+
+
+def _pixels_of_blocks(made: _core.Specimen, image: NDArray[Any], side: float) -> list[NDArray[Any]]:
+    """Returns for each block the pixels whose middle lies in it; of a block without any that in its middle."""
+    at, rows = made.vertices / side, image.shape[0]
+    seen = []
+    for cell in made.cells:
+        corners = at[cell]
+        low, high = np.floor(corners.min(axis=0)).astype(int), np.ceil(corners.max(axis=0)).astype(int)
+        x, y = (np.arange(low[k], high[k]) + 0.5 for k in (0, 1))
+        edge = np.roll(corners, -1, axis=0) - corners
+        # left of every edge
+        inside = (edge[:, 0, None, None] * (y[:, None] - corners[:, 1, None, None])
+                  >= edge[:, 1, None, None] * (x[None, :] - corners[:, 0, None, None])).all(axis=0)
+        part = image[rows - high[1]:rows - low[1], low[0]:high[0]][::-1]
+        found = part[inside]
+        if not len(found):
+            column, up = corners.mean(axis=0).astype(int)
+            found = image[rows - 1 - up, column:column + 1]
+        seen.append(found)
+    return seen
+
+
+def _stones(seen: list[NDArray[Any]], phase: NDArray[Any], number: NDArray[Any], of_stones: NDArray[Any]) -> ArrayLike:
+    """Returns the stone of each block: the label that most of its pixels of its phase have, counted from 0 among the
+    labels of stones, -1: none. Without such labels there are no stones.
+
+    seen: of each block the places of its pixels' labels
+    number: of each label its phase
+    of_stones: of each label whether it is a stone
+    """
+    if not of_stones.any():
+        return ()
+    stone_of = np.where(of_stones, np.cumsum(of_stones) - 1, -1)
+    stones = []
+    for some, own in zip(seen, phase):
+        labels, counts = np.unique(some[number[some] == own], return_counts=True)
+        stones.append(stone_of[labels[counts.argmax()]] if len(labels) else -1)
+    return np.array(stones)
+
+
+def _one_piece(cells: list[NDArray[np.int32]], phase: NDArray[Any], votes: NDArray[np.int64]) -> NDArray[Any]:
+    """Phases of blocks, -1 for those left out: the largest piece that hangs together by edges. Where two parts of it
+    meet in a point alone, the block between them that has most of a phase is filled in.
+    """
+    phase = phase.copy()
+    around: dict[int, list[int]] = {}
+    sharing: dict[tuple[int, int], list[int]] = {}
+    for i, cell in enumerate(cells):
+        corners = [int(corner) for corner in cell]
+        for a, b in zip(corners, corners[1:] + corners[:1]):
+            around.setdefault(a, []).append(i)
+            sharing.setdefault((min(a, b), max(a, b)), []).append(i)
+    beside: list[set[int]] = [set() for _ in cells]
+    on_edge = set()
+    for (a, b), pair in sharing.items():
+        if len(pair) == 1:
+            on_edge |= {a, b}
+        for i in pair:
+            beside[i] |= set(pair) - {i}
+    while True:
+        seen, best = np.zeros(len(cells), bool), np.array([], int)
+        for start in np.flatnonzero(phase >= 0):
+            if seen[start]:
+                continue
+            seen[start], piece = True, [start]
+            for i in piece:  # grows on the way
+                for j in beside[i]:
+                    if phase[j] >= 0 and not seen[j]:
+                        seen[j] = True
+                        piece.append(j)
+            if len(piece) > len(best):
+                best = np.array(piece)
+        kept = np.zeros(len(cells), bool)
+        kept[best] = True
+        phase[~kept] = -1
+        pinched = [v for v, some in around.items() if _fans(v, [i for i in some if kept[i]], cells) > 1]
+        if not pinched:
+            return phase
+        void = [i for i in around[pinched[0]] if not kept[i]]
+        filled = max(void, key=lambda i: int(votes[i, 1:].max()))
+        if votes[filled, 1:].any():
+            phase[filled] = votes[filled, 1:].argmax()
+        else:
+            phase[filled] = phase[next(i for i in around[pinched[0]] if kept[i])]
+
+
+def _fans(vertex: int, some: list[int], cells: list[NDArray[np.int32]]) -> int:
+    """Into how many groups that hang together by edges the blocks around a vertex fall."""
+    ends = []
+    for i in some:
+        cell = [int(corner) for corner in cells[i]]
+        k = cell.index(vertex)
+        ends.append({cell[k - 1], cell[(k + 1) % len(cell)]})
+    groups: list[set[int]] = []
+    for pair in ends:
+        met = [group for group in groups if group & pair]
+        groups = [group for group in groups if not group & pair] + [pair.union(*met)]
+    return len(groups)

@@ -1,0 +1,1 @@
+"""The files of a run or of a specimen as arrays, which takes NumPy and h5py alone."""
