@@ -10,6 +10,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from pyroclast.stored.compressed import Compressed  # noqa: E402
+from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 
 COLUMNS = ("physics_version", "kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak",
@@ -25,10 +27,10 @@ def row_of(folder: pathlib.Path) -> dict:
                                         "level": level[0] if level else "", "seed": seed,
                                         "steps": summary["steps"], "wall_time_s": round(summary["wall_time_s"])}
     if kind == "compression":
-        result = Results(folder).compression
+        result = Compressed(Results(folder)).results
         return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static")}
-    heating = Results(folder).heating
-    strain, critical = Results(folder).standing_strain((500,))[0], heating["critical_temperature_degC"]
+    heating = Heated(Results(folder)).results
+    strain, critical = Heated(Results(folder)).standing_strain((500,))[0], heating["critical_temperature_degC"]
     return row | {"strain_500": "" if math.isnan(strain) else strain,
                   "not_converged": heating["exchanges_not_converged"],
                   "critical_degC": "" if critical is None else critical}

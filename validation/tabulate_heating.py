@@ -10,6 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 
+from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.reference import strain_band  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 
@@ -32,12 +33,12 @@ def main() -> None:
     names = [f"strain_{t}" for t in TEMPERATURES]
     print("physics_version,variant,level,seed," + ",".join(names) + ",critical_degC,exchanges,not_converged,"
           "worst_ratio,cycles,ledger_error_percent,wall_time_s")
-    for level in sorted({run.load_level for run in runs}):
+    for level in sorted({Heated(run).load_level for run in runs}):
         print(f"none,band,{level:g},," + ",".join(band(level)) + ",,,,,,,")
     for run in runs:
         variant, level, seed = run.folder.name.rsplit("-", 2)
-        strains = 1e3 * run.standing_strain(TEMPERATURES)
-        heating = run.heating
+        strains = 1e3 * Heated(run).standing_strain(TEMPERATURES)
+        heating = Heated(run).results
         critical = heating["critical_temperature_degC"]
         version = run.manifest["physics_version"]
         print(f"{version},{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)

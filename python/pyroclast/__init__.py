@@ -61,6 +61,8 @@ if TYPE_CHECKING:
     from .live.units import minute as minute
     from .live.units import mm as mm
     from .live.units import s as s
+    from .stored.compressed import Compressed as Compressed
+    from .stored.heated import Heated as Heated
     from .stored.results import Results as Results
     from .stored.results import SpecimenFolder as SpecimenFolder
     from .stored.results import read as read
@@ -71,6 +73,8 @@ else:
     _PLACES = {
         "_core": ("Body", "commit", "instruction_sets", "version"),
         "errors": ("DeckError", "Diagnostic", "Error"),
+        "stored.compressed": ("Compressed",),
+        "stored.heated": ("Heated",),
         "stored.results": ("Results", "SpecimenFolder", "read"),
         "live.decks": ("Deck",),
         "live.functions": ("Function",),

@@ -49,7 +49,9 @@ from .draw.solid_sections import cracks_inside, plane_section
 from .draw.style import page_of, save
 from .errors import Error
 from .programs import complain, run_program, say
+from .stored.compressed import Compressed
 from .stored.files import GapWarning
+from .stored.heated import Heated
 from .stored.results import Results, SpecimenFolder
 from .writing import make_folder, shell_path
 
@@ -78,18 +80,19 @@ class Picture:
 def figures_of(run: Results, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[Picture]:
     """The figures that a run has; the arguments are those of `draw_run`."""
+    hot = Heated(run)
     if temperatures is not None and not run.has_fields:
         raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
     if run.moves and not run.has_platens:
         yield from _of_records(run, magnification)
         return
-    if run.exchanged.any():
+    if hot.exchanged.any():
         yield from _of_heating(run, magnification, temperatures)
     elif temperatures is not None:
         raise Error(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
     if not run.moves:
         yield from _of_conduction(run)
-    elif not run.ends_heated:
+    elif not hot.is_last:
         yield from _of_compression(run, magnification)
     if run.moves and records_of(run):
         yield Picture("records", lambda: records(run))
@@ -107,29 +110,31 @@ def _inside(run: Results) -> Iterator[Picture]:
 
 
 def _of_heating(run: Results, magnification: float | None, temperatures: Sequence[float] | None) -> Iterator[Picture]:
-    if run.restrained:
+    hot = Heated(run)
+    if hot.restrained:
         yield Picture("thrust", lambda: thrust(run))
     else:
         yield Picture("total_strain", lambda: total_strain(run))
     yield Picture("heating_cracks", lambda: heating_cracks(run))
     yield Picture("heating_energy", lambda: energy(heating_course(run)))
-    if run.unconverged.any():
+    if hot.unconverged.any():
         yield Picture("convergence", lambda: convergence(run))
-    if run.heats:
+    if hot.heats:
         yield from _of_conduction(run)
     if run.has_fields:
         yield _fractured("heating_fracture", heating_fracture(run, temperatures), magnification)
-        if run.ends_heated:
+        if hot.is_last:
             yield from _inside(run)
 
 
 def _of_records(run: Results, magnification: float | None) -> Iterator[Picture]:
+    hot = Heated(run)
     if records_of(run):
         yield Picture("records", lambda: records(run))
         yield Picture("energy", lambda: energy(record_course(run)))
-    if run.unconverged.any():
+    if hot.unconverged.any():
         yield Picture("convergence", lambda: convergence(run))
-    if run.heats:
+    if hot.heats:
         yield from _of_conduction(run)
     if run.has_fields:
         yield _fractured("fracture", record_fracture(run), magnification)
@@ -148,7 +153,8 @@ def _of_conduction(run: Results) -> Iterator[Picture]:
 
 
 def _of_compression(run: Results, magnification: float | None) -> Iterator[Picture]:
-    marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
+    test = Compressed(run)
+    marks = select_frames(test.frames, *test.peak) if test.frames else {}
     yield Picture("stress_strain", lambda: stress_strain(run, marks))
     yield Picture("cracks", lambda: cracks(run))
     yield Picture("energy", lambda: energy(loading_course(run)))

@@ -44,6 +44,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .display import give_pictures
 from .draw import style
 from .draw.fractures import draw_specimen, fracture_legend
 from .draw.heated_sections import draw_temperature
@@ -57,7 +58,8 @@ from .programs import complain, run_program, say
 from .report import PAGE, write_page
 from .stored.files import GapWarning, Lock, Writer, read_json
 from .stored.frames import Frame
-from .stored.results import GrowingResults
+from .stored.heated import Heated
+from .stored.results import GrowingResults, Results
 from .texts import seen_on_a_line
 from .writing import shell_path
 
@@ -76,6 +78,8 @@ _END_OF_LOG = 8192  # bytes
 _NICENESS = 5
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 
+give_pictures(Results)  # for the run of a Watch
+
 
 @dataclass(frozen=True)
 class _Curve:
@@ -91,7 +95,7 @@ class _Curve:
 
 def _record_curve(run: GrowingResults) -> _Curve:
     """Of a body without platens."""
-    course = heating_course(run) if run.ends_heated else record_course(run)
+    course = heating_course(run) if Heated(run).is_last else record_course(run)
     record = leading(records_of(run))
     if record is None:
         return _Curve(course, course["unbalanced_ratio"], "Unbalanced ratio", "unbalanced ratio", "")
@@ -99,19 +103,20 @@ def _record_curve(run: GrowingResults) -> _Curve:
 
 
 def _curve_of(run: GrowingResults) -> _Curve:
+    hot = Heated(run)
     if not run.moves:
         rows = np.ones(run.history.rows, dtype=bool)
         course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
         return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
     if not run.has_platens:
         return _record_curve(run)
-    if not run.ends_heated:
+    if not hot.is_last:
         course = loading_course(run)
         return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa", has_peak=True)
     course = heating_course(run)
-    if run.restrained:
+    if hot.restrained:
         return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa", has_peak=True)
-    return _Curve(course, style.PER_MILLE * run.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
+    return _Curve(course, style.PER_MILLE * hot.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
 
 
 class Watch:
@@ -220,7 +225,8 @@ class Watch:
         if "temperature_degC" in history and np.isfinite(history["temperature_degC"]).any():
             row = int(np.flatnonzero(np.isfinite(history["temperature_degC"]))[-1])
             mean, low, high = (history[f"temperature_{name}degC"][row] for name in ("", "min_", "max_"))
-            parts.append(f"{mean:.0f} °C" if self.run.uniform else f"mean {mean:.0f} °C, {low:.0f} to {high:.0f} °C")
+            parts.append(f"{mean:.0f} °C" if Heated(self.run).uniform
+                         else f"mean {mean:.0f} °C, {low:.0f} to {high:.0f} °C")
         broken = sum(history[f"{mode}_{interface}_broken"][-1] for mode, interfaces in self.run.crack_modes.items()
                      for interface in interfaces)
         if np.isfinite(broken) and self.run.crack_modes:
@@ -283,7 +289,7 @@ class Watch:
     def _place_of(self, frame: Frame) -> str:
         """At what state a frame was saved."""
         if frame.temperature is not None and np.isfinite(frame.temperature) and frame.heating_time:
-            return f"{'' if self.run.uniform else 'mean '}{frame.temperature:.0f} °C, "
+            return f"{'' if Heated(self.run).uniform else 'mean '}{frame.temperature:.0f} °C, "
         if not np.isfinite(frame.strain):
             return ""
         return f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$, "

@@ -112,6 +112,20 @@ def twice(package: pathlib.Path) -> list[str]:
             if len(some) > 1]
 
 
+def members(package: pathlib.Path, file: str, of: str) -> list[str]:
+    """Returns the public members of a class: its functions, what its body names, and what its functions set."""
+    tree = ast.parse((package / file).read_text(encoding="utf-8"))
+    found = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == of)
+    names = {node.name for node in found.body if isinstance(node, ast.FunctionDef)}
+    for node in ast.walk(found):
+        if isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names |= {target.id for target in targets if isinstance(target, ast.Name) and node in found.body}
+            names |= {target.attr for target in targets if isinstance(target, ast.Attribute)
+                      and isinstance(target.value, ast.Name) and target.value.id == "self"}
+    return sorted(name for name in names if not name.startswith("_"))
+
+
 class Package(unittest.TestCase):
     def package(self, files: dict[str, str]) -> pathlib.Path:
         folder = tempfile.TemporaryDirectory()
@@ -151,6 +165,15 @@ class Package(unittest.TestCase):
     def test_figures_import_openly_what_they_draw(self):
         self.assertEqual([path.name for path in sorted((PACKAGE / "draw").glob("*.py"))
                           if "TYPE_CHECKING" in path.read_text(encoding="utf-8")], [])
+
+    def test_results_are_what_is_in_the_folder(self):
+        # what follows from it has classes of its own: Heated, Compressed
+        self.assertLess(len(members(PACKAGE, "stored/results.py", "Results")), 30)
+
+    def test_members_are_counted(self):
+        files = {"one.py": "class Run:\n    kind = 1\n    _own: int = 2\n    def __init__(self):\n"
+                           "        self.folder = self._secret = 3\n        local = 4\n    def walk(self): pass\n"}
+        self.assertEqual(members(self.package(files), "one.py", "Run"), ["folder", "kind", "walk"])
 
     def test_no_class_has_the_name_of_another(self):
         self.assertEqual(twice(PACKAGE), [])

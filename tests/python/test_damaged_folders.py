@@ -32,6 +32,7 @@ from pyroclast.draw.fractures import fracture_panels  # noqa: E402
 from pyroclast.draw.heated_sections import levels  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.stored.files import GapWarning  # noqa: E402
+from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
 
@@ -187,7 +188,7 @@ class Damaged(unittest.TestCase):
                   if not of_fields or picture.name.endswith("fracture") or picture.name == "temperature"]
         if not of_fields and run.moves:
             choice.append(lambda: compare_runs([run, Results(whole)]))
-        if run.ends_heated:
+        if Heated(run).is_last:
             choice.append(lambda: fracture_panels(levels([run, Results(whole)])))
         for make in random.permutation(np.array(choice, dtype=object))[:FIGURES]:
             figure = make()

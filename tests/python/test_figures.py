@@ -51,8 +51,10 @@ from pyroclast.draw.records import record_fracture, records  # noqa: E402
 from pyroclast.draw.sections import morphology  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.stored import reference
+from pyroclast.stored.compressed import Compressed  # noqa: E402
 from pyroclast.stored.files import Table  # noqa: E402
 from pyroclast.stored.frames import Frame  # noqa: E402
+from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.mesh import specimen_box  # noqa: E402
 from pyroclast.stored.results import Results, SpecimenFolder  # noqa: E402
 
@@ -231,7 +233,7 @@ class CommandsMakePictures(FolderTest):
 
     def test_blocks_that_have_moved_out_are_not_cut_off(self):
         run = Results(self.run_folder)
-        marks = select_frames(run.frames, *run.peak)
+        marks = select_frames(run.frames, *Compressed(run).peak)
         points = run.mesh.blocks.points
 
         def reach(magnification: float) -> float:
@@ -428,7 +430,8 @@ class CracksAndEnergies(HeatedTest):
         self.assertEqual(axes.get_ylabel(), "Length of cracks [m]")
         lines = {line.get_label(): line for line in axes.lines}
         for mode in ("tension", "shear"):
-            length = sum(run.history[f"{mode}_{name}_broken_length_m"] for name in run.crack_modes[mode])[run.loaded]
+            test = Compressed(run)
+            length = sum(test.column(f"{mode}_{name}_broken_length_m") for name in run.crack_modes[mode])
             np.testing.assert_allclose(np.nan_to_num(lines[f"{mode}, broken ($D=1$)"].get_ydata()), length)
         labels = [area.get_label() for area in axes.collections]
         self.assertEqual(len([label for label in labels if "damaged" in label]), 2)
@@ -436,7 +439,7 @@ class CracksAndEnergies(HeatedTest):
     def test_change_of_properties_has_a_panel_of_its_own(self):
         run = Results(self.heated("run"))
         upper, change, error = [axes for axes in energy(heating_course(run)).axes if axes.axison]
-        np.testing.assert_array_equal(change.lines[0].get_ydata(), run.heated_history("energy_property_change_J"))
+        np.testing.assert_array_equal(change.lines[0].get_ydata(), Heated(run).column("energy_property_change_J"))
         self.assertNotIn("alone", " ".join(str(line.get_label()) for line in upper.lines))
         self.assertIn("Ledger", error.get_ylabel())
 
@@ -510,7 +513,8 @@ class FracturePanels(HeatedTest):
 
     def rows(self):
         run = Results(self.run_folder)
-        return fracture(run, select_frames(run.loaded_frames, *run.peak))
+        test = Compressed(run)
+        return fracture(run, select_frames(test.frames, *test.peak))
 
     def test_broken_shear_is_as_wide_as_broken_tension(self):
         widths = {(crack.mode, crack.broken): crack.width for crack in CRACKS}
@@ -583,7 +587,8 @@ class FracturePanels(HeatedTest):
             with h5py.File(file, "r+") as fields:
                 fields["VTKHDF/CellData/tension_damage [1]"][...] = near
         run = Results(folder)
-        rows = fracture(run, select_frames(run.loaded_frames, *run.peak))
+        test = Compressed(run)
+        rows = fracture(run, select_frames(test.frames, *test.peak))
         figure = fracture_panels(rows)
         figure.draw(FigureCanvasAgg(figure).get_renderer())
         body, enlarged, below = figure.axes[:3]
@@ -664,9 +669,10 @@ class WidthOfThePage(HeatedTest):
         folder = self.root / "run"
         synthetic_run.write_run(folder)
         run = Results(folder)
+        test = Compressed(run)
         for shown in (False, True):
             with style.page_of(None, cracks_under_platens=shown):
-                axes = fracture_panels(fracture(run, select_frames(run.loaded_frames, *run.peak))).axes[0]
+                axes = fracture_panels(fracture(run, select_frames(test.frames, *test.peak))).axes[0]
             drawn = sorted(axes.collections, key=lambda one: one.get_zorder())
             over = isinstance(drawn[-1], PolyCollection) and to_rgba(style.PLATEN_COLOUR) in map(tuple, drawn[-1].get_facecolor())
             self.assertEqual(over, not shown)
@@ -1104,38 +1110,38 @@ class HeatedReader(HeatedTest):
     def test_total_strain_is_positive_in_expansion_and_holds_the_loads(self):
         heating = Heating()
         run = Results(self.heated("run", heating))
-        temperature = run.heated_history("temperature_degC")
+        temperature = Heated(run).column("temperature_degC")
         expected = [heating.total_strain(t) for t in temperature]
-        np.testing.assert_allclose(run.total_strain, expected, rtol=0.0, atol=1e-15)
+        np.testing.assert_allclose(Heated(run).total_strain, expected, rtol=0.0, atol=1e-15)
         self.assertEqual(temperature[0], 20.0)
-        self.assertAlmostEqual(run.total_strain[0], -0.225 * 35.0 / 21.5e3, delta=1e-15)
-        self.assertGreater(run.total_strain[-1], 0.0)
+        self.assertAlmostEqual(Heated(run).total_strain[0], -0.225 * 35.0 / 21.5e3, delta=1e-15)
+        self.assertGreater(Heated(run).total_strain[-1], 0.0)
 
     def test_standing_strain_is_that_between_rows_and_none_beyond(self):
         heating = Heating()
         run = Results(self.heated("run", heating))
-        found = run.standing_strain([20.0, 302.5, 900.0])
+        found = Heated(run).standing_strain([20.0, 302.5, 900.0])
         between = 0.5 * (heating.total_strain(300.0) + heating.total_strain(305.0))
         np.testing.assert_allclose(found[:2], [heating.total_strain(20.0), between], rtol=0.0, atol=1e-15)
         self.assertTrue(np.isnan(found[2]))
 
     def test_rows_of_the_heating(self):
         run = Results(self.heated("run"))  # settled and loaded, one row each; 20 to 700 degC in steps of 5 K
-        self.assertEqual((run.history.rows, run.exchanged.sum(), run.heated.sum()), (138, 136, 137))
-        self.assertTrue(run.ends_heated)
-        self.assertEqual({frame.stage for frame in run.heated_frames}, {2})
+        self.assertEqual((run.history.rows, Heated(run).exchanged.sum(), Heated(run).rows.sum()), (138, 136, 137))
+        self.assertTrue(Heated(run).is_last)
+        self.assertEqual({frame.stage for frame in Heated(run).frames}, {2})
 
     def test_load_level(self):
         folder = self.heated("run")
-        self.assertEqual(Results(folder).load_level, 0.225)
-        self.assertIsNone(self.summary_of(folder, load_level=None).load_level)
-        self.assertEqual(self.summary_of(folder, load_level=None, load_stress_MPa=0.0).load_level, 0.0)
+        self.assertEqual(Heated(Results(folder)).load_level, 0.225)
+        self.assertIsNone(Heated(self.summary_of(folder, load_level=None)).load_level)
+        self.assertEqual(Heated(self.summary_of(folder, load_level=None, load_stress_MPa=0.0)).load_level, 0.0)
 
     def test_row_of_the_failure_is_neither_drawn_nor_blamed(self):
         run = Results(self.heated("run", Heating(critical=505.0, unconverged=(40,))))
-        self.assertEqual(run.heated.sum() - run.standing.sum(), 1)
-        self.assertEqual(run.history["temperature_degC"][run.standing][-1], 500.0)
-        self.assertEqual(run.unconverged.sum(), 1)
+        self.assertEqual(Heated(run).rows.sum() - Heated(run).standing.sum(), 1)
+        self.assertEqual(run.history["temperature_degC"][Heated(run).standing][-1], 500.0)
+        self.assertEqual(Heated(run).unconverged.sum(), 1)
         self.assertIn("1 OF 97 EXCHANGES NOT CONVERGED", style.title_of(run))
         self.assertGreater(strain_limits([run], [])[0], -0.6)  # the failure itself goes to -50e-3
 
@@ -1145,22 +1151,22 @@ class HeatedReader(HeatedTest):
 
     def test_compression_after_heating_counts_from_its_start(self):
         run = Results(self.heated("run", Heating(level=0.3, hottest=300.0, compressed=True)))
-        self.assertFalse(run.ends_heated)
-        self.assertAlmostEqual(run.peak[0], synthetic_run.PEAK_STRAIN, delta=1e-12)
-        self.assertAlmostEqual(run.loaded_frames[-1].strain, synthetic_run.LAST_STRAIN, delta=1e-12)
+        self.assertFalse(Heated(run).is_last)
+        self.assertAlmostEqual(Compressed(run).peak[0], synthetic_run.PEAK_STRAIN, delta=1e-12)
+        self.assertAlmostEqual(Compressed(run).frames[-1].strain, synthetic_run.LAST_STRAIN, delta=1e-12)
         # Half of the strength at 20 degC, by the law that makes the run.
-        self.assertAlmostEqual(run.strength_retained, 0.5, delta=1e-12)
+        self.assertAlmostEqual(Compressed(run).strength_retained, 0.5, delta=1e-12)
         # Nothing is put before the first row: the specimen is not at rest there.
-        self.assertEqual(mean_curve([run])[0][0], run.loaded_strain[0])
+        self.assertEqual(mean_curve([run])[0][0], Compressed(run).strain[0])
 
     def test_strength_retained_is_not_guessed(self):
         run = Results(self.heated("run", Heating(level=0.0, hottest=300.0, compressed=True)))
-        self.assertIsNone(run.strength_retained)
+        self.assertIsNone(Compressed(run).strength_retained)
 
     def test_temperatures_of_the_field(self):
         run = Results(self.heated("run", Heating(spread=100.0)))
-        self.assertFalse(run.uniform)
-        blocks, temperature = run.mesh.blocks, run.gridpoint_temperature(run.heated_frames[-1])
+        self.assertFalse(Heated(run).uniform)
+        blocks, temperature = run.mesh.blocks, run.gridpoint_temperature(Heated(run).frames[-1])
         platens = np.unique(blocks.zones[blocks.material == 2])
         np.testing.assert_array_equal(temperature[platens], 20.0)
         self.assertAlmostEqual(temperature.max(), 750.0, delta=1e-3)  # 700 in the mean; written as float32
@@ -1404,9 +1410,9 @@ class Reader(FolderTest):
     def test_settling_is_not_part_of_the_test(self):
         run = Results(self.run_folder)
         self.assertEqual(run.history.rows, 241)
-        self.assertEqual(run.loaded.sum(), 240)
+        self.assertEqual(Compressed(run).rows.sum(), 240)
         self.assertEqual([frame.stage for frame in run.frames[:2]], [0, 1])
-        self.assertEqual(len(run.loaded_frames), len(run.frames) - 1)
+        self.assertEqual(len(Compressed(run).frames), len(run.frames) - 1)
 
     def test_stages_that_moved_the_platen_before_the_last_are_drawn_too(self):
         path = self.run_folder / "history.csv"
@@ -1415,12 +1421,12 @@ class Reader(FolderTest):
         stages = ("settle", "compress", "compress")
         (self.run_folder / "deck.toml").write_text("".join(f'[[stages]]\nkind = "{kind}"\n' for kind in stages))
         run = Results(self.run_folder)
-        np.testing.assert_array_equal(np.flatnonzero(run.loaded_before), np.arange(1, 120))
+        np.testing.assert_array_equal(np.flatnonzero(Compressed(run).before), np.arange(1, 120))
         curve = stress_strain(run, {}).axes[0].lines[0]
         np.testing.assert_allclose(curve.get_ydata(), run.history["stress_MPa"][1:120])
 
     def test_peak(self):
-        strain, stress = Results(self.run_folder).peak
+        strain, stress = Compressed(Results(self.run_folder)).peak
         self.assertAlmostEqual(strain, synthetic_run.PEAK_STRAIN, delta=1e-12)
         self.assertAlmostEqual(stress, synthetic_run.PEAK_STRESS, delta=1e-9)
 

@@ -32,6 +32,7 @@ from pyroclast.draw import style  # noqa: E402
 from pyroclast.draw.textplot import curve  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.stored.files import GrowingTable, Lock, Writer  # noqa: E402
+from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 from pyroclast.watch import PICTURE, Watch  # noqa: E402
 
@@ -169,14 +170,14 @@ class Reading(WatchTest):
 
     def test_the_deck_tells_what_a_run_without_summary_does_not(self):
         synthetic_run.write_heated_run(self.folder, Heating(restrained=True))
-        self.assertTrue(Results(self.folder).restrained)
+        self.assertTrue(Heated(Results(self.folder)).restrained)
         (self.folder / "summary.json").unlink()
         stages = '[[stages]]\nkind = "settle"\n[[stages]]\nkind = "load"\n[[stages]]\nkind = "heat"\nplaten = '
         (self.folder / "deck.toml").write_text(f'title = "Of the deck"\n{stages}"fixed"\n')
-        self.assertTrue(Results(self.folder).restrained)
+        self.assertTrue(Heated(Results(self.folder)).restrained)
         self.assertEqual(Results(self.folder).title, "Of the deck")
         (self.folder / "deck.toml").write_text(f'{stages}"force"\n')
-        self.assertFalse(Results(self.folder).restrained)
+        self.assertFalse(Heated(Results(self.folder)).restrained)
 
 
 class Told(WatchTest):

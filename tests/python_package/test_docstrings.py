@@ -59,9 +59,9 @@ class Docstrings(unittest.TestCase):
             def walk(self):
                 pass
 
-        pyroclast.units.Bare = Bare
-        self.addCleanup(delattr, pyroclast.units, "Bare")
-        self.assertEqual(undocumented("pyroclast.units.Bare"), ["pyroclast.units.Bare.walk"])
+        units.Bare = Bare
+        self.addCleanup(delattr, units, "Bare")
+        self.assertEqual(undocumented("pyroclast.live.units.Bare"), ["pyroclast.live.units.Bare.walk"])
 
 
 if __name__ == "__main__":

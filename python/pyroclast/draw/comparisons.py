@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 
 from ..errors import Error
 from ..stored import reference
+from ..stored.heated import Heated
 from ..stored.results import Results
 from . import style
 from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart, title_together
@@ -55,12 +56,13 @@ def _common_kind(runs: Sequence[Results]) -> str:
 
 
 def _kind(run: Results) -> str:
+    hot = Heated(run)
     if not run.moves:
         raise Error(f"compare: {run.folder} is a run of heat alone, which has no stress and no strain; "
                     "`pyroclast report RUN RUN... --out FILE` draws temperatures of several runs together")
-    if not run.ends_heated:
+    if not hot.is_last:
         return "stress-strain"
-    return "thrust" if run.restrained else "total-strain"
+    return "thrust" if hot.restrained else "total-strain"
 
 
 @dataclass(frozen=True)
@@ -76,13 +78,14 @@ def _by_load(runs: Sequence[Results]) -> list[_Group]:
     """Runs of one load level, or of one stress where the level is not known, lowest first; others alone."""
     together: dict[tuple, list[Results]] = {}
     for run, name in zip(runs, names_apart(runs)):
-        if run.restrained or run.load_stress_MPa is None:
+        hot = Heated(run)
+        if hot.restrained or hot.load_stress_MPa is None:
             key = (2, 0.0, name)
-        elif run.load_level is not None:
-            band = reference.strain_band(run.load_level)
-            key = (0, band.level if band else round(run.load_level, 3), "")
+        elif hot.load_level is not None:
+            band = reference.strain_band(hot.load_level)
+            key = (0, band.level if band else round(hot.load_level, 3), "")
         else:
-            key = (1, round(run.load_stress_MPa, 3), "")
+            key = (1, round(hot.load_stress_MPa, 3), "")
         together.setdefault(key, []).append(run)
     others = cycle(_OTHER_COLOURS)
     return [_Group(style.load_label(together[key][0]) or key[2],
@@ -95,10 +98,11 @@ def _label(group: _Group) -> str:
     if len(group.runs) > 1:
         each = "pale: least to greatest" if len(group.runs) > MANY else "thin: each"
         lines.append(f"mean of {len(group.runs)}; {each}")
-    if failed := sorted(run.critical_temperature for run in group.runs if run.critical_temperature is not None):
+    criticals = [Heated(run).critical_temperature for run in group.runs]
+    if failed := sorted(critical for critical in criticals if critical is not None):
         told = ", ".join(f"{t:.0f}" for t in failed) if len(failed) <= MANY else f"{failed[0]:.0f} to {failed[-1]:.0f}"
         lines.append(f"✖ failed at {told} °C" + (f" ({len(failed)} runs)" if len(failed) > MANY else ""))
-    if missed := sum(int(run.unconverged.sum()) for run in group.runs):
+    if missed := sum(int(Heated(run).unconverged.sum()) for run in group.runs):
         lines.append(f"{missed} EXCHANGE{'S' if missed > 1 else ''} NOT CONVERGED")
     return "\n".join(textwrap.fill(line, 34) for line in lines)
 
@@ -114,7 +118,7 @@ def compare_total_strain(runs: Sequence[Results]) -> Figure:
     groups = _by_load(runs)
     for group in groups:
         asked = not timed and any(reference.TRANSIENT_STRAIN in run.references.builtin for run in group.runs)
-        if asked and (band := reference.strain_band(group.runs[0].load_level)):
+        if asked and (band := reference.strain_band(Heated(group.runs[0]).load_level)):
             bands.append(band)
             draw_band(axes, band, group.colour)
         _draw_group(axes, group, over)
@@ -141,7 +145,7 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
     figure, (axes,), beside = style.panels(4.2, beside=0.42)
     title_together(axes, runs)
     if len(runs) > MANY:
-        draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
+        draw_spread(axes, [(over(run), Heated(run).column("stress_MPa")) for run in runs], style.BLUE)
     else:
         _draw_thrusts(axes, runs, over)
     draw_tables(axes, runs, _over(runs), ("stress", 1.0))
@@ -153,8 +157,8 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
 
 def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results], np.ndarray]) -> None:
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
-        largest = run.history.known("stress_MPa", run.heated).max()
-        axes.plot(over(run), run.heated_history("stress_MPa"), color=colour,
+        largest = run.history.known("stress_MPa", Heated(run).rows).max()
+        axes.plot(over(run), Heated(run).column("stress_MPa"), color=colour,
                   linestyle=dashes, label=f"{textwrap.fill(name, 34)},\nlargest {largest:.2f} MPa")
 
 
@@ -163,9 +167,9 @@ def compare_cracks(runs: Sequence[Results]) -> Figure:
     """Length of broken contacts by mode, of solids their area, and the mean opening: while heated, or over strain if
     none ends heated.
     """
-    if len({run.ends_heated for run in runs}) > 1:
+    if len({Heated(run).is_last for run in runs}) > 1:
         raise Error("compare: cracks of runs that end heated and of others have no common axis")
-    courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
+    courses = [heating_course(run) if Heated(run).is_last else loading_course(run) for run in runs]
     if len({course.ordered for course in courses}) > 1:
         raise Error("compare: cracks of runs that cool and of runs that do not have no common axis")
     figure, panels, beside = style.panels(5.4, (1.0, 1.0, 1.0), beside=0.42)
@@ -197,8 +201,8 @@ def compare_cracks(runs: Sequence[Results]) -> Figure:
 
 def _curves_of(group: _Group, over: Callable[[Results], np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
     """What runs are drawn over, and their total strain [10^-3], while they stood."""
-    return [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
-            for run in group.runs for rows in [run.standing[run.heated]]]
+    return [(over(hot.run)[rows], style.PER_MILLE * hot.total_strain[rows])
+            for hot in map(Heated, group.runs) for rows in [hot.standing[hot.rows]]]
 
 
 def _draw_group(axes: Axes, group: _Group, over: Callable[[Results], np.ndarray]) -> None:
@@ -212,20 +216,20 @@ def _draw_group(axes: Axes, group: _Group, over: Callable[[Results], np.ndarray]
             axes.plot(*curve, color=group.colour, linewidth=0.5)
         axes.plot(*mean_of(curves), color=group.colour, linewidth=2.0, label=_label(group))
     for (x, strain), run in zip(curves, group.runs):
-        if run.critical_temperature is not None:
+        if Heated(run).critical_temperature is not None:
             axes.plot(x[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
                       markeredgewidth=0.5, markersize=6.0, zorder=4)
 
 
 def _demand_heated(runs: Sequence[Results]) -> None:
     for run in runs:
-        if not run.exchanged.any():
+        if not Heated(run).exchanged.any():
             raise Error(f"{run.folder}: was never heated")
 
 
 def _timed(runs: Sequence[Results]) -> bool:
     """Whether the runs are drawn over minutes: all are."""
-    return all(run.timed for run in runs)
+    return all(Heated(run).timed for run in runs)
 
 
 def _over(runs: Sequence[Results]) -> tuple[str, float]:
@@ -237,8 +241,8 @@ def _axis(runs: Sequence[Results]) -> tuple[Callable[[Results], np.ndarray], str
     """What heated runs are drawn over, and its label."""
     if _timed(runs):
         return heating_minutes, MINUTES_LABEL
-    label = temperature_label(next((run for run in runs if not run.uniform), runs[0]))
-    return lambda run: run.heated_history("temperature_degC"), label
+    label = temperature_label(next((run for run in runs if not Heated(run).uniform), runs[0]))
+    return lambda run: Heated(run).column("temperature_degC"), label
 
 
 KINDS: dict[str, Callable[[Sequence[Results]], Figure]] = {

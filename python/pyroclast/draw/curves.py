@@ -13,8 +13,10 @@ from matplotlib.figure import Figure
 
 from ..errors import Error
 from ..stored import reference
+from ..stored.compressed import Compressed
 from ..stored.deck_differences import names_by_decks
 from ..stored.frames import Frame
+from ..stored.heated import Heated
 from ..stored.results import Results
 from . import style
 
@@ -37,12 +39,12 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     """
     figure, axes, beside_table, of_table = _axes_and_table()
     axes.set_title(style.title_of(run))
-    if run.parent and not run.parent.ends_heated:
-        style.draw_parent(axes, run.parent, style.PER_MILLE * run.parent.loaded_strain,
-                          run.parent.loaded_history("stress_MPa"))
+    if run.parent and not Heated(run.parent).is_last:
+        style.draw_parent(axes, run.parent, style.PER_MILLE * Compressed(run.parent).strain,
+                          Compressed(run.parent).column("stress_MPa"))
     _draw_run(axes, run)
     if reference.COMPRESSION in run.references.builtin:
-        _draw_references(axes, max(np.nanmax(run.loaded_strain), _LEAST_STRAIN_SHOWN))
+        _draw_references(axes, max(np.nanmax(Compressed(run).strain), _LEAST_STRAIN_SHOWN))
     draw_tables(axes, [run], ("strain", style.PER_MILLE), ("stress", 1.0))
     _draw_marks(axes, marks)
     axes.set_xlim(left=0.0)
@@ -70,22 +72,24 @@ def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes | None]:
 
 
 def _draw_run(axes: Axes, run: Results) -> None:
-    if (before := run.loaded_before).any():
-        axes.plot(style.PER_MILLE * (run.history["strain"][before] - run.strain_before),
+    test = Compressed(run)
+    if (before := test.before).any():
+        axes.plot(style.PER_MILLE * (run.history["strain"][before] - test.strain_before),
                   run.history["stress_MPa"][before], color=style.BLUE, linewidth=0.9, zorder=2.5,
                   label="its stages before the last")
-    strain = style.PER_MILLE * run.loaded_strain
-    top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
-    axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
+    strain = style.PER_MILLE * test.strain
+    top, bottom = test.column("stress_top_MPa"), test.column("stress_bottom_MPa")
+    again = test.rise_again
+    axes.plot(strain, test.column("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
               label=style.page().said("this run, mean of both platens", "this run")
-                    + (f";\nrises again, {100.0 * run.rise_again:+.0f} % above $f_c$" if run.rise_again > 0.005 else ""))
-    if run.has_peak:
-        at, strength = run.peak
+                    + (f";\nrises again, {100.0 * again:+.0f} % above $f_c$" if again > 0.005 else ""))
+    if test.has_peak:
+        at, strength = test.peak
         axes.plot(style.PER_MILLE * at, strength, "D", color=style.BLUE, markersize=5.0, zorder=4.5, linestyle="none",
                   label=f"its $f_c$, {strength:.3g} MPa")
-        stress = run.loaded_history("stress_MPa")
+        stress = test.column("stress_MPa")
         passes = int(np.argmax(stress >= _WITHIN_FIT * strength))
-        if isinstance(modulus := run.compression.get("E_GPa"), float) and stress[passes] >= _WITHIN_FIT * strength:
+        if isinstance(modulus := test.results.get("E_GPa"), float) and stress[passes] >= _WITHIN_FIT * strength:
             first = max(0.0, strain[passes] - stress[passes] / modulus)  # per mille: MPa over GPa
             ends = np.array([first, strain[passes] + (1.02 * strength - stress[passes]) / modulus])
             axes.plot(ends, stress[passes] + modulus * (ends - strain[passes]), color=style.BLACK, linewidth=0.7, zorder=2.8,
@@ -129,11 +133,12 @@ def _draw_marks(axes: Axes, marks: Mapping[str, Frame]) -> None:
 
 
 def _draw_table(axes: Axes, run: Results) -> None:
+    test = Compressed(run)
     def shown(key: str, form: str) -> str:
-        value = run.compression.get(key)
+        value = test.results.get(key)
         if isinstance(value, (int, float)):
             return format(value, form)
-        return "not given" if run.has_peak else "no peak"
+        return "not given" if test.has_peak else "no peak"
 
     columns = ["this run"]
     others = []
@@ -171,7 +176,7 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
     """
     if not runs:
         raise Error("compare: no runs were given")
-    if heated := [run for run in runs if run.ends_heated]:
+    if heated := [run for run in runs if Heated(run).is_last]:
         raise Error(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure, (axes,), beside = style.panels(4.2, beside=0.42)
     title_together(axes, runs)
@@ -184,14 +189,15 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
         draw_spread(axes, curves, style.BLUE)
     else:
         for run, curve, name, (colour, dashes) in zip(runs, curves, names_apart(runs), cycle(style.LOOKS)):
-            strength = f"{run.peak[1]:.2f} MPa" + ("" if run.has_peak else ", no peak reached")
+            test = Compressed(run)
+            strength = f"{test.peak[1]:.2f} MPa" + ("" if test.has_peak else ", no peak reached")
             axes.plot(*curve, color=colour, linestyle=dashes, linewidth=1.0,
                       label=f"{textwrap.fill(name, 34)},\n{strength}")
         if len(runs) > 1:
             axes.plot(*mean_of(curves), color=style.BLACK, linewidth=2.0,
                       label=f"mean of {len(runs)}, as far as all go")
     _draw_mean_peak(axes, runs)
-    last = max(np.nanmax(run.loaded_strain) for run in runs)
+    last = max(np.nanmax(Compressed(run).strain) for run in runs)
     if any(reference.COMPRESSION in run.references.builtin for run in runs):
         _draw_references(axes, max(last, _LEAST_STRAIN_SHOWN), wrapped=True)
     draw_tables(axes, runs, ("strain", style.PER_MILLE), ("stress", 1.0))
@@ -240,9 +246,10 @@ def mean_curve(runs: Sequence[Results]) -> tuple[np.ndarray, np.ndarray]:
 
 def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
     """Strain and stress [MPa]; from rest, unless heat came before."""
-    strain, stress = run.loaded_strain, run.loaded_history("stress_MPa")
-    run.history.known("strain", run.loaded)
-    if not run.exchanged.any():
+    test = Compressed(run)
+    strain, stress = test.strain, test.column("stress_MPa")
+    run.history.known("strain", test.rows)
+    if not Heated(run).exchanged.any():
         strain, stress = np.concatenate([[0.0], strain]), np.concatenate([[0.0], stress])
     return strain, stress
 
@@ -268,9 +275,10 @@ def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
-    peaks = np.array([(style.PER_MILLE * run.peak[0], run.peak[1]) for run in runs if run.has_peak])
+    peaks = np.array([test.peak for test in map(Compressed, runs) if test.has_peak])
     if not len(peaks):
         return
+    peaks[:, 0] *= style.PER_MILLE
     strain, stress = peaks.mean(axis=0)
     label = f"mean peak of {len(peaks)}:\n{stress:.2f} MPa at {strain:.2f}$\\times 10^{{-3}}$"
     spread = [None, None]

@@ -16,8 +16,9 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Rectangle
 
 from ..errors import Error
-from ..stored.mesh import BlockMesh, ContactMesh, specimen_box
+from ..stored.compressed import Compressed
 from ..stored.frames import Frame
+from ..stored.mesh import BlockMesh, ContactMesh, specimen_box
 from ..stored.results import Results
 from ..writing import whole
 from . import style
@@ -104,13 +105,14 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
 
     marks: as `select_frames` gives them.
     """
-    strength = run.peak[1]
+    test = Compressed(run)
+    strength = test.peak[1]
     panels = []
     for letter, frame in marks.items():
-        is_peak = run.has_peak and letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
+        is_peak = test.has_peak and letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
         caption = (f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
                    f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n"
-                   f"{100.0 * frame.stress_MPa / strength:.0f} % of {'$f_c$' if run.has_peak else 'the largest'}")
+                   f"{100.0 * frame.stress_MPa / strength:.0f} % of {'$f_c$' if test.has_peak else 'the largest'}")
         panels.append(Panel(run, frame, f"{letter}, peak" if is_peak else letter, caption))
     return Rows([("", panels)], style.title_of(run))
 

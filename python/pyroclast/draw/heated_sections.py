@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from ..errors import Error
-from ..stored.mesh import BlockMesh
 from ..stored.frames import Frame
+from ..stored.heated import Heated
+from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from . import style
 from .fractures import Panel, Rows, broken_share
@@ -68,10 +69,11 @@ def heating_fracture(run: Results, temperatures: Sequence[float] | None = None) 
     temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
     when None, as `select_heated_frames` has it.
     """
-    frames = run.heated_frames
+    hot = Heated(run)
+    frames = hot.frames
     if temperatures is None:
-        failed = run.critical_temperature is not None
-        selected = select_heated_frames(frames, failed) if run.uniform else _spread(frames)
+        failed = hot.critical_temperature is not None
+        selected = select_heated_frames(frames, failed) if hot.uniform else _spread(frames)
     else:
         selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
     panels = [_panel(run, frame) for frame in selected]
@@ -95,7 +97,7 @@ def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPER
     """
     if not runs:
         raise Error("levels: no runs were given")
-    ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
+    ordered = sorted(runs, key=lambda run: (Heated(run).load_level is None, Heated(run).load_level or 0.0))
     rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
     return Rows(rows, "", _NOTE)
 
@@ -112,32 +114,35 @@ def _row_labels(runs: Sequence[Results]) -> list[str]:
 
 
 def _row(run: Results, temperatures: Sequence[float]) -> list[Panel]:
-    frames, failed = run.heated_frames, run.critical_temperature is not None
+    hot = Heated(run)
+    frames, failed = hot.frames, hot.critical_temperature is not None
     choice = frames[:-1] if failed else frames
     return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
 
 
 def _panel_near(run: Results, frames: Sequence[Frame], temperature: float) -> Panel:
+    hot = Heated(run)
     if frames and (frame := frame_near(frames, temperature)):
         return _panel(run, frame)
     missing = f"no frame within\n{_NEAR:g} K"
-    if run.history.known("temperature_degC", run.standing).max() < temperature - _NEAR:
-        missing = "not reached" if run.critical_temperature is None else "failed before"
+    if run.history.known("temperature_degC", hot.standing).max() < temperature - _NEAR:
+        missing = "not reached" if hot.critical_temperature is None else "failed before"
     return Panel(run, None, f"{temperature:g} °C", missing)
 
 
 def _panel(run: Results, frame: Frame) -> Panel:
-    last = frame.step == run.heated_frames[-1].step
+    hot = Heated(run)
+    last = frame.step == hot.frames[-1].step
     title, mean = f"{frame.temperature:.0f} °C", ""
-    if not run.uniform and _is_timed(frame):
+    if not hot.uniform and _is_timed(frame):
         title, mean = f"{frame.heating_time / 60.0:.0f} min", f"mean {title}\n"
-    if last and run.critical_temperature is not None:
+    if last and hot.critical_temperature is not None:
         title = f"failed, {title}"
     elif last:
         title = f"end, {title}"
-    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if run.restrained else ""
+    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if hot.restrained else ""
     strain = "" if mean and stress else (f"$\\varepsilon_{{\\mathrm{{tot}}}} = "
-                                         f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}$\n")
+                                         f"{style.PER_MILLE * hot.total_strain_at(frame):.2f}\\times 10^{{-3}}$\n")
     return Panel(run, frame, title, f"{mean}{strain}{stress}broken {100.0 * broken_share(run, frame):.2g} %")
 
 
@@ -145,7 +150,7 @@ def _panel(run: Results, frame: Frame) -> Panel:
 def temperature_field(run: Results) -> Figure:
     """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
     blocks, page = run.mesh.blocks, style.page()
-    frames = page.chosen(_spread(run.heated_frames))
+    frames = page.chosen(_spread(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]

@@ -13,6 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from ..stored import reference
+from ..stored.heated import Heated
 from ..stored.results import Results
 from . import style
 from .curves import draw_tables
@@ -35,20 +36,21 @@ _BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests
 @style.in_style
 def total_strain(run: Results) -> Figure:
     """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
+    hot = Heated(run)
     figure, over, upper, lower, below = _two_while_heated(run)
-    strain = style.PER_MILLE * run.total_strain
+    strain = style.PER_MILLE * hot.total_strain
     band = None
-    if not run.timed and reference.TRANSIENT_STRAIN in run.references.builtin:
-        band = reference.strain_band(run.load_level)
+    if not hot.timed and reference.TRANSIENT_STRAIN in run.references.builtin:
+        band = reference.strain_band(hot.load_level)
     if band:
         draw_band(upper, band, style.ORANGE,
                   style.page().said(_BAND_LABEL, "models calibrated on Anderberg & Thelandersson"))
     _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
-    draw_tables(upper, [run], over_minutes(run.timed), ("total_strain", style.PER_MILLE))
+    draw_tables(upper, [run], over_minutes(hot.timed), ("total_strain", style.PER_MILLE))
     label = f"this run, {style.load_label(run)}".rstrip(", ")
     upper.plot(over, strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    shown = [run, run.parent] if run.parent and run.parent.heated.any() else [run]
+    shown = [run, run.parent] if run.parent and Heated(run.parent).rows.any() else [run]
     upper.set_ylim(*strain_limits(shown, [band] if band else []))
     mark_leaving(upper, over, strain, style.BLUE)
     upper.set_ylabel(TOTAL_STRAIN_LABEL)
@@ -61,16 +63,17 @@ def total_strain(run: Results) -> Figure:
 @style.in_style
 def thrust(run: Results) -> Figure:
     """Stress that a restrained specimen builds up against its platens, and lateral strain."""
+    hot = Heated(run)
     figure, over, upper, lower, below = _two_while_heated(run)
-    stress = run.heated_history("stress_MPa")
-    top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
+    stress = hot.column("stress_MPa")
+    top, bottom = hot.column("stress_top_MPa"), hot.column("stress_bottom_MPa")
     _draw_heated_parent(upper, run, "stress_MPa", 1.0)
-    draw_tables(upper, [run], over_minutes(run.timed), ("stress", 1.0))
+    draw_tables(upper, [run], over_minutes(hot.timed), ("stress", 1.0))
     upper.fill_between(over, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label=style.page().said("between its upper and lower platen", "between its platens"))
     upper.plot(over, stress, color=style.BLUE, linewidth=1.8,
                label=style.page().said("this run, mean of both platens", "this run"))
-    if run.history.known("stress_MPa", run.heated).min() >= 0.0:
+    if run.history.known("stress_MPa", hot.rows).min() >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, over, stress)
@@ -81,9 +84,9 @@ def thrust(run: Results) -> Figure:
 
 def _draw_heated_parent(axes: Axes, run: Results, column: str, factor: float) -> None:
     """A column of the run that this one is a fork of, where that was heated too."""
-    if run.parent and run.parent.heated.any():
-        history, rows = run.parent.history, run.parent.standing
-        over = history["heating_time_s"] / 60.0 if run.timed else history["temperature_degC"]
+    if run.parent and Heated(run.parent).rows.any():
+        history, rows = run.parent.history, Heated(run.parent).standing
+        over = history["heating_time_s"] / 60.0 if Heated(run).timed else history["temperature_degC"]
         style.draw_parent(axes, run.parent, over[rows], factor * history[column][rows])
 
 
@@ -91,17 +94,18 @@ def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axe
     """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
     the temperature, or minutes where the run is `timed`.
     """
-    over = heating_minutes(run) if run.timed else run.heated_history("temperature_degC")
+    hot = Heated(run)
+    over = heating_minutes(run) if hot.timed else hot.column("temperature_degC")
     figure, (upper, lower), below = style.panels(5.2, (1.0, 0.5), below=0.26)
     upper.set_title(style.title_of(run))
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    lateral = style.PER_MILLE * run.heated_history("lateral_strain")
+    lateral = style.PER_MILLE * hot.column("lateral_strain")
     lower.plot(over, lateral, color=style.BLUE)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", run.standing)))
+    lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", hot.standing)))
     lower.set_ylabel("Lateral strain,\nexpansion\npositive [$10^{-3}$]")
-    lower.set_xlabel(MINUTES_LABEL if run.timed else temperature_label(run))
+    lower.set_xlabel(MINUTES_LABEL if hot.timed else temperature_label(run))
     _mark_failure(lower, run, over)
     return figure, over, upper, lower, below
 
@@ -142,8 +146,9 @@ def _before_failing(run: Results) -> np.ndarray:
     """(n,) total strain while the specimen stood, without the rows at the end in which it fell by far more each than
     before, where it failed.
     """
-    strain = run.total_strain[run.standing[run.heated]]
-    if run.critical_temperature is None or len(strain) < 3:
+    hot = Heated(run)
+    strain = hot.total_strain[hot.standing[hot.rows]]
+    if hot.critical_temperature is None or len(strain) < 3:
         return strain
     steps = np.abs(np.diff(strain))
     usual = np.nanmedian(steps)
@@ -159,7 +164,7 @@ def strain_limits(runs: Sequence[Results], bands: Sequence[reference.StrainBand]
               for values in (own.low, own.high)]
     strains = [_before_failing(run) for run in runs]
     for run in runs:
-        run.history.known("specimen_strain", run.standing)
+        run.history.known("specimen_strain", Heated(run).standing)
     return _padded(style.PER_MILLE * np.concatenate([*strains, *tables,
                                                      *(x for b in bands for x in (b.low, b.high))]))
 
@@ -171,7 +176,8 @@ def _padded(values: np.ndarray) -> tuple[float, float]:
 
 
 def _mark_unconverged(axes: Axes, run: Results, over: np.ndarray, values: np.ndarray) -> None:
-    rows = run.unconverged[run.heated]
+    hot = Heated(run)
+    rows = hot.unconverged[hot.rows]
     if rows.any():
         axes.plot(over[rows], values[rows], "x", color=style.VERMILLION,
                   markersize=4.0, linestyle="none", label=f"not converged ({rows.sum()} exchanges)")
@@ -179,9 +185,10 @@ def _mark_unconverged(axes: Axes, run: Results, over: np.ndarray, values: np.nda
 
 def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
     """over: of the rows of the heating, temperatures or minutes; the last is that of the failure."""
-    if run.critical_temperature is None or not np.isfinite(over[-1]):
+    hot = Heated(run)
+    if hot.critical_temperature is None or not np.isfinite(over[-1]):
         return
-    at = f"{over[-1]:.0f} min" if run.timed else f"{run.critical_temperature:.0f} °C"
+    at = f"{over[-1]:.0f} min" if hot.timed else f"{hot.critical_temperature:.0f} °C"
     axes.axvline(over[-1], color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)), label=f"failed at {at}")
 
 
@@ -204,7 +211,7 @@ def convergence(run: Results) -> Figure:
             axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
                       linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
         axes.set_ylabel(label)
-        if course.ordered or run.timed:
+        if course.ordered or Heated(run).timed:
             _mark_failure(axes, run, course.over)
     upper.set_ylim(bottom=0.0)
     lower.set_yscale("log")

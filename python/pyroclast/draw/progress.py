@@ -10,6 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..errors import Error
+from ..stored.compressed import Compressed
+from ..stored.heated import Heated
 from ..stored.results import Results
 from . import style
 
@@ -51,25 +53,27 @@ class Course:
 
 def loading_course(run: Results) -> Course:
     """The last stage, over strain."""
-    return Course(run, run.loaded, style.PER_MILLE * run.loaded_strain, style.STRAIN_LABEL, start=0.0)
+    test = Compressed(run)
+    return Course(run, test.rows, style.PER_MILLE * test.strain, style.STRAIN_LABEL, start=0.0)
 
 
 def heating_course(run: Results) -> Course:
     """The heating, over temperature, or over time when the run is `timed` or also cools."""
-    temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
-    if run.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
-        start = run.history.known("heating_time_s", run.heated)[0] / 60.0
-        return Course(run, run.heated, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
-    return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
+    hot = Heated(run)
+    temperature, known = hot.column("temperature_degC"), run.history.known("temperature_degC", hot.rows)
+    if hot.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
+        start = run.history.known("heating_time_s", hot.rows)[0] / 60.0
+        return Course(run, hot.rows, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
+    return Course(run, hot.rows, temperature, temperature_label(run), start=known.min())
 
 
 def heating_minutes(run: Results) -> np.ndarray:
     """Time of heating [min] over the rows of `heated`."""
-    return run.heated_history("heating_time_s") / 60.0
+    return Heated(run).column("heating_time_s") / 60.0
 
 
 def temperature_label(run: Results) -> str:
-    return "Temperature [°C]" if run.uniform else "Mean temperature of the specimen [°C]"
+    return "Temperature [°C]" if Heated(run).uniform else "Mean temperature of the specimen [°C]"
 
 
 @style.in_style
@@ -78,7 +82,7 @@ def cracks(run: Results) -> Figure:
     figure, (axes,), below = style.panels(4.8, below=0.16)
     axes.set_title(style.title_of(run))
     course = loading_course(run)
-    run.history.known("strain", run.loaded)
+    run.history.known("strain", Compressed(run).rows)
     _draw_stress_behind(axes, course)
     _draw_extents(axes, course)
     axes.set_xlim(left=0.0)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ..errors import Error
 from ..stored.frames import Frame
+from ..stored.heated import Heated
 from ..stored.results import Results
 from . import style
 from .curves import draw_tables
@@ -134,7 +135,7 @@ def _panels(run: Results) -> list[_Panel]:
               for kind in dict.fromkeys(record.kind for record in drawn)]
     asked = dict.fromkeys((table.of, table.over) for table in run.references.tables if table.of in by_name)
     for of, other in asked:
-        if other == over_name or (other == "heating_time" and by_name[of].kind == "temperature" and run.heats):
+        if other == over_name or (other == "heating_time" and by_name[of].kind == "temperature" and Heated(run).heats):
             continue
         if other in by_name:
             record = by_name[other]

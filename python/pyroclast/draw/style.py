@@ -25,6 +25,8 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
 
 from ..errors import Error
+from ..stored.compressed import Compressed
+from ..stored.heated import Heated
 from ..texts import seen_on_a_line
 from ..writing import whole
 
@@ -435,40 +437,45 @@ def title_of(run) -> str:
 
 def facts_of(run) -> list[str]:
     """Load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
-    if not run.moves or not run.exchanged.any():
+    test = Compressed(run)
+    hot = Heated(run)
+    if not run.moves or not hot.exchanged.any():
         return []
-    temperatures = run.history.known("temperature_degC", run.heated)
-    mean = "" if run.uniform else "mean "
-    if run.ends_heated:
-        held = "between fixed platens" if run.restrained else load_label(run)
-        failed = "" if run.critical_temperature is None else f"failed at {run.critical_temperature:.0f} °C"
+    temperatures = run.history.known("temperature_degC", hot.rows)
+    mean = "" if hot.uniform else "mean "
+    if hot.is_last:
+        held = "between fixed platens" if hot.restrained else load_label(run)
+        failed = "" if hot.critical_temperature is None else f"failed at {hot.critical_temperature:.0f} °C"
         return [", ".join(filter(None, [held, f"{mean}{temperatures[0]:.0f} to {temperatures.max():.0f} °C", failed]))]
-    now = run.history.known("temperature_degC", run.loaded)[0]
+    now = run.history.known("temperature_degC", test.rows)[0]
     told = [f"heated to {mean}{temperatures.max():.0f} °C, compressed at {mean}{now:.0f} °C"]
-    if (retained := run.strength_retained) is not None:
+    if (retained := test.strength_retained) is not None:
         told.append(f"largest stress {retained:.2f} of the strength before heating")
     return ["; ".join(told)]
 
 
 def warnings_of(run) -> list[str]:
     """That a run is not quasi-static or does not say, and how many exchanges did not converge."""
+    test = Compressed(run)
+    hot = Heated(run)
     warnings = []
-    if run.quasi_static is None and run.has_platens and not run.ends_heated:
+    if test.quasi_static is None and run.has_platens and not hot.is_last:
         warnings.append("not stated whether quasi-static")
-    elif run.quasi_static is False:
+    elif test.quasi_static is False:
         warnings.append("NOT QUASI-STATIC")
-    if missed := int(run.unconverged.sum()):
-        warnings.append(f"{missed} OF {int(run.exchanged.sum())} EXCHANGES NOT CONVERGED")
+    if missed := int(hot.unconverged.sum()):
+        warnings.append(f"{missed} OF {int(hot.exchanged.sum())} EXCHANGES NOT CONVERGED")
     return warnings
 
 
 def load_label(run) -> str:
     """Load kept while heated, as level where that is known, else as stress; empty when none was kept."""
-    if run.restrained:
+    hot = Heated(run)
+    if hot.restrained:
         return ""
-    if run.load_level is not None:
-        return f"$\\sigma/f_c$ = {run.load_level:g}"
-    return "" if run.load_stress_MPa is None else f"$\\sigma$ = {run.load_stress_MPa:g} MPa"
+    if hot.load_level is not None:
+        return f"$\\sigma/f_c$ = {hot.load_level:g}"
+    return "" if hot.load_stress_MPa is None else f"$\\sigma$ = {hot.load_stress_MPa:g} MPa"
 
 
 def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.ndarray:

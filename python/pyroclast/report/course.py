@@ -12,6 +12,8 @@ from ..draw import style
 from ..draw.heating import GAS
 from ..draw.progress import ENERGY_IN, energies_out, extent_of_cracks
 from ..draw.records import abscissa, leading, records_of
+from ..stored.compressed import Compressed
+from ..stored.heated import Heated
 from ..stored.reference import TRANSIENT_STRAIN, strain_band
 from ..stored.results import Results
 from .marks import Mark, marks
@@ -42,18 +44,20 @@ def quantities(run: Results) -> list[CurveQuantity]:
 
 
 def _all(run: Results) -> Iterator[CurveQuantity]:
+    test = Compressed(run)
+    hot = Heated(run)
     yield CurveQuantity("strain", "axial strain, compression positive [10⁻³]", "strain", 1e3, "strain")
-    if run.moves and run.has_platens and not run.ends_heated and np.isfinite(run.history["stress_MPa"]).any():
-        before = run.strain_before
+    if run.moves and run.has_platens and not hot.is_last and np.isfinite(run.history["stress_MPa"]).any():
+        before = test.strain_before
         yield CurveQuantity(OVER_LOAD, "axial strain since loading began, compression positive [10⁻³]", "strain", 1e3,
-                            offset=1e3 * before, stage=int(run.history["stage"][run.loaded][0]) if before else 0)
+                            offset=1e3 * before, stage=int(run.history["stage"][test.rows][0]) if before else 0)
     yield CurveQuantity("stress", "axial stress, compression positive [MPa]", "stress_MPa", 1.0, "stress")
     yield CurveQuantity("total_strain", "total axial strain, expansion positive [10⁻³]", "specimen_strain", -1e3,
                    "total_strain")
     yield CurveQuantity("lateral_strain", "lateral strain, expansion positive [10⁻³]", "lateral_strain", 1e3)
     for record in records_of(run):
         yield CurveQuantity(f"record_{record.name}", record.title, record.column, record.factor, record.name)
-    mean = "" if run.uniform else "mean "
+    mean = "" if hot.uniform else "mean "
     yield CurveQuantity("temperature", f"{mean}temperature [°C]", "temperature_degC", 1.0, "temperature")
     yield CurveQuantity("minutes", "time of heating [min]", "heating_time_s", 1.0 / 60.0, "heating_time")
     yield CurveQuantity("temperature_min", "least temperature [°C]", "temperature_min_degC")
@@ -72,6 +76,7 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
 
 def _drawn(run: Results) -> tuple[str, list[str]]:
     """Ids of what the first curve is drawn over, and of what."""
+    hot = Heated(run)
     if not run.moves:
         return "minutes", ["temperature", "temperature_min", "temperature_max",
                            *(f"probe_{name}" for name in run.probes)]
@@ -80,8 +85,8 @@ def _drawn(run: Results) -> tuple[str, list[str]]:
         over, _, _ = abscissa(run, records)
         about = leading(records)
         return f"record_{over.name}" if over else "time", [f"record_{about.name}"] if about else ["kinetic"]
-    if run.exchanged.any() and run.ends_heated:
-        return "minutes" if run.timed else "temperature", ["stress" if run.restrained else "total_strain"]
+    if hot.exchanged.any() and hot.is_last:
+        return "minutes" if hot.timed else "temperature", ["stress" if hot.restrained else "total_strain"]
     return "strain", ["stress"]
 
 
@@ -161,11 +166,12 @@ def _stages(run: Results, stage: np.ndarray) -> list[dict[str, Any]]:
 
 
 def _references(run: Results) -> Iterator[dict[str, Any]]:
+    hot = Heated(run)
     for table in run.references.tables:
         yield {"name": table.name, "of": table.of, "over": table.over, "x": table.x.tolist(),
                "low": table.low.tolist(), "high": table.high.tolist()}
-    if TRANSIENT_STRAIN in run.references.builtin and run.moves and run.has_platens and not run.timed:
-        if band := strain_band(run.load_level):
+    if TRANSIENT_STRAIN in run.references.builtin and run.moves and run.has_platens and not hot.timed:
+        if band := strain_band(hot.load_level):
             yield {"name": "range of models calibrated on tests", "of": "total_strain", "over": "temperature",
                    "x": band.temperature.tolist(), "low": band.low.tolist(), "high": band.high.tolist()}
 

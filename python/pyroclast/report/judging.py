@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from ..stored.heated import Heated
 from ..stored.results import Results
 
 GOOD, DOUBT, BAD = "good", "doubt", "bad"
@@ -153,17 +154,18 @@ def cards(run: Results) -> list[Card]:
 
 def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
     """Of a test between platens that measures no strength: what the specimen bore instead."""
-    if not run.has_platens or not run.stages or not run.ends_heated:
+    hot = Heated(run)
+    if not run.has_platens or not run.stages or not hot.is_last:
         return None
     if any("f_c_MPa" in stage.get("results", {}) for stage in run.stages):
         return None
-    if run.restrained:
+    if hot.restrained:
         said = "the platens held the specimen in place while it was heated"
-    elif run.load_stress_MPa:
-        said = f"{'held' if run.critical_temperature is None else 'failed under'} {run.load_stress_MPa:.3g} MPa"
+    elif hot.load_stress_MPa:
+        said = f"{'held' if hot.critical_temperature is None else 'failed under'} {hot.load_stress_MPa:.3g} MPa"
         loads = [results for results in run.stage_results if results.get("f_c_of_level_MPa")]
-        if run.load_level and loads:
-            said += f" = {run.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
+        if hot.load_level and loads:
+            said += f" = {hot.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
             said += f" {loads[-1].get('f_c_of_level_is', '')}"
     else:
         said = "nothing loaded the specimen"

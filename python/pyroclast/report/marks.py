@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..draw.progress import extent_of_cracks
+from ..stored.compressed import Compressed
+from ..stored.heated import Heated
 from ..stored.results import Results
 
 _CRACK_LENGTH = 1.0  # m, of damaged contacts
@@ -35,6 +37,7 @@ def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> 
     leading: (rows,) of what the curve is about, such as the stress; None without one. over: (rows,) of what it is drawn
         over and goes back where the test unloads, such as the strain; None where only the time is known.
     """
+    hot = Heated(run)
     found = []
     history = run.history
     broken = _sum(run, "_broken")
@@ -53,27 +56,29 @@ def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> 
             if leading[largest] > leading[peak] * (1.0 + _HIGHER):
                 found.append(Mark("largest", "higher again", largest))
             found += _falls(run, leading, over, peak, _is_peak(run, leading, peak))
-    if run.critical_temperature is not None:
-        found.append(Mark("end", "failure", int(np.flatnonzero(run.exchanged)[-1])))
+    if hot.critical_temperature is not None:
+        found.append(Mark("end", "failure", int(np.flatnonzero(hot.exchanged)[-1])))
     return sorted(found, key=lambda mark: mark.row)
 
 
 def _has_peak(run: Results) -> bool:
-    return run.moves and (not run.has_platens or not run.ends_heated or run.restrained)
+    hot = Heated(run)
+    return run.moves and (not run.has_platens or not hot.is_last or hot.restrained)
 
 
 def _peak_row(run: Results, largest: int) -> int:
     """Where f_c is, as the summary has it; without one the row of the largest value."""
-    if not run.has_platens or run.ends_heated or not run.has_peak:
+    test = Compressed(run)
+    if not run.has_platens or Heated(run).is_last or not test.has_peak:
         return largest
-    rows = np.flatnonzero(run.loaded)
-    return int(rows[np.nanargmin(np.abs(run.loaded_strain - run.peak[0]))])
+    rows = np.flatnonzero(test.rows)
+    return int(rows[np.nanargmin(np.abs(test.strain - test.peak[0]))])
 
 
 def _is_peak(run: Results, leading: np.ndarray, row: int) -> bool:
     """Whether the curve falls behind the row of its largest value: of a compression, whether the program has an f_c."""
-    if run.has_platens and not run.ends_heated:
-        return run.has_peak
+    if run.has_platens and not Heated(run).is_last:
+        return Compressed(run).has_peak
     return row < int(np.flatnonzero(np.isfinite(leading))[-1])
 
 

@@ -17,8 +17,9 @@ import numpy as np
 
 from ..errors import Error
 from ..stored.files import names_in, read_array
-from ..stored.mesh import Mesh
 from ..stored.frames import Frame
+from ..stored.heated import Heated
+from ..stored.mesh import Mesh
 from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
 
@@ -232,7 +233,7 @@ class _Reader:
         blocks = run.mesh.blocks
         self._block = np.unique(blocks.block, return_inverse=True)[1].ravel()
         self._share = blocks.sizes / np.bincount(self._block, blocks.sizes)[self._block]
-        self._heated = not run.uniform or not run.moves
+        self._heated = not Heated(run).uniform or not run.moves
 
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
         return {name: values.astype(float) for name, values in self._fields(frame)}

@@ -12,6 +12,7 @@ from ..draw import style
 from ..draw.progress import energies_out, extent_of_cracks
 from ..draw.properties import panels, read_properties
 from ..errors import Error
+from ..stored.heated import Heated
 from ..stored.results import Results, SpecimenFolder
 from .bodies import fitted
 from .course import course_of, rows_of_frames
@@ -99,7 +100,7 @@ def _temperature(run: Results) -> list[str]:
     """Of a cold test its temperature."""
     known = run.history["temperature_degC"]
     known = known[np.isfinite(known)]
-    if not run.moves or not run.uniform or not len(known) or np.ptp(known) > _SAME_TEMPERATURE:
+    if not run.moves or not Heated(run).uniform or not len(known) or np.ptp(known) > _SAME_TEMPERATURE:
         return []
     return [f"{known[0]:.0f} °C throughout"]
 

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from ..stored.files import read_array
-from ..stored.mesh import BlockMesh
 from ..stored.frames import Frame
+from ..stored.heated import Heated
+from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
 from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite
@@ -195,7 +196,7 @@ class _Reader:
         self._run, self._used, self._first, self._number = run, used, first, number
         blocks = run.mesh.blocks
         self._share = blocks.sizes / np.bincount(number, blocks.sizes)[number]
-        self._heated = not run.uniform or not run.moves
+        self._heated = not Heated(run).uniform or not run.moves
         point = blocks.points[used]
         self._count = np.diff(first)
         self._owner = np.repeat(np.arange(len(self._count)), self._count)

@@ -39,6 +39,11 @@ LARGEST = 1e30
 """A number beyond it counts as not finite: in no unit is a quantity of a run so large, and drawing would overflow."""
 
 
+def is_number(value: object) -> bool:
+    """Returns whether a value of a JSON file is a finite number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
 class GapWarning(UserWarning):
     """A table has cells that are not finite; they are drawn as gaps."""
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import Error
-from .files import LARGEST, read_json_list
+from .files import is_number, read_json_list
 
 COMPRESSION, TRANSIENT_STRAIN = "compression", "transient_strain"
 """References of the program, as decks name them."""
@@ -81,16 +81,12 @@ def _table(path: Path, number: int, entry: dict[str, Any]) -> Reference:
     columns = []
     for key in ("x", "low", "high"):
         values = entry.get(key)
-        if not isinstance(values, list) or not all(_is_number(value) for value in values):
+        if not isinstance(values, list) or not all(is_number(value) for value in values):
             raise Error(f"{path}: entry {number}: '{key}' is no list of finite numbers")
         columns.append(np.array(values, dtype=float))
     if len({len(column) for column in columns}) != 1 or len(columns[0]) < 2:
         raise Error(f"{path}: entry {number}: 'x', 'low' and 'high' are not alike in length, or shorter than 2")
     return Reference(*words, *columns)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 # Compression at room temperature; stress and strain positive in compression.

@@ -1,14 +1,13 @@
 """Results of runs, read from their folders, and specimens from theirs. The compiled part is not needed.
 
 SI units, temperature in °C, stress in MPa where it says so. Strain and stress of the test are positive in compression;
-only `Results.total_strain` is positive in expansion.
+only `Heated.total_strain` is positive in expansion.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from ..errors import Error
 from ..libraries import library
 from ..writing import shell_path
-from .files import LARGEST, MESH, GrowingTable, Lock, Table, Writer, read_array, read_json
+from .files import MESH, GrowingTable, Lock, Table, Writer, is_number, read_array, read_json
 from .frames import Frame, frames_of
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
@@ -32,8 +31,6 @@ else:
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-_UNIFORM = 1.0  # K
 
 
 def read(folder: str | Path) -> Results:
@@ -221,102 +218,6 @@ class Results:
         """The results of each stage, in order."""
         return [stage.get("results", {}) for stage in self.stages]
 
-    def _results_with(self, name: str) -> list[dict]:
-        """Results of the stages that have one of this name."""
-        return [results for results in self.stage_results if results.get(name) is not None]
-
-    @property
-    def compression(self) -> dict:
-        """E_GPa, f_c_MPa, strain_at_peak, strain_ic, quasi_static of the last compression that has a modulus; empty
-        without one.
-        """
-        tests = self._results_with("E_GPa")
-        return tests[-1] if tests else {}
-
-    @property
-    def heating(self) -> dict:
-        """load_stress_MPa, critical_temperature_degC, platen, exchanges, ... over all stages that exchange
-        temperatures; empty when never heated.
-        """
-        stages = self._results_with("exchanges")
-        if not stages:
-            return {}
-        merged = dict(stages[0])
-        for name in ("exchanges", "exchanges_not_converged", "cycles"):
-            merged[name] = sum(self._number(results, name) for results in stages if name in results)
-        worst = [self._number(results, "worst_unbalanced_ratio") for results in stages
-                 if results.get("worst_unbalanced_ratio") is not None]
-        merged["worst_unbalanced_ratio"] = max(worst, default=None)
-        failures = self._results_with("critical_temperature_degC")
-        return merged | {"critical_temperature_degC": failures[0]["critical_temperature_degC"] if failures else None}
-
-    def _heating_number(self, name: str) -> float | None:
-        return self._number(self.heating, name)
-
-    def _number(self, results: dict, name: str) -> float | None:
-        value = results.get(name)
-        if value is None:
-            return None
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
-            raise Error(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
-        return float(value)
-
-    @property
-    def load_stress_MPa(self) -> float | None:
-        """Compressive stress kept while heated."""
-        return self._heating_number("load_stress_MPa")
-
-    @property
-    def load_level(self) -> float | None:
-        """`load_stress_MPa` over the strength at 20 °C; None when that strength is not known."""
-        if not self.heating:
-            return None
-        first = next(i for i, results in enumerate(self.stage_results) if results.get("exchanges") is not None)
-        loads = [results for results in self.stage_results[:first] if "load_level" in results]
-        level = self._number(loads[-1], "load_level") if loads else None
-        return 0.0 if level is None and self.load_stress_MPa == 0.0 else level
-
-    @property
-    def critical_temperature(self) -> float | None:
-        """Temperature [°C] at which the specimen failed under its load; None when it did not."""
-        return self._heating_number("critical_temperature_degC")
-
-    @property
-    def restrained(self) -> bool:
-        """Whether the platens were held in place while the specimen was heated. Without a summary the deck tells it."""
-        if self.heating:
-            return self.heating.get("platen") == "fixed"
-        heated = self.history["stage"][self.exchanged].astype(int)
-        stages = self.deck_stages[heated[0]:] if len(heated) else []
-        return bool(stages) and stages[0].get("platen") == "fixed"
-
-    @property
-    def quasi_static(self) -> bool | None:
-        """The verdict of the last compression; None when there is none."""
-        verdicts = self._results_with("quasi_static")
-        return verdicts[-1]["quasi_static"] if verdicts else None
-
-    @cached_property
-    def exchanged(self) -> np.ndarray:
-        """(rows,) bool: rows of the history written after an exchange of temperatures."""
-        if "exchange" not in self.history.names:
-            return np.zeros(self.history.rows, dtype=bool)
-        return self.history["exchange"] > 0
-
-    @cached_property
-    def heated(self) -> np.ndarray:
-        """(rows,) bool: `exchanged` and the row before, from which heating started; none if never heated."""
-        rows = self.exchanged.copy()
-        if rows.any():
-            rows[max(int(rows.argmax()) - 1, 0)] = True
-        return rows
-
-    @property
-    def ends_heated(self) -> bool:
-        """Whether the last stage heats the body, so that the test is the heating and not what follows it."""
-        stage = self.history["stage"]
-        return bool(self.exchanged[stage == stage.max()].any())
-
     @property
     def moves(self) -> bool:
         """Whether there are mechanics; else the run is of heat conduction alone."""
@@ -333,149 +234,6 @@ class Results:
         return {match[1]: self.history[name] for name in self.history.names
                 if (match := re.fullmatch(r"probe_(\w+)_degC", name))}
 
-    def heated_history(self, name: str) -> np.ndarray:
-        """A column of the history, rows of `heated` only."""
-        return self.history[name][self.heated]
-
-    @property
-    def standing(self) -> np.ndarray:
-        """(rows,) bool: rows of `heated`, without that of the exchange at which the specimen failed."""
-        return self.heated & ~self._failing
-
-    @property
-    def _failing(self) -> np.ndarray:
-        rows = np.zeros(self.history.rows, dtype=bool)
-        if self.critical_temperature is not None:
-            rows[np.flatnonzero(self.exchanged)[-1:]] = True
-            rows &= self.history["converged"] == 0
-        return rows
-
-    @property
-    def total_strain(self) -> np.ndarray:
-        """Axial strain of the specimen's own ends over the rows of `heated`, positive in expansion, that of the
-        load included. Platens without load may have left the ends.
-        """
-        return -self.heated_history("specimen_strain")
-
-    def standing_strain(self, temperatures) -> np.ndarray:
-        """Axial strain at temperatures [°C] while the specimen stood, as `total_strain`; nan above what it reached."""
-        reached, strain = (self.history[name][self.standing] for name in ("temperature_degC", "specimen_strain"))
-        temperatures = np.asarray(temperatures, dtype=float)
-        if not len(reached):
-            return np.full(temperatures.shape, np.nan)
-        return np.where(temperatures > reached.max() + 1e-6, np.nan, -np.interp(temperatures, reached, strain))
-
-    def total_strain_at(self, frame: Frame) -> float:
-        """`total_strain` when the frame was saved."""
-        row = int(np.searchsorted(self.history["step"], frame.step))
-        if row == self.history.rows or self.history["step"][row] != frame.step:
-            raise Error(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
-        return -float(self.history["specimen_strain"][row])
-
-    @property
-    def uniform(self) -> bool:
-        """Whether the specimen's temperatures never differed by more than 1 K."""
-        spread = self.history["temperature_max_degC"] - self.history["temperature_min_degC"]
-        return not (spread > _UNIFORM).any()  # a gap tells nothing
-
-    @property
-    def heats(self) -> bool:
-        """Whether its temperatures are drawn over the time: they differ within the specimen, or stand beside a
-        reference.
-        """
-        if not self.uniform:
-            return True
-        return "heat_stored_J" in self.history and any(t.over == "heating_time" for t in self.references.tables)
-
-    @property
-    def timed(self) -> bool:
-        """Whether its heating is drawn over minutes: it is not uniform, or stands beside a reference over time."""
-        return not self.uniform or any(self.references.of(of, "heating_time") for of in ("stress", "total_strain"))
-
-    @property
-    def unconverged(self) -> np.ndarray:
-        """(rows,) bool: exchanges whose cycles did not reach equilibrium, without that of the failure."""
-        if not self.exchanged.any():
-            return self.exchanged
-        return self.exchanged & (self.history["converged"] == 0) & ~self._failing
-
-    @cached_property
-    def loaded(self) -> np.ndarray:
-        """(rows,) bool: rows of the last stage in which the body moves, the test itself."""
-        stage, is_there = self.history["stage"], np.isfinite(self.history["stress_MPa"])
-        self.history.known("stress_MPa")
-        return (stage == stage[is_there].max()) & is_there
-
-    @property
-    def loaded_before(self) -> np.ndarray:
-        """(rows,) bool: rows of the stages that moved the platen before `loaded`, since heat last changed the body."""
-        stages = [number for number, stage in enumerate(self.deck_stages) if stage.get("kind") == "compress"]
-        row = np.arange(len(self.loaded))
-        heated = row[self.exchanged]
-        since = heated[-1] + 1 if heated.size else 0
-        return np.isin(self.history["stage"], stages) & (since <= row) & (row < int(self.loaded.argmax()))
-
-    def loaded_history(self, name: str) -> np.ndarray:
-        """A column of the history, rows of `loaded` only."""
-        return self.history[name][self.loaded]
-
-    @property
-    def strain_before(self) -> float:
-        """Strain from which the last stage's is counted: that before it, if heat left one, else zero."""
-        first = int(self.loaded.argmax())
-        if not self.exchanged[:first].any():
-            return 0.0
-        return float(self.history.known("strain", slice(first))[-1])
-
-    @property
-    def loaded_strain(self) -> np.ndarray:
-        """Strain over the rows of `loaded`, less `strain_before`."""
-        return self.loaded_history("strain") - self.strain_before
-
-    def _tested(self, name: str) -> float | None:
-        """A number among the results of the stage of `loaded`."""
-        stage = int(self.loaded_history("stage")[0])
-        return self._number(self.stage_results[stage], name) if stage < len(self.stage_results) else None
-
-    @property
-    def has_peak(self) -> bool:
-        """Whether the test has an f_c."""
-        return self._tested("f_c_MPa") is not None
-
-    @property
-    def rise_again(self) -> float:
-        """How far the stress rises above f_c behind it, over f_c; 0 where it does not, or there is no f_c."""
-        strength, largest = self._tested("f_c_MPa"), self._tested("stress_max_MPa")
-        return max(0.0, largest / strength - 1.0) if strength and largest else 0.0
-
-    @property
-    def peak(self) -> tuple[float, float]:
-        """`loaded_strain` and stress [MPa] at f_c of the test, as the summary has it. Where that has none,
-        those where the history's stress is largest, even if it ended there.
-
-        Raises Error when the specimen was never compressed.
-        """
-        strength, at = self._tested("f_c_MPa"), self._tested("strain_at_peak")
-        if strength is not None and at is not None:
-            before = 0.0
-            if "stage_strain" in self.history:
-                before = float(self.loaded_strain[0] - self.loaded_history("stage_strain")[0])
-            return at + before, strength
-        strain, stress = self.loaded_strain, self.loaded_history("stress_MPa")
-        self.history.known("strain", self.loaded)
-        row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())
-        if stress[row] <= 0.0:
-            path = self.history.path
-            raise Error(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
-        return float(strain[row]), float(stress[row])
-
-    @property
-    def strength_retained(self) -> float | None:
-        """Largest stress after heating over the strength before; None when the summary does not tell that."""
-        if self.ends_heated or not self.load_level or not self.load_stress_MPa:
-            return None
-        return self.peak[1] * self.load_level / self.load_stress_MPa
-
     @property
     def has_fields(self) -> bool:
         """Whether the run keeps fields; its deck may say that it keeps none."""
@@ -490,32 +248,6 @@ class Results:
     def _frames(self) -> Table | None:
         path = self.folder / "fields" / "frames.csv"
         return self._table(path, may_be_empty=True) if path.exists() else None
-
-    @property
-    def loaded_frames(self) -> list[Frame]:
-        """Frames of the history's last stage, their strain less `strain_before`; not those of unknown strain or
-        stress.
-        """
-        last, before = self.history["stage"][self.loaded].max(), self.strain_before
-        return [replace(frame, strain=frame.strain - before) for frame in self.frames
-                if frame.stage == last and np.isfinite([frame.strain, frame.stress_MPa]).all()]
-
-    @property
-    def heated_frames(self) -> list[Frame]:
-        """Frames of all stages that heat, not those of unknown temperature; raises Error when there is none."""
-        path = self.folder / "fields" / "frames.csv"
-        frames = self.frames
-        if self.moves:
-            stages = set(self.history["stage"][self.exchanged])
-            frames = [frame for frame in frames if frame.stage in stages]
-        if not frames:
-            raise Error(f"{path}: no frame of a heating stage")
-        if frames[0].temperature is None:
-            raise Error(f"{path}: has no column 'temperature_degC'")
-        frames = [frame for frame in frames if np.isfinite(frame.temperature)]
-        if not frames:
-            raise Error(f"{path}: column 'temperature_degC' has no finite value")
-        return frames
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -583,6 +315,19 @@ class Results:
         return f"<Results of {self.folder}>"
 
 
+def results_with(run: Results, name: str) -> list[dict]:
+    """Returns results of the stages of a run that have one of this name."""
+    return [results for results in run.stage_results if results.get(name) is not None]
+
+
+def number_of(run: Results, results: dict, name: str) -> float | None:
+    """Returns a number among results of stages of a run; None without one."""
+    value = results.get(name)
+    if value is not None and not is_number(value):
+        raise Error(f"{run.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
+    return None if value is None else float(value)
+
+
 class GrowingResults(Results):
     """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
 
@@ -617,7 +362,7 @@ class SpecimenFolder:
     def fact(self, name: str) -> float:
         """A number of specimen.json. Raises Error where there is none of that name."""
         value = self.facts.get(name)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
+        if not is_number(value):
             raise Error(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
         return value
 
