@@ -61,9 +61,9 @@ class Table:
     def text(self, key: str, meaning: str, fallback: str | None = None) -> str: ...
     def texts(self, key: str, meaning: str, is_optional: bool) -> list[str]: ...
     def choice(self, key: str, words: Sequence[tuple[str, str]], is_optional: bool, meaning: str) -> str:
-        """One of several words, each with its meaning; the first of them where an optional key is absent."""
+        """Returns one of several words, each with its meaning; the first of them where an optional key is absent."""
     def json(self, key: str, value: str, meaning: str) -> str:
-        """Whatever stands at the key, as JSON. value: what is written, for the reference."""
+        """Returns whatever stands at the key, as JSON. value: what is written, for the reference."""
     def has(self, key: str) -> bool: ...
     def know(self, keys: Sequence[str]) -> None: ...
     def ok(self) -> bool: ...
@@ -83,7 +83,7 @@ class Body:
     def hold(self, stress: float) -> None:
         """Moves the upper platen by a force alone: a stress [Pa] times the area."""
     def set_temperature(self, temperature: float) -> None:
-        """Another temperature [degC] of the whole specimen, handed to the mechanics."""
+        """Hands another temperature [degC] of the whole specimen to the mechanics."""
     @property
     def strain(self) -> float: ...
     @property

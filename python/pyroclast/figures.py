@@ -79,7 +79,7 @@ class Picture:
 
 def figures_of(run: Results, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[Picture]:
-    """The figures that a run has; the arguments are those of `draw_run`."""
+    """Yields the figures that a run has; the arguments are those of `draw_run`."""
     hot = Heated(run)
     if temperatures is not None and not run.has_fields:
         raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
@@ -104,7 +104,7 @@ def _fractured(name: str, drawn: Rows, magnification: float | None) -> Picture:
 
 
 def _inside(run: Results) -> Iterator[Picture]:
-    """The cracks inside of a solid whose contacts can break."""
+    """Yields the cracks inside of a solid whose contacts can break."""
     if run.frames and run.crack_modes and run.mesh.blocks.dimension == 3:
         yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
 
@@ -291,7 +291,7 @@ def _positive(text: str) -> float:
 
 
 def _width(text: str) -> float:
-    """Inches, of a length such as 90mm."""
+    """Returns the inches of a length such as 90mm."""
     match = re.fullmatch(r"\s*([0-9]*\.?[0-9]+)\s*(mm|cm|in)\s*", text)
     inches = float(match[1]) / _PER_INCH[match[2]] if match else 0.0
     if not NARROWEST <= inches <= WIDEST:
@@ -312,7 +312,7 @@ def _share(text: str) -> float:
 
 
 def _panel_numbers(text: str) -> list[int]:
-    """Numbers of panels, or letters: A is 1."""
+    """Returns numbers of panels, or letters: A is 1."""
     try:
         return [ord(part.upper()) - ord("A") + 1 if part.isalpha() and len(part) == 1 else _positive_whole(part)
                 for part in text.split(",")]

@@ -15,7 +15,7 @@ MATPLOTLIB_TOLD = "PYROCLAST_MATPLOTLIB_TOLD"
 
 
 def library(name: str, purpose: str) -> Any:
-    """The library, or an `Error` that tells what to install and what for."""
+    """Returns the library, or an `Error` that tells what to install and what for."""
     try:
         return importlib.import_module(name)
     except ImportError as missing:

@@ -47,7 +47,7 @@ def _option(action: argparse.Action) -> Option:
 
 
 def _read(name: str, meaning: str, parser: argparse.ArgumentParser) -> Command:
-    """A command of the package, from its parser."""
+    """Returns a command of the package, from its parser."""
     options, commands = [], []
     for action in parser._actions:  # argparse has no public list of them
         if isinstance(action, argparse._SubParsersAction):
@@ -59,7 +59,9 @@ def _read(name: str, meaning: str, parser: argparse.ArgumentParser) -> Command:
 
 
 def _with_names(path: str) -> list[str]:
-    """Paths as --set takes them, of a path of the reference of decks: "[]" is a first table, NAME an interface of most decks."""
+    """Returns paths as --set takes them, of a path of the reference of decks: "[]" is a first table, NAME an interface
+    of most decks.
+    """
     path = path.replace("[]", "[0]")
     return [path.replace("NAME", name) for name in ("mortar_mortar", "aggregate_mortar", "aggregate_aggregate")] \
         if "NAME" in path else [path]
@@ -93,7 +95,7 @@ class CommandLine:
 
 
 def _roff(text: str) -> str:
-    """A text in which roff finds no commands."""
+    """Returns a text in which roff finds no commands."""
     text = text.replace("\\", "\\e").replace("-", "\\-")
     return f"\\&{text}" if text.startswith((".", "'")) else text
 
@@ -114,7 +116,7 @@ def _page_of(command: Command, above: str = "") -> str:
 
 
 def manual(line: CommandLine) -> str:
-    """The manual page, for man."""
+    """Returns the manual page, for man."""
     text = f'.TH PYROCLAST 1 "" "pyroclast {line.version}"\n.SH NAME\npyroclast \\- {_roff(line.meaning)}\n'
     text += ".SH SYNOPSIS\n\\fBpyroclast\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH COMMANDS\n"
     text += "".join(map(_page_of, line.commands))
@@ -130,7 +132,7 @@ def _words(command: Command) -> str:
 
 
 def bash(line: CommandLine) -> str:
-    """The completion of bash."""
+    """Returns the completion of bash."""
     cases = []
     for command in line.commands:
         second = [below.name for below in command.commands] or [
@@ -180,14 +182,14 @@ complete -o filenames -F _pyroclast pyroclast
 
 
 def _quoted(text: str) -> str:
-    """A text between single quotes of zsh, in which _arguments finds no marks of its own."""
+    """Returns a text between single quotes of zsh, in which _arguments finds no marks of its own."""
     for mark in "\\[]:":
         text = text.replace(mark, f"\\{mark}")
     return text.replace("'", "'\\''")
 
 
 def _arguments(command: Command) -> str:
-    """What _arguments of zsh is told of a command."""
+    """Returns what _arguments of zsh is told of a command."""
     told = []
     for option in command.options:
         values = f"({' '.join(option.choices)})" if option.choices else "_files"
@@ -206,7 +208,7 @@ def _described(commands: Sequence[Command]) -> str:
 
 
 def zsh(line: CommandLine) -> str:
-    """The completion of zsh."""
+    """Returns the completion of zsh."""
     cases = []
     for command in line.commands:
         if not command.commands:

@@ -13,7 +13,7 @@ R = TypeVar("R")
 
 
 def map_runs(function: Callable[[T], R], items: Iterable[T], processes: int | None = None) -> list[R]:
-    """What the function makes of each item, in their order; every call in a process that is started by spawn.
+    """Returns what the function makes of each item, in their order; every call in a process that is started by spawn.
 
     function: of a module, so that another process finds it; it makes the runs, best with `threads=1`, and returns what
         can be pickled. A script guards its own calls by `if __name__ == "__main__":`.

@@ -94,7 +94,7 @@ class _Curve:
 
 
 def _record_curve(run: GrowingResults) -> _Curve:
-    """Of a body without platens."""
+    """Returns the curve of a body without platens."""
     course = heating_course(run) if Heated(run).is_last else record_course(run)
     record = leading(records_of(run))
     if record is None:
@@ -126,7 +126,8 @@ class Watch:
     """
 
     def __init__(self, folder: str | Path, picture: str | Path | None = None):
-        """picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder."""
+        """Watches a run. picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder.
+        """
         self.run = GrowingResults(folder)
         self.picture = Path(picture) if picture is not None else None
         self._lock = Lock(self.run.folder)
@@ -164,7 +165,7 @@ class Watch:
         return is_new
 
     def headlines(self) -> list[str]:
-        """What the run is, how far it has come, and the latest numbers; a line each."""
+        """Returns what the run is, how far it has come, and the latest numbers; a line each."""
         try:
             title = " ".join(self.run.title.split())
         except Error:
@@ -190,7 +191,7 @@ class Watch:
         return f"{how}{f' in {stage}' if stage else ''}; to go on: pyroclast resume {shell_path(self.folder)}"
 
     def _stage(self) -> str:
-        """Number and kind of the stage, and what the log says of how far it is."""
+        """Returns the number and kind of the stage, and what the log says of how far it is."""
         said = re.findall(r"^\d\d:\d\d:\d\d stage (\d+) of \d+ \((\w+)\) +(?:(\d+ %), +(\S[^,]*? left)?)?",
                           self._end_of_log(), re.MULTILINE)
         number, kind, share, left = said[-1] if said else ("", "", "", "")
@@ -287,7 +288,7 @@ class Watch:
             style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncol=4)
 
     def _place_of(self, frame: Frame) -> str:
-        """At what state a frame was saved."""
+        """Returns at what state a frame was saved."""
         if frame.temperature is not None and np.isfinite(frame.temperature) and frame.heating_time:
             return f"{'' if Heated(self.run).uniform else 'mean '}{frame.temperature:.0f} °C, "
         if not np.isfinite(frame.strain):
@@ -295,7 +296,7 @@ class Watch:
         return f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$, "
 
     def text(self, columns: int, rows: int) -> list[str]:
-        """Headlines and curve in plain characters, in at most so many columns and rows."""
+        """Returns headlines and curve in plain characters, in at most so many columns and rows."""
         lines = [part for line in self.headlines() for part in textwrap.wrap(plain_label(line), columns)]
         try:
             drawn = _curve_of(self.run)
@@ -306,7 +307,7 @@ class Watch:
         return [line[:columns] for line in lines[:rows]]
 
     def png(self) -> bytes:
-        """The picture."""
+        """Returns the picture."""
         return style.png(self.draw())
 
     def save(self) -> Path:
@@ -333,7 +334,7 @@ class Watch:
 
 
 def _own_place(folder: Path) -> Path:
-    """Of a picture of a run whose folder is another's, or is on a disk that is only read."""
+    """Returns the place of a picture of a run whose folder is another's, or is on a disk that is only read."""
     try:
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     except RuntimeError:  # a user without a home
@@ -351,7 +352,7 @@ class _Kept:
     """A file that is written anew now and then, in a share of a processor's time. What hinders this is told once."""
 
     def __init__(self, what: str, every: float, write: Callable[[bool], None]):
-        """write: gets whether it is the last time."""
+        """Takes what writes. write: gets whether it is the last time."""
         self._what, self._every, self._write = what, every, write
         self._due, self._told = 0.0, False
 
@@ -432,7 +433,8 @@ _SCREENS = {"terminal": _Terminal, "lines": _Lines, "nothing": _Nothing}
 
 
 def _screen(asked: str | None, has_page: bool | None, watch: Watch) -> _Nothing:
-    """asked: one of _SCREENS; without it, what there is. has_page: None: where there is a display."""
+    """Returns the screen. asked: one of _SCREENS; without it, what there is. has_page: None: where there is a display.
+    """
     has_terminal = sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
     if asked is None or asked == "terminal" and not has_terminal:
         asked = "terminal" if has_terminal else "lines"
@@ -473,7 +475,7 @@ def _once(watch: Watch) -> None:
 
 
 def _print(lines: Sequence[str], before: str = "") -> None:
-    """In one piece, in the characters that the terminal has."""
+    """Prints a text in one piece, in the characters that the terminal has."""
     text = before + "".join(f"{seen_on_a_line(line)}\n" for line in lines)
     sys.stdout.flush()
     os.write(sys.stdout.fileno(), text.encode(sys.stdout.encoding or "ascii", errors="replace"))

@@ -17,7 +17,7 @@ from .texts import seen_on_a_line
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """A file beside `path` that is written, and then takes its place; where something goes wrong there is none.
+    """Lends a file beside `path` to be written, which then takes its place; where something goes wrong there is none.
 
     It is made under a name that was free. A link at `path` is replaced and not followed. `--overwrite` knows its
     ending.
@@ -32,13 +32,13 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """The file is there whole or not at all."""
+    """Writes a text: its file is there whole or not at all."""
     with whole(path) as aside:
         aside.write_text(text, encoding="utf-8", newline="")
 
 
 def make_folder(path: Path) -> Path:
-    """Of a fixed name, where there is none. Raises OSError where it is a link."""
+    """Makes a folder of a fixed name, where there is none. Raises OSError where it is a link."""
     path.mkdir(parents=True, exist_ok=True)
     refuse_link(path)
     return path

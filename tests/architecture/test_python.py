@@ -1,7 +1,9 @@
-"""Imports of the Python package run one way, down its floors, and a name of a class stands for one thing."""
+"""Imports of the Python package run one way, down its floors; a name of a class stands for one thing; docstrings of
+functions begin with a verb."""
 
 import ast
 import pathlib
+import re
 import tempfile
 import unittest
 
@@ -17,6 +19,12 @@ FLOORS = (
 )
 """From the ground up: the files and folders of the package. A module imports from its own floor and from those below
 it."""
+
+
+NO_NOUNS = {"After", "Against", "As", "At", "Before", "Beside", "By", "For", "From", "In", "Of", "On", "Over", "Returns",
+            "That", "Until", "With", "Without"}
+NO_VERBS = {"As", "Columns", "Curves", "Files", "Fields", "Frames", "Its", "Lines", "Points", "Results", "Rows", "This",
+            "Values"}
 
 
 def modules(package: pathlib.Path) -> dict[str, pathlib.Path]:
@@ -126,6 +134,23 @@ def members(package: pathlib.Path, file: str, of: str) -> list[str]:
     return sorted(name for name in names if not name.startswith("_"))
 
 
+def without_verb(package: pathlib.Path) -> list[str]:
+    """Returns functions whose docstring begins with no word like "Returns", and properties and classes whose docstring
+    begins with "Returns" or a preposition, as "file:line name".
+    """
+    found = []
+    for path in [*package.rglob("*.py"), *package.rglob("*.pyi")]:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, (ast.FunctionDef, ast.ClassDef)) or not (told := ast.get_docstring(node)):
+                continue
+            first = told.split()[0].rstrip(",;.:")
+            is_function = isinstance(node, ast.FunctionDef) and not any("property" in ast.unparse(decorator)
+                                                                        for decorator in node.decorator_list)
+            if (first in NO_VERBS or not re.fullmatch("[A-Z][a-z]+s", first)) if is_function else first in NO_NOUNS:
+                found.append(f"{path.relative_to(package).as_posix()}:{node.lineno} {node.name}")
+    return sorted(found)
+
+
 class Package(unittest.TestCase):
     def package(self, files: dict[str, str]) -> pathlib.Path:
         folder = tempfile.TemporaryDirectory()
@@ -174,6 +199,16 @@ class Package(unittest.TestCase):
         files = {"one.py": "class Run:\n    kind = 1\n    _own: int = 2\n    def __init__(self):\n"
                            "        self.folder = self._secret = 3\n        local = 4\n    def walk(self): pass\n"}
         self.assertEqual(members(self.package(files), "one.py", "Run"), ["folder", "kind", "walk"])
+
+    def test_docstrings_of_functions_begin_with_a_verb_and_others_with_a_noun(self):
+        self.assertEqual(without_verb(PACKAGE), [])
+
+    def test_a_docstring_without_a_verb_is_found(self):
+        files = {"one.py": "def f():\n    'Of a run.'\ndef g():\n    'Returns a run.'\ndef h(): pass\n"
+                           "class Run:\n    'A run.'\n    @property\n    def length(self):\n        'Its length.'\n"
+                           "    @property\n    def title(self):\n        'Of the deck.'\n"
+                           "    def walk(self):\n        'Rows of the table.'\n"}
+        self.assertEqual(without_verb(self.package(files)), ["one.py:1 f", "one.py:12 title", "one.py:14 walk"])
 
     def test_no_class_has_the_name_of_another(self):
         self.assertEqual(twice(PACKAGE), [])

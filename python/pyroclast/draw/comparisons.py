@@ -29,7 +29,7 @@ _BAND_LABEL = (f"range of models calibrated\non Anderberg & Thelandersson's\ntes
 
 
 def compare_runs(runs: Sequence[Results], what: str | None = None) -> Figure:
-    """What the runs have in common: total strain or thrust when all end heated, stress-strain when none does.
+    """Draws what the runs have in common: total strain or thrust when all end heated, stress-strain when none does.
 
     what: one of KINDS, to choose oneself. Raises Error when a run does not have it.
     """
@@ -109,7 +109,7 @@ def _label(group: _Group) -> str:
 
 @style.in_style
 def compare_total_strain(runs: Sequence[Results]) -> Figure:
-    """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
+    """Draws the total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
     _demand_heated(runs)
     figure, (axes,), beside = style.panels(4.2, beside=0.42)
     title_together(axes, runs)
@@ -139,7 +139,7 @@ def compare_total_strain(runs: Sequence[Results]) -> Figure:
 
 @style.in_style
 def compare_thrust(runs: Sequence[Results]) -> Figure:
-    """Axial stress over temperature, or minutes where no run is uniform, each by itself."""
+    """Draws the axial stress over temperature, or minutes where no run is uniform, each by itself."""
     _demand_heated(runs)
     over, label = _axis(runs)
     figure, (axes,), beside = style.panels(4.2, beside=0.42)
@@ -164,8 +164,8 @@ def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results],
 
 @style.in_style
 def compare_cracks(runs: Sequence[Results]) -> Figure:
-    """Length of broken contacts by mode, of solids their area, and the mean opening: while heated, or over strain if
-    none ends heated.
+    """Draws the length of broken contacts by mode, of solids their area, and the mean opening: while heated, or over
+    strain if none ends heated.
     """
     if len({Heated(run).is_last for run in runs}) > 1:
         raise Error("compare: cracks of runs that end heated and of others have no common axis")
@@ -200,7 +200,7 @@ def compare_cracks(runs: Sequence[Results]) -> Figure:
 
 
 def _curves_of(group: _Group, over: Callable[[Results], np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """What runs are drawn over, and their total strain [10^-3], while they stood."""
+    """Returns what runs are drawn over, and their total strain [10^-3], while they stood."""
     return [(over(hot.run)[rows], style.PER_MILLE * hot.total_strain[rows])
             for hot in map(Heated, group.runs) for rows in [hot.standing[hot.rows]]]
 
@@ -228,17 +228,17 @@ def _demand_heated(runs: Sequence[Results]) -> None:
 
 
 def _timed(runs: Sequence[Results]) -> bool:
-    """Whether the runs are drawn over minutes: all are."""
+    """Returns whether the runs are drawn over minutes, which takes that all of them are."""
     return all(Heated(run).timed for run in runs)
 
 
 def _over(runs: Sequence[Results]) -> tuple[str, float]:
-    """The same for references."""
+    """Returns what their references are drawn over."""
     return over_minutes(_timed(runs))
 
 
 def _axis(runs: Sequence[Results]) -> tuple[Callable[[Results], np.ndarray], str]:
-    """What heated runs are drawn over, and its label."""
+    """Returns what heated runs are drawn over, and its label."""
     if _timed(runs):
         return heating_minutes, MINUTES_LABEL
     label = temperature_label(next((run for run in runs if not Heated(run).uniform), runs[0]))

@@ -46,23 +46,25 @@ CRACKS = (
 
 
 def can_crack(run: Results, interfaces: Collection[str]) -> np.ndarray:
-    """(C,) bool: contact points of these interfaces."""
+    """Returns (C,) bool: contact points of these interfaces."""
     contacts = run.mesh.contacts
     return np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in interfaces])
 
 
 def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
-    """(C,) bool: contact points that are drawn so."""
+    """Returns (C,) bool: contact points that are drawn so."""
     return can_crack(run, run.crack_modes[crack.mode]) & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
 
 
 def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Cracked contact points that a figure of fracture draws, by mode (of `Results.crack_modes`) and whether broken."""
+    """Counts cracked contact points that a figure of fracture draws, by mode (of `Results.crack_modes`) and whether
+    broken.
+    """
     return {(crack.mode, crack.broken): int(cracked(run, frame, crack).sum()) for crack in cracks_of(run)}
 
 
 def size_of_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], float]:
-    """Length [m], in space area [m²], of the contact points that `count_cracks` counts."""
+    """Returns the length [m], in space area [m²], of the contact points that `count_cracks` counts."""
     extent = run.mesh.contacts.extent
     return {(crack.mode, crack.broken): float(extent[cracked(run, frame, crack)].sum()) for crack in cracks_of(run)}
 
@@ -72,12 +74,14 @@ def cracks_of(run: Results) -> list[CrackStyle]:
 
 
 def crack_legend(run: Results) -> list[Artist]:
-    """A handle for each way in which the run's cracks are drawn."""
+    """Returns a handle for each way in which the run's cracks are drawn."""
     return [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label) for crack in cracks_of(run)]
 
 
 def material_legend(blocks: BlockMesh, zones: np.ndarray | None = None, bearing: str = "platen") -> list[Artist]:
-    """A handle for each material of some zones; None: of all. bearing: what bearings are called that have no name."""
+    """Returns a handle for each material of some zones; None: of all. bearing: what bearings are called that have no
+    name.
+    """
     shown = blocks.material if zones is None else blocks.material[zones]
     colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
     names = [bearing if kind in blocks.bearing_materials and name == "platen" else name

@@ -33,7 +33,7 @@ MANY = 6
 
 @style.in_style
 def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
-    """The run's curve beside the reference that its deck asks for (paper, Figure 8).
+    """Draws the run's curve beside the reference that its deck asks for (paper, Figure 8).
 
     marks: the frames to point out, by letter, as `select_frames` gives them; may be empty.
     """
@@ -59,7 +59,9 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
 
 
 def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes | None]:
-    """Figure with axes for the curve, for a legend (None where it stands in the first), and for the table, if any."""
+    """Makes a figure with axes for the curve, for a legend (None where it stands in the first), and for the table, if
+    any.
+    """
     if not style.page().has_table:
         figure, (axes,), below = style.panels(4.8, below=0.3)
         return figure, axes, below, None
@@ -101,7 +103,9 @@ def _draw_run(axes: Axes, run: Results) -> None:
 
 
 def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> None:
-    """Anderberg and Thelandersson's law and the peaks of the paper's Table 3. wrapped: labels for a narrow legend."""
+    """Draws Anderberg and Thelandersson's law and the peaks of the paper's Table 3. wrapped: labels for a narrow
+    legend.
+    """
     strain = np.linspace(0.0, min(last_strain, reference.AT_LAST_STRAIN), 300)
     axes.plot(style.PER_MILLE * strain, reference.at_stress(strain), color=style.VERMILLION,
               linestyle=(0, (5, 2)), linewidth=1.2,
@@ -167,7 +171,7 @@ def _draw_table(axes: Axes, run: Results) -> None:
 
 @style.in_style
 def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
-    """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
+    """Draws the curves of several runs, their mean as far as all of them go, and the mean of their peaks.
 
     are_seeds: the runs differ in the seed alone, so that their range is drawn and none has a name.
 
@@ -210,7 +214,7 @@ def compare(runs: Sequence[Results], are_seeds: bool = False) -> Figure:
 
 
 def draw_tables(axes: Axes, runs: Sequence[Results], over: tuple[str, float], *drawn: tuple[str, float]) -> None:
-    """The references of the users' own that the runs' decks ask for, each once.
+    """Draws the users' own references that the runs' decks ask for, each once.
 
     over, drawn: what they are of, as decks name it, and the factor from the history's unit to the axis'.
     """
@@ -228,7 +232,7 @@ def draw_tables(axes: Axes, runs: Sequence[Results], over: tuple[str, float], *d
 
 def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], colour: str,
                 label: str | None = None) -> None:
-    """The range of many curves (x, y), least to greatest, and their mean. label: says both, unless it is None."""
+    """Draws the range of many curves (x, y), least to greatest, and their mean. label: says both, unless it is None."""
     finite = [_advancing(*curve) for curve in curves]
     over = np.linspace(min(x[0] for x, _ in finite), max(x[-1] for x, _ in finite), _MEAN_POINTS)
     values = np.array([np.interp(over, x, y, left=np.nan, right=np.nan) for x, y in finite])
@@ -240,12 +244,12 @@ def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], col
 
 
 def mean_curve(runs: Sequence[Results]) -> tuple[np.ndarray, np.ndarray]:
-    """Strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
+    """Returns strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
     return mean_of([_curve(run) for run in runs])
 
 
 def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
-    """Strain and stress [MPa]; from rest, unless heat came before."""
+    """Returns strain and stress [MPa]; from rest, unless heat came before."""
     test = Compressed(run)
     strain, stress = test.strain, test.column("stress_MPa")
     run.history.known("strain", test.rows)
@@ -255,7 +259,7 @@ def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out.
+    """Returns the mean of curves (x, y) where all have values; points whose x does not exceed all before are left out.
 
     Each curve has a point that is finite.
     """
@@ -265,7 +269,7 @@ def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray
 
 
 def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The finite points of a curve whose x exceeds all before."""
+    """Returns the finite points of a curve whose x exceeds all before."""
     rows = np.isfinite(x) & np.isfinite(y)
     if not rows.any():
         raise Error("compare: a run has no finite value of the compared quantity")
@@ -291,8 +295,8 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
 
 
 def names_apart(runs: Sequence[Results], written: Callable[[str], str] = style.plain) -> list[str]:
-    """Titles; where these do not tell the runs apart, what differs between their decks, else the shortest ends of the
-    folders' paths. Warnings stay.
+    """Returns titles; where these do not tell the runs apart, what differs between their decks, else the shortest ends
+    of the folders' paths. Warnings stay.
 
     written: how a text of the user's stands in a figure, or elsewhere
     """
@@ -310,7 +314,7 @@ def title_together(axes: Axes, runs: Sequence[Results]) -> None:
 
 
 def ends_apart(folders: Sequence[Path]) -> list[str]:
-    """Of each path as few of its last parts as no other path ends with."""
+    """Returns of each path as many of its last parts as tell it from the others."""
     ends = []
     for folder in folders:
         others = [other for other in folders if other != folder]

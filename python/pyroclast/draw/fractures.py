@@ -53,7 +53,7 @@ _BOTH = 0.45  # width of tension on a contact that broke in shear too
 
 
 def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: float) -> dict[str, Frame]:
-    """Frames A to D, by letter: before the peak, at it, after it, and the end.
+    """Returns frames A to D, by letter: before the peak, at it, after it, and the end.
 
     B is the frame nearest to the peak, by strain and stress, each over that of the peak; A, among those before, the
     one nearest to 85 % of its strain; D the last; C, between B and D, the one whose stress is nearest to 80 % of the
@@ -96,12 +96,12 @@ class Rows:
 
     @property
     def panels(self) -> list[Panel]:
-        """All that have a frame."""
+        """All panels that have a frame."""
         return [panel for _, panels in self.rows for panel in panels if panel.frame]
 
 
 def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
-    """The deformed specimen with its cracks at the marked frames (paper, Figure 9).
+    """Takes the deformed specimen with its cracks at the marked frames (paper, Figure 9).
 
     marks: as `select_frames` gives them.
     """
@@ -118,7 +118,7 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
 
 
 def broken_share(run: Results, frame: Frame) -> float:
-    """Extent of broken contact points, by any mode, over that of all that can break."""
+    """Returns the extent of broken contact points, by any mode, over that of all that can break."""
     inner = can_crack(run, {name for names in run.crack_modes.values() for name in names})
     broken = np.zeros(len(inner), dtype=bool)
     for crack in cracks_of(run):
@@ -129,8 +129,8 @@ def broken_share(run: Results, frame: Frame) -> float:
 
 
 def write_counts(path: Path, drawn: Rows) -> None:
-    """A row for each panel: its frame, and by mode how many contact points are broken, or damaged by more than half and
-    not broken, and the extent of both: lengths in m, of a solid areas in m².
+    """Writes a row for each panel: its frame, and by mode how many contact points are broken, or damaged by more than
+    half and not broken, and the extent of both: lengths in m, of a solid areas in m².
     """
     runs = [panel.run for panel in drawn.panels]
     modes = list(dict.fromkeys(mode for run in runs for mode in run.crack_modes))
@@ -164,8 +164,8 @@ class _Look:
 
 @style.in_style
 def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
-    """Deformed specimens with their cracks. Panels of a body that is wide stand one below the other, each with its
-    cracks enlarged.
+    """Draws deformed specimens with their cracks. Panels of a body that is wide stand one below the other, each with
+    its cracks enlarged.
 
     magnification of displacements: the same in all panels; when None, the largest round one at which, in the
     last panel of each row, 95 % of the gridpoints move by less than 6 % of the height.
@@ -201,7 +201,7 @@ def _chosen(drawn: Rows, page: style.Page) -> Rows:
 
 
 def _body_heights(lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> list[float]:
-    """Heights of the bodies of each line, inches, as wide as their panels are."""
+    """Returns heights of the bodies of each line, inches, as wide as their panels are."""
     page = style.page()
     ratio = height_over_width(lines[0][1][0].run.mesh.blocks, look.margin)
     least = 1 if page.is_column or ratio < _WIDE else _PANELS_OF_SQUARE if ratio < _SQUARE else _PANELS
@@ -210,7 +210,7 @@ def _body_heights(lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> 
 
 
 def _height(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> float:
-    """Height of the whole figure, inches, with bodies as wide as their panels."""
+    """Returns the height of the whole figure, inches, with bodies as wide as their panels."""
     heights = _body_heights(lines, look)
     return sum(heights) + sum(_text_heights(drawn, lines, look, heights))
 
@@ -230,7 +230,7 @@ def _draw_lines(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look:
 
 def _draw_stacked(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look,
                   box: tuple[np.ndarray, np.ndarray]) -> Figure:
-    """Each panel a line of its own: the body, and beside it what is enlarged."""
+    """Draws each panel on a line of its own: the body, and beside it what is enlarged."""
     page = style.page()
     blocks = lines[0][1][0].run.mesh.blocks
     body = _BODY_SHARE * page.width - 0.12
@@ -259,8 +259,8 @@ def _draw_stacked(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], loo
 
 def _figure(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look, heights: Sequence[float],
             widths: Sequence[float]) -> tuple[Figure, GridSpec]:
-    """Figure with a heading, and a grid for panels of these heights, inches, and relative widths, with a row for the
-    legend below. Panels are lower where the figure would be too high.
+    """Makes a figure with a heading, and a grid for panels of these heights, inches, and relative widths, with a row
+    for the legend below. Panels are lower where the figure would be too high.
     """
     page = style.page()
     texts, legend = _text_heights(drawn, lines, look, heights)
@@ -278,7 +278,7 @@ def _heading(drawn: Rows, look: _Look) -> str:
 
 def _text_heights(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look,
                   heights: Sequence[float]) -> tuple[float, float]:
-    """Heights, inches, of titles, captions and heading, and of the legend."""
+    """Returns heights, inches, of titles, captions and heading, and of the legend."""
     larger = style.page().size(6.5) / 6.5
     captions = [(2 if style.page().is_column else 1) if look.enlarged else
                 max(panel.caption.count("\n") + 1 for panel in panels) for _, panels in lines]
@@ -290,7 +290,7 @@ def _text_heights(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], loo
 
 
 def _legend(drawn: Rows, look: _Look) -> tuple[list, int, str]:
-    """Handles, in how many columns they stand, and what stands above them."""
+    """Returns handles, in how many columns they stand, and what stands above them."""
     page = style.page()
     columns = max(2, page.fitting(1.6)) if page.is_column else 4
     return fracture_legend(drawn.panels[0].run), columns, _note(drawn, look)
@@ -314,7 +314,8 @@ def _note(drawn: Rows, look: _Look) -> str:
 
 
 def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
-    """The deformed specimen with its cracks, alone in its axes. Returns the magnification of its displacements."""
+    """Draws the deformed specimen with its cracks, alone in its axes; returns the magnification of its displacements.
+    """
     magnification = _visible_magnification(run, frame)
     panel = Panel(run, frame, "", "")
     margin = _margin([(run.mesh.blocks, _moved(panel, magnification))])
@@ -325,12 +326,12 @@ def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
 
 
 def fracture_legend(run: Results) -> list:
-    """Handles of the cracks and materials that `fracture_panels` and `draw_specimen` draw."""
+    """Returns handles of the cracks and materials that `fracture_panels` and `draw_specimen` draw."""
     return crack_legend(run) + material_legend(run.mesh.blocks, bearing="platen" if run.has_platens else "bearing")
 
 
 def _moved(panel: Panel, magnification: float) -> np.ndarray:
-    """(N, 2), m: gridpoints where they are drawn."""
+    """Returns (N, 2), m: gridpoints where they are drawn."""
     points = panel.run.mesh.blocks.points
     return points + magnification * panel.run.gridpoint_displacement(panel.frame) if panel.frame else points
 
@@ -349,7 +350,7 @@ def _draw_panel(axes: Axes, panel: Panel, look: _Look) -> None:
 
 
 def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
-    """What holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows.
+    """Returns the box that holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows.
 
     panels: blocks, and where their gridpoints are drawn, m.
     """
@@ -371,14 +372,14 @@ def _visible_magnification(run: Results, frame: Frame) -> float:
 
 
 def _jumps(run: Results, frame: Frame) -> np.ndarray:
-    """(C,), m: how far the sides of contact points have come apart or slipped, whichever is more."""
+    """Returns (C,), m: how far the sides of contact points have come apart or slipped, whichever is more."""
     opening, slip = (run.contact_field(frame, name) for name in ("opening [m]", "tangential_jump [m]"))
     return np.maximum(opening, np.abs(slip))
 
 
 def _full_width(panels: Sequence[Panel]) -> float:
-    """Size [m] of the jump from which on a broken crack is drawn in full width: the median of the broken, to two
-    digits.
+    """Returns the size [m] of the jump from which on a broken crack is drawn in full width: the median of the broken,
+    to two digits.
     """
     sizes = [_jumps(panel.run, panel.frame)[cracked(panel.run, panel.frame, crack)] for panel in panels
              for crack in cracks_of(panel.run) if crack.broken]
@@ -387,7 +388,9 @@ def _full_width(panels: Sequence[Panel]) -> float:
 
 
 def _crack_box(lasts: Sequence[Panel], magnification: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners [m] of what holds the cracks of the last panels; None without cracks, or where they are all over."""
+    """Returns the corners [m] of the box that holds the cracks of the last panels; None without cracks, or where they
+    are all over.
+    """
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for panel in lasts:
         blocks, contacts = panel.run.mesh.blocks, panel.run.mesh.contacts
@@ -410,7 +413,7 @@ def _crack_box(lasts: Sequence[Panel], magnification: float) -> tuple[np.ndarray
 
 def _enlarged(box: tuple[np.ndarray, np.ndarray], scale: float, room: tuple[float, float],
               look: _Look) -> tuple[float, _Look]:
-    """The largest round enlargement at which a box stands in a room, inches, and the look with what it shows.
+    """Returns the largest round enlargement at which a box stands in a room, inches, and the look with what it shows.
 
     scale: inches on paper over metres of the body that is enlarged.
     """
@@ -447,7 +450,7 @@ def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
 
 
 def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
-    """Factor on line widths that keeps cracks apart where blocks are small in print."""
+    """Returns the factor on line widths that keeps cracks apart where blocks are small in print."""
     low, high = panel_box(blocks)
     points_per_metre = 72.0 * style.page().width / columns / (high - low)[0]
     # the extent of a contact point is half of an edge, or the part of a face at a corner

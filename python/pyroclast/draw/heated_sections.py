@@ -39,7 +39,7 @@ ISOTHERMS = (300.0, 500.0, 700.0)
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
-    """The frame nearest to a temperature [°C] on the way up to the hottest; None when none is within 25 K.
+    """Returns the frame nearest to a temperature [°C] on the way up to the hottest; None when none is within 25 K.
 
     frames: heated ones, in order, at least one.
     """
@@ -49,7 +49,7 @@ def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
 
 
 def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
-    """At most five frames: those nearest to TEMPERATURES, the last, and, if the run failed, the one before.
+    """Selects at most five frames: those nearest to TEMPERATURES, the last, and, if the run failed, the one before.
 
     When these are too many, the coolest go.
     frames: heated ones, in order, at least one.
@@ -64,7 +64,7 @@ def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
 
 
 def heating_fracture(run: Results, temperatures: Sequence[float] | None = None) -> Rows:
-    """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
+    """Takes the deformed specimen with its cracks while heated (paper, Figures 13 to 16).
 
     temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
     when None, as `select_heated_frames` has it.
@@ -91,7 +91,7 @@ def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) 
 
 
 def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES) -> Rows:
-    """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
+    """Takes fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
 
     temperatures: °C; a panel stays empty where a run has no frame within 25 K.
     """
@@ -103,7 +103,7 @@ def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPER
 
 
 def _row_labels(runs: Sequence[Results]) -> list[str]:
-    """Load, and where that does not tell the runs apart also the folder; then warnings."""
+    """Returns the load, with the folder where loads do not tell the runs apart, and then warnings."""
     loads = [style.load_label(run) for run in runs]
     labels = []
     for run, load in zip(runs, loads):
@@ -148,7 +148,8 @@ def _panel(run: Results, frame: Frame) -> Panel:
 
 @style.in_style
 def temperature_field(run: Results) -> Figure:
-    """Temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms."""
+    """Draws the temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms.
+    """
     blocks, page = run.mesh.blocks, style.page()
     frames = page.chosen(_spread(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
@@ -179,7 +180,7 @@ def temperature_field(run: Results) -> Figure:
 
 
 def _scale_of(fields: Sequence[np.ndarray]) -> Normalize:
-    """From room temperature, or what is cooler, to the hottest."""
+    """Returns a scale from room temperature, or what is cooler, to the hottest."""
     coolest, hottest = min(field.min() for field in fields), max(field.max() for field in fields)
     return Normalize(min(_ROOM, coolest), max(_ROOM + 1.0, hottest))
 
@@ -189,7 +190,9 @@ def _is_timed(frame: Frame) -> bool:
 
 
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
-    """The temperature of the specimen, alone in its axes, coloured up to its hottest. Returns what has the colours."""
+    """Draws the temperature of the specimen, alone in its axes, coloured up to its hottest; returns what has the
+    colours.
+    """
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]
@@ -199,7 +202,7 @@ def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
 
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:
-    """Up to four of the frames, evenly among those of different temperature, the last among them."""
+    """Chooses up to four of the frames, evenly among those of different temperature, the last among them."""
     different = [frame for before, frame in zip([None, *frames], frames)
                  if before is None or frame.temperature != before.temperature]
     steps = np.linspace(0, len(different) - 1, min(_FIELDS + 1, len(different)))[-_FIELDS:]
@@ -226,7 +229,7 @@ def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normal
 
 
 def _draw_isotherms(axes: Axes, blocks: BlockMesh, zones: np.ndarray, field: np.ndarray) -> None:
-    """Lines of ISOTHERMS with their temperatures, through all blocks whose gridpoints meet."""
+    """Draws lines of ISOTHERMS with their temperatures, through all blocks whose gridpoints meet."""
     within = field[np.unique(zones)]
     passed = [level for level in ISOTHERMS if within.min() < level < within.max()]
     if not passed:

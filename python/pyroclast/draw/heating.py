@@ -35,7 +35,7 @@ _BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests
 
 @style.in_style
 def total_strain(run: Results) -> Figure:
-    """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
+    """Draws the total and lateral strain over temperature; the reference's range where it has the run's load level."""
     hot = Heated(run)
     figure, over, upper, lower, below = _two_while_heated(run)
     strain = style.PER_MILLE * hot.total_strain
@@ -62,7 +62,7 @@ def total_strain(run: Results) -> Figure:
 
 @style.in_style
 def thrust(run: Results) -> Figure:
-    """Stress that a restrained specimen builds up against its platens, and lateral strain."""
+    """Draws the stress that a restrained specimen builds up against its platens, and lateral strain."""
     hot = Heated(run)
     figure, over, upper, lower, below = _two_while_heated(run)
     stress = hot.column("stress_MPa")
@@ -83,7 +83,7 @@ def thrust(run: Results) -> Figure:
 
 
 def _draw_heated_parent(axes: Axes, run: Results, column: str, factor: float) -> None:
-    """A column of the run that this one is a fork of, where that was heated too."""
+    """Draws a column of the run that this one is a fork of, where that was heated too."""
     if run.parent and Heated(run.parent).rows.any():
         history, rows = run.parent.history, Heated(run.parent).standing
         over = history["heating_time_s"] / 60.0 if Heated(run).timed else history["temperature_degC"]
@@ -91,8 +91,8 @@ def _draw_heated_parent(axes: Axes, run: Results, column: str, factor: float) ->
 
 
 def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axes | None]:
-    """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
-    the temperature, or minutes where the run is `timed`.
+    """Makes a figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are
+    drawn over: the temperature, or minutes where the run is `timed`.
     """
     hot = Heated(run)
     over = heating_minutes(run) if hot.timed else hot.column("temperature_degC")
@@ -111,12 +111,12 @@ def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axe
 
 
 def over_minutes(timed: bool) -> tuple[str, float]:
-    """What references of a heating are drawn over, see draw_tables: minutes, or the temperature."""
+    """Returns what references of a heating are drawn over, see draw_tables: minutes, or the temperature."""
     return ("heating_time", 1.0 / 60.0) if timed else ("temperature", 1.0)
 
 
 def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | None = None) -> None:
-    """The band's range, paler where it is not to be trusted, and its centre."""
+    """Draws the band's range, paler where it is not to be trusted, and its centre."""
     trusted = band.temperature <= reference.TRUSTED_TO
     beyond = band.temperature >= reference.TRUSTED_TO
     low, central, high = (style.PER_MILLE * values for values in (band.low, band.central, band.high))
@@ -127,7 +127,7 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 
 
 def mark_leaving(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
-    """An arrow where a curve leaves the axes downwards for good, with how far it goes."""
+    """Draws an arrow where a curve leaves the axes downwards for good, with how far it goes."""
     low, high = axes.get_ylim()
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]
@@ -143,8 +143,8 @@ def mark_leaving(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
 
 
 def _before_failing(run: Results) -> np.ndarray:
-    """(n,) total strain while the specimen stood, without the rows at the end in which it fell by far more each than
-    before, where it failed.
+    """Returns (n,) total strain while the specimen stood, without the rows at the end in which it fell by far more each
+    than before, where it failed.
     """
     hot = Heated(run)
     strain = hot.total_strain[hot.standing[hot.rows]]
@@ -159,7 +159,9 @@ def _before_failing(run: Results) -> np.ndarray:
 
 
 def strain_limits(runs: Sequence[Results], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Limits [10^-3] that show bands, tables and total strains to failure, but not how far a failing specimen went."""
+    """Returns limits [10^-3] that show bands, tables and total strains to failure, but not how far a failing specimen
+    went.
+    """
     tables = [values for run in runs for own in run.references.tables if own.of == "total_strain"
               for values in (own.low, own.high)]
     strains = [_before_failing(run) for run in runs]
@@ -184,7 +186,9 @@ def _mark_unconverged(axes: Axes, run: Results, over: np.ndarray, values: np.nda
 
 
 def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
-    """over: of the rows of the heating, temperatures or minutes; the last is that of the failure."""
+    """Marks where the specimen failed. over: of the rows of the heating, temperatures or minutes; the last is that of
+    the failure.
+    """
     hot = Heated(run)
     if hot.critical_temperature is None or not np.isfinite(over[-1]):
         return
@@ -194,7 +198,7 @@ def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
 
 @style.in_style
 def convergence(run: Results) -> Figure:
-    """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
+    """Draws the cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
     course = heating_course(run)
     exchanged = course["exchange"] > 0
     over, converged = course.over[exchanged], course["converged"][exchanged] > 0
@@ -224,8 +228,8 @@ def convergence(run: Results) -> Figure:
 
 @style.in_style
 def temperature_history(run: Results, profile: Profile | None = None) -> Figure:
-    """Least, mean and greatest temperature of the specimen, its probes and records of temperature, temperatures at
-    DEPTHS, and of the hottest gas, over the time.
+    """Draws the least, mean and greatest temperature of the specimen, its probes and records of temperature,
+    temperatures at DEPTHS, and of the hottest gas, over the time.
 
     profile: temperatures over the depth, see `read_profile`; None: none at DEPTHS.
     """
@@ -253,7 +257,7 @@ def temperature_history(run: Results, profile: Profile | None = None) -> Figure:
 
 
 def _draw_depths(axes: Axes, profile: Profile, minutes: np.ndarray, watched: Sequence[np.ndarray]) -> None:
-    """None that a curve of the deck's own tells already."""
+    """Draws temperatures at DEPTHS, but none that a curve of the deck's own tells already."""
     heated = ScalarMappable(Normalize(-15.0, 65.0), "inferno_r")
     for depth in DEPTHS:
         if depth >= profile.depth[-1]:

@@ -69,8 +69,8 @@ OfRun = TypeVar("OfRun", bound=RunOrResults)
 
 @matplotlib.rc_context(style.STYLE)
 def figure_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> Figure:
-    """Stress over strain, the first records of a body without platens, or temperature over time where nothing moves,
-    beside the section.
+    """Draws stress over strain, the first records of a body without platens, or temperature over time where nothing
+    moves, beside the section.
     """
     figure = style.new_figure(3.6, dpi=_DPI)
     curve, section = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.5, 1.0]})
@@ -102,7 +102,7 @@ def _draw_curve(axes: Axes, run: RunOrResults) -> None:
 
 
 def draw_body(axes: Axes, run: LiveRun) -> None:
-    """The blocks of a run as it stands, and their open cracks."""
+    """Draws the blocks of a run as it stands, and their open cracks."""
     material = run.block_material[run.zone_block]
     of_bearing = ~np.isin(run.zones[:, 0], run.sets["specimen"])
     blocks = BlockMesh(Path(run.title), run.position, run.zones, run.zone_block, material, tuple(run.material_names),
@@ -115,7 +115,9 @@ def draw_body(axes: Axes, run: LiveRun) -> None:
 
 
 def draw_last_frame(axes: Axes, results: Results) -> None:
-    """The specimen at the last frame, with its cracks, or its temperatures where nothing moves; nothing without one."""
+    """Draws the specimen at the last frame, with its cracks, or its temperatures where nothing moves; nothing without
+    one.
+    """
     if not results.frames:
         axes.axis("off")
     elif results.moves:
@@ -127,8 +129,8 @@ def draw_last_frame(axes: Axes, results: Results) -> None:
 
 
 def _cracks(run: LiveRun) -> np.ndarray:
-    """(cracks, 2, 2), m: contact points whose law says that they are damaged by half or more, as lines to the middle of
-    their face.
+    """Returns (cracks, 2, 2), m: contact points whose law says that they are damaged by half or more, as lines to the
+    middle of their face.
     """
     contacts = run.contacts()
     damage = contacts[[name for name in contacts if "damage" in name]].max(axis=1)
@@ -138,7 +140,7 @@ def _cracks(run: LiveRun) -> np.ndarray:
 
 
 def _cracks_of_solid(run: LiveRun, blocks: BlockMesh) -> np.ndarray:
-    """(lines, 2, 3), m: where damaged contact points show on a solid that is cut open."""
+    """Returns (lines, 2, 3), m: where damaged contact points show on a solid that is cut open."""
     contacts = run.contacts()
     damage = contacts[[name for name in contacts if "damage" in name]].max(axis=1).to_numpy()
     cells = cells_of_contacts(contacts[["x_m", "y_m", "z_m"]].to_numpy(), contacts["face"].to_numpy())
@@ -148,12 +150,12 @@ def _cracks_of_solid(run: LiveRun, blocks: BlockMesh) -> np.ndarray:
 
 
 def png_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> bytes:
-    """The figure as a PNG."""
+    """Returns the figure as a PNG."""
     return style.png(figure_of(run, draw_section))
 
 
 def html_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> str:
-    """The figure, and what came of each stage so far; what cannot be read is told in its place."""
+    """Returns the figure, and what came of each stage so far; what cannot be read is told in its place."""
     try:
         headline = html.escape(_headline(run), quote=True)
         rows = "".join(_rows(number, stage) for number, stage in enumerate(run.stages))
@@ -168,7 +170,7 @@ def html_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> str:
 
 
 def _rows(number: int, stage: Mapping[str, Any]) -> str:
-    """Of a table: the stage and how it ended, then its results."""
+    """Returns rows of a table: the stage and how it ended, then its results."""
     told = f"stage {number} ({stage.get('kind', '')}): {stage.get('outcome', '')}"
     return f'<tr><th colspan="2">{html.escape(told)}</th></tr>' + "".join(
         f"<tr><td>{html.escape(name)}</td><td>{html.escape(_shown(value))}</td></tr>"

@@ -30,13 +30,13 @@ class Profile:
     isotherm: np.ndarray  #: (m,) depth to which all of the line is at ISOTHERM or hotter, m
 
     def at(self, depth: float) -> np.ndarray:
-        """(k,) °C at a depth [m], linear between the points."""
+        """Returns (k,) °C at a depth [m], linear between the points."""
         return np.array([np.interp(depth, self.depth, temperature) for temperature in self.temperature])
 
 
 def read_profile(run: Results) -> Profile | None:
-    """temperature_profile.csv and isotherm.csv of a run; None where it has none. Raises Error where the first is no
-    table of as many points for each time.
+    """Reads temperature_profile.csv and isotherm.csv of a run; None where it has none. Raises Error where the first is
+    no table of as many points for each time.
     """
     path = run.folder / "temperature_profile.csv"
     if not path.exists():
@@ -57,7 +57,7 @@ def read_profile(run: Results) -> Profile | None:
 
 @style.in_style
 def temperature_profile(run: Results, profile: Profile) -> Figure:
-    """Temperature over the depth at up to eight times, evenly over the run, the last among them."""
+    """Draws the temperature over the depth at up to eight times, evenly over the run, the last among them."""
     figure, (axes,), beside = style.panels(3.8, beside=0.2)
     axes.set_title(style.title_of(run))
     chosen = sorted({int(np.abs(profile.time - time).argmin())
@@ -78,7 +78,7 @@ def temperature_profile(run: Results, profile: Profile) -> Figure:
 
 @style.in_style
 def isotherm(run: Results, profile: Profile) -> Figure:
-    """How deep the isotherm of ISOTHERM has come, over the time."""
+    """Draws how deep the isotherm of ISOTHERM has come, over the time."""
     figure, (axes,), _ = style.panels(3.2)
     axes.set_title(style.title_of(run))
     axes.plot(profile.isotherm_time / 60.0, style.MILLI * profile.isotherm, color=style.VERMILLION)

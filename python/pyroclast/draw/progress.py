@@ -47,18 +47,18 @@ class Course:
     ordered: bool = True  #: False when time stands in for a temperature that also falls
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """(n,) a column of the history."""
+        """Returns (n,) a column of the history."""
         return self.run.history[name][self.rows]
 
 
 def loading_course(run: Results) -> Course:
-    """The last stage, over strain."""
+    """Takes the last stage, over strain."""
     test = Compressed(run)
     return Course(run, test.rows, style.PER_MILLE * test.strain, style.STRAIN_LABEL, start=0.0)
 
 
 def heating_course(run: Results) -> Course:
-    """The heating, over temperature, or over time when the run is `timed` or also cools."""
+    """Takes the heating, over temperature, or over time when the run is `timed` or also cools."""
     hot = Heated(run)
     temperature, known = hot.column("temperature_degC"), run.history.known("temperature_degC", hot.rows)
     if hot.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
@@ -68,7 +68,7 @@ def heating_course(run: Results) -> Course:
 
 
 def heating_minutes(run: Results) -> np.ndarray:
-    """Time of heating [min] over the rows of `heated`."""
+    """Returns the time of heating [min] over the rows of `Heated`."""
     return Heated(run).column("heating_time_s") / 60.0
 
 
@@ -78,7 +78,7 @@ def temperature_label(run: Results) -> str:
 
 @style.in_style
 def cracks(run: Results) -> Figure:
-    """Length of cracks, of a solid their area, by mode over strain, the stress curve behind."""
+    """Draws the length of cracks, of a solid their area, by mode over strain, the stress curve behind."""
     figure, (axes,), below = style.panels(4.8, below=0.16)
     axes.set_title(style.title_of(run))
     course = loading_course(run)
@@ -93,7 +93,7 @@ def cracks(run: Results) -> Figure:
 
 @style.in_style
 def heating_cracks(run: Results) -> Figure:
-    """Length of cracks, of a solid their area, by mode, and the mean opening, while heated."""
+    """Draws the length of cracks, of a solid their area, by mode, and the mean opening, while heated."""
     figure, (lengths, opening), below = style.panels(5.4, (1.0, 0.6), below=0.2)
     lengths.set_title(style.title_of(run))
     course = heating_course(run)
@@ -110,21 +110,24 @@ def heating_cracks(run: Results) -> Figure:
 
 
 def extent_of_cracks(run: Results) -> tuple[str, str, str]:
-    """What cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
+    """Returns what cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
     in_space = any(f"{mode}_{interface}_area_m2" in run.history.names for mode, interfaces in run.crack_modes.items()
                    for interface in interfaces)  # and not a record of that ending
     return ("Area", "m²", "area_m2") if in_space else ("Length", "m", "length_m")
 
 
 def crack_extent(course: Course, mode: str, is_broken: bool) -> np.ndarray:
-    """(n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage."""
+    """Returns the (n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage.
+    """
     ending = ("broken_" if is_broken else "") + extent_of_cracks(course.run)[2]
     interfaces = course.run.crack_modes.get(mode, [])
     return sum((course[f"{mode}_{name}_{ending}"] for name in interfaces), np.zeros(len(course.over)))
 
 
 def _draw_extents(axes: Axes, course: Course) -> None:
-    """On a logarithmic axis, on which a tenth of all cracks can be seen: broken as lines, damaged as light areas."""
+    """Draws extents on a logarithmic axis, on which a tenth of all cracks can be seen: broken as lines, damaged as
+    light areas.
+    """
     what, unit, _ = extent_of_cracks(course.run)
     drawn = [(mode, is_broken, crack_extent(course, mode, is_broken)) for is_broken in (False, True)
              for mode in course.run.crack_modes]
@@ -163,7 +166,7 @@ def _draw_stress_behind(axes: Axes, course: Course) -> None:
 
 @style.in_style
 def energy(course: Course) -> Figure:
-    """Where the work went, stacked, against the work put in; below, what the change of properties put in, where
+    """Draws where the work went, stacked, against the work put in; below, what the change of properties put in, where
     properties changed, and the ledger's error.
 
     Shares are of the energy turned over: all that was put in or taken out, each by its size.
@@ -208,7 +211,9 @@ def energy(course: Course) -> Figure:
 
 
 def energies_out(run: Results) -> list[tuple[str, str, str, str | None]]:
-    """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
+    """Returns the columns of energies that the run has, with name, colour and hatch: a law may lose others than the
+    paper's.
+    """
     known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
     others = [name for name in run.history.names
               if name.startswith("dissipated_") and name not in {column for column, *_ in ENERGY_OUT}]

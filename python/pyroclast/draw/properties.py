@@ -77,7 +77,7 @@ class PropertyPanel:
 
 
 def panels(table: Mapping[str, Property]) -> list[PropertyPanel]:
-    """One for each kind of property that the table holds."""
+    """Returns a panel for each kind of property that the table holds."""
     contact = _shown_contact(table)
     found = [
         PropertyPanel("Young's modulus", "Ratio to 20 °C [–]", _of_solids(table, "E", lambda p: p.ratio)),
@@ -94,7 +94,7 @@ def panels(table: Mapping[str, Property]) -> list[PropertyPanel]:
 
 @style.in_style
 def properties(table: Mapping[str, Property]) -> Figure:
-    """One panel for each kind of property that the table holds. Raises Error where it holds none of a kind."""
+    """Draws a panel for each kind of property that the table holds. Raises Error where it holds none of a kind."""
     shown = panels(table)
     if not shown:
         raise Error(f"no property of the table has a panel: {', '.join(table)}")
@@ -124,24 +124,24 @@ def _draw(axes: Axes, panel: PropertyPanel) -> None:
 
 
 def _symbols(text: str) -> str:
-    """Words such as f_cm as formulas."""
+    """Returns words such as f_cm as formulas."""
     return re.sub(r"\b([A-Za-z])_(\w+)\b", r"$\1_{\2}$", text)
 
 
 def _solids(table: Mapping[str, Property]) -> list[str]:
-    """Names of the phases, in the order of the file."""
+    """Returns names of the phases, in the order of the file."""
     names = [path.split(".")[1] for path in table if path.startswith("materials.")]
     return [name for name in dict.fromkeys(names) if name != "platen"]
 
 
 def _shown_contact(table: Mapping[str, Property]) -> str:
-    """The interface whose strengths are drawn: that of the mortar, or the last one."""
+    """Returns the interface whose strengths are drawn: that of the mortar, or the last one."""
     names = list(dict.fromkeys(path.split(".")[1] for path in table if path.startswith("contacts.")))
     return "mortar_mortar" if "mortar_mortar" in names or not names else names[-1]
 
 
 def _strengths(table: Mapping[str, Property], contact: str) -> Iterator[PropertyLine]:
-    """Properties with the same ratio share a line."""
+    """Yields a line for all properties that have the same ratio."""
     groups: list[tuple[Property, list[str]]] = []
     for key in _STRENGTHS:
         curve = table.get(f"contacts.{contact}.{key}")
@@ -162,6 +162,6 @@ def _same(a: Property, b: Property) -> bool:
 
 
 def _of_solids(table: Mapping[str, Property], key: str, shown: Callable[[Property], np.ndarray]) -> list[PropertyLine]:
-    """The phases that have the property."""
+    """Returns the phases that have the property."""
     return [PropertyLine(solid, curve, shown(curve)) for solid in _solids(table)
             if (curve := table.get(f"materials.{solid}.{key}")) is not None]

@@ -53,11 +53,11 @@ class Record:
 
     @property
     def factor(self) -> float:
-        """From the history's unit to `unit`."""
+        """Factor from the history's unit to `unit`."""
         return _SHOWN[self.column.rsplit("_", 1)[1]][1]
 
     def of(self, run: HasHistory) -> np.ndarray:
-        """(rows,) in `unit`."""
+        """Returns the record's values (rows,) in `unit`."""
         return self.factor * run.history[self.column]
 
     @property
@@ -70,12 +70,12 @@ class Record:
 
 
 def records_of(run: Results) -> list[Record]:
-    """The records of the deck that the run keeps, in its order."""
+    """Returns the records of the deck that the run keeps, in its order."""
     return records_in(run.deck, run.history.names)
 
 
 def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]:
-    """The records of a deck that are among these columns, in its order."""
+    """Returns the records of a deck that are among these columns, in its order."""
     asked = deck.get("record", [])
     records = []
     for record in asked if isinstance(asked, list) else []:
@@ -87,7 +87,9 @@ def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]
 
 
 def leading(records: list[Record]) -> Record | None:
-    """What a test is about: the first force, else the first stress, else the first that others are not drawn over."""
+    """Returns what a test is about: the first force, else the first stress, else the first that others are not drawn
+    over.
+    """
     over = _first(records, ("opening", "displacement"))
     return _first(records, ("force", "stress")) or next((record for record in records if record is not over), over)
 
@@ -97,7 +99,7 @@ def _first(records: list[Record], kinds: tuple[str, ...]) -> Record | None:
 
 
 def abscissa(run: HasHistory, records: list[Record]) -> tuple[Record | None, np.ndarray, str]:
-    """What the others are drawn over: the first opening, else the first displacement, else time."""
+    """Returns what the others are drawn over: the first opening, else the first displacement, else time."""
     record = _first(records, ("opening", "displacement"))
     if record is None:
         return None, run.history["time_s"], _TIME_LABEL
@@ -105,7 +107,7 @@ def abscissa(run: HasHistory, records: list[Record]) -> tuple[Record | None, np.
 
 
 def record_course(run: Results) -> Course:
-    """All rows in which the body moved, over what records are drawn over."""
+    """Takes all rows in which the body moved, over what records are drawn over."""
     _, over, label = abscissa(run, records_of(run))
     rows = np.isfinite(over)
     return Course(run, rows, over[rows], label, start=float(min(0.0, over[rows].min())), ordered=False)
@@ -123,7 +125,9 @@ class _Panel:
 
 
 def _panels(run: Results) -> list[_Panel]:
-    """One for each kind of record, over what all are drawn over; more where a reference asks for something else."""
+    """Returns a panel for each kind of record, over what all are drawn over; more where a reference asks for something
+    else.
+    """
     found = records_of(run)
     by_name = {record.name: record for record in found}
     common, over, label = abscissa(run, found)
@@ -150,7 +154,7 @@ def _panels(run: Results) -> list[_Panel]:
 
 @style.in_style
 def records(run: Results) -> Figure:
-    """Each kind of record in a panel of its own, over the first opening or displacement that there is. References
+    """Draws each kind of record in a panel of its own, over the first opening or displacement that there is. References
     stand beside them, those over something else in panels of their own.
     """
     panels = _panels(run)
@@ -184,7 +188,7 @@ def _three_digits(value: float) -> str:
 
 
 def _drawn_once(run: Results, found: list[Record]) -> list[list[Record]]:
-    """The records, those together whose curves lie on one another, but for a row here and there."""
+    """Returns the records by curve, those together whose curves lie on one another, but for a row here and there."""
     groups: list[list[Record]] = []
     for record in found:
         values = np.nan_to_num(record.of(run))
@@ -205,7 +209,7 @@ def _colours() -> Iterator[str]:
 
 
 def record_fracture(run: Results) -> Rows:
-    """The specimen where the first force, else the first stress, was largest, and at the end."""
+    """Takes the specimen where the first force, else the first stress, was largest, and at the end."""
     if not run.frames:
         raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
     found = records_of(run)
@@ -224,7 +228,7 @@ def record_fracture(run: Results) -> Rows:
 
 
 def _caption(run: Results, frame: Frame, found: list[Record]) -> str:
-    """What the test is about, what it is drawn over, and the share of its largest value."""
+    """Returns what the test is about, what it is drawn over, and the share of its largest value."""
     row = int(np.searchsorted(run.history["step"], frame.step))
     if row >= run.history.rows:
         return ""

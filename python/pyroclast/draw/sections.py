@@ -22,20 +22,22 @@ MARGIN = np.full((2, 2), 0.08)
 
 
 def panel_box(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of what a panel shows: all blocks, and a margin, m."""
+    """Returns corners of what a panel shows: all blocks, and a margin, m."""
     low, high = block_box(blocks)
     width = (high - low)[0]
     return low - margin[0] * width, high + margin[1] * width
 
 
 def block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner in the picture of all blocks, bearings too, where they were at first, m."""
+    """Returns the lower left and upper right corner in the picture of all blocks, bearings too, where they were at
+    first, m.
+    """
     points = flat(blocks.points)
     return points.min(axis=0), points.max(axis=0)
 
 
 def height_over_width(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> float:
-    """Of what `frame_section` shows."""
+    """Returns the height over the width of what `frame_section` shows."""
     low, high = panel_box(blocks, margin)
     return (high - low)[1] / (high - low)[0]
 
@@ -62,12 +64,12 @@ def cover_by_bearings(axes: Axes, blocks: BlockMesh, points: np.ndarray) -> None
 
 
 def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = MARGIN) -> None:
-    """Limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
+    """Sets limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
     frame_box(axes, *panel_box(blocks, margin))
 
 
 def frame_box(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
-    """The same of a box, by its corners, m."""
+    """Sets the limits of `frame_section` by the corners of a box, m."""
     axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
     axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
     axes.set_aspect("equal")
@@ -79,7 +81,7 @@ def frame_box(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
 
 
 def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
-    """A round length below the specimen's left side; nothing in the picture of a solid, which has its axes."""
+    """Draws a round length below the specimen's left side; nothing in the picture of a solid, which has its axes."""
     if blocks.dimension == 3:
         return
     low, high = specimen_box(blocks)
@@ -92,7 +94,7 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
 
 @style.in_style
 def morphology(specimen: SpecimenFolder) -> Figure:
-    """Blocks by material and the circles that were placed (paper, Figure 7); a solid cut open."""
+    """Draws blocks by material and the circles that were placed (paper, Figure 7); a solid cut open."""
     blocks, circles = specimen.mesh.blocks, specimen.aggregates
     low, high = panel_box(blocks)
     ratio = (high - low)[1] / (high - low)[0]
@@ -121,7 +123,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
 
 
 def _axes_of_morphology(ratio: float) -> tuple[Figure, Axes, Axes]:
-    """Figure with axes for a body of a height over width, and for its legend: beside it, in a column below."""
+    """Makes a figure with axes for a body of a height over width, and for its legend: beside it, in a column below."""
     if style.page().is_column:
         height = 0.85 * style.page().width * ratio
         figure = style.new_figure(1.2 + height)
@@ -141,7 +143,9 @@ def _draw_grains(axes: Axes, specimen: SpecimenFolder) -> None:
 
 
 def _shares(specimen: SpecimenFolder) -> str:
-    """Of the aggregates, where there are circles; else of the materials, where there are several."""
+    """Returns the shares of the aggregates, where there are circles; else those of the materials, where there are
+    several.
+    """
     if specimen.aggregates.rows:
         return (f", {specimen.aggregates.rows} aggregates; aggregate fraction\n"
                 f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
@@ -156,7 +160,7 @@ def _shares(specimen: SpecimenFolder) -> str:
 
 @style.in_style
 def gradation(specimen: SpecimenFolder) -> Figure:
-    """Cumulative passing in the coarse range: asked and placed (paper, Figure 5)."""
+    """Draws the cumulative passing in the coarse range: asked and placed (paper, Figure 5)."""
     table = specimen.gradation
     figure, (axes,), _ = style.panels(3.8)
     diameter = style.MILLI * table["d_m"]

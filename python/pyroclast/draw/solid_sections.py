@@ -39,17 +39,17 @@ class View:
 
     @property
     def right(self) -> np.ndarray:
-        """What the picture shows to the right, (3,)."""
+        """Direction (3,) to the right in the picture."""
         sideways = np.cross([0.0, 1.0, 0.0], self.towards_eye)
         return sideways / np.linalg.norm(sideways)
 
     @property
     def up(self) -> np.ndarray:
-        """What it shows upwards, (3,)."""
+        """Direction (3,) upwards in the picture."""
         return np.cross(self.towards_eye, self.right)
 
     def flat(self, points: np.ndarray) -> np.ndarray:
-        """(..., 2), m: places in the picture."""
+        """Returns (..., 2), m: places in the picture."""
         return np.stack([points @ self.right, points @ self.up], axis=-1)
 
 
@@ -58,19 +58,21 @@ VIEW = View(np.array([0.60, 0.42, 0.68]) / np.linalg.norm([0.60, 0.42, 0.68]))
 
 
 def flat(points: np.ndarray) -> np.ndarray:
-    """(..., 2), m: places in a picture, of points of the plane or of space."""
+    """Returns (..., 2), m: places in a picture, of points of the plane or of space."""
     return VIEW.flat(points) if points.shape[-1] == 3 else points
 
 
 def middle_planes(blocks: BlockMesh, at: tuple[float, float] = (0.5, 0.5)) -> tuple[Plane, Plane]:
-    """Planes across x and across z, through the middle of the specimen or at other shares of its width and depth."""
+    """Returns planes across x and across z, through the middle of the specimen or at other shares of its width and
+    depth.
+    """
     low, high = specimen_box(blocks)
     place = low + np.array([at[0], 0.0, at[1]]) * (high - low)
     return Plane(np.array([1.0, 0.0, 0.0]), float(place[0])), Plane(np.array([0.0, 0.0, 1.0]), float(place[2]))
 
 
 def _fills(blocks: BlockMesh) -> np.ndarray:
-    """(materials, 3): the colour of each."""
+    """Returns (materials, 3): the colour of each."""
     return np.array([to_rgb(c) for c in style.phase_colours(blocks.materials, blocks.bearing_materials)])
 
 
@@ -90,7 +92,7 @@ def draw_polygons(axes: Axes, polygons: Polygons, colours: np.ndarray) -> None:
 
 
 def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
-    """The body by material, without the quarter towards the eye.
+    """Draws the body by material, without the quarter towards the eye.
 
     points: (N, 3), places of the gridpoints, m.
     """
@@ -105,13 +107,13 @@ def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str |
 
 
 def _towards(polygons: Polygons) -> Polygons:
-    """The same, each walked so that it faces the eye."""
+    """Returns these polygons, each walked so that it faces the eye."""
     away = polygons.area_vectors @ VIEW.towards_eye < 0.0
     return Polygons(np.where(away[:, None, None], polygons.corners[:, ::-1], polygons.corners), polygons.owner)
 
 
 def _outer_edges(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
-    """(L, 2, 3), m: edges between blocks on the sides that face the eye, without the quarter."""
+    """Returns (L, 2, 3), m: edges between blocks on the sides that face the eye, without the quarter."""
     outer = outline(blocks, points)
     facing = outer.area_vectors @ VIEW.towards_eye > 0.0
     corners, block = outer.corners[facing], blocks.block[outer.owner[facing]]
@@ -123,7 +125,7 @@ def _outer_edges(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
 
 
 def _seams(blocks: BlockMesh, points: np.ndarray) -> Iterator[np.ndarray]:
-    """(L, 2, 3), m: lines in which the two planes of the quarter cut the sides of blocks."""
+    """Yields (L, 2, 3), m: lines in which the two planes of the quarter cut the sides of blocks."""
     sides = surface(blocks, points).corners
     quads = np.concatenate([sides, sides[:, -1:]], axis=1)
     first, second = middle_planes(blocks)
@@ -139,7 +141,7 @@ def _outside_quarter(lines: np.ndarray, blocks: BlockMesh) -> np.ndarray:
 
 
 def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
-    """(L, 2, 3), m: where chosen contacts show on the sides and cuts of `draw_cut_open`.
+    """Returns (L, 2, 3), m: where chosen contacts show on the sides and cuts of `draw_cut_open`.
 
     cells: (C, 4, 3), places of the corners of contacts' cells, m. which: (C,) bool.
     """
@@ -160,7 +162,7 @@ def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
 
 
 def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
-    """(n,) bool, of points in the reference configuration: on a side that faces the eye."""
+    """Returns (n,) bool, of points in the reference configuration: on a side that faces the eye."""
     outer = outline(blocks)
     vectors = outer.area_vectors
     normals = vectors / np.linalg.norm(vectors, axis=1)[:, None]
@@ -175,7 +177,7 @@ def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
 
 
 def _touches_bearing(blocks: BlockMesh, points: np.ndarray, within: float) -> np.ndarray:
-    """(n,) bool, of points in the reference configuration: on a zone of a bearing, by its box."""
+    """Returns (n,) bool, of points in the reference configuration: on a zone of a bearing, by its box."""
     corners = blocks.points[blocks.zones[blocks.of_bearing]]
     touches = np.zeros(len(points), bool)
     for low, high in zip(corners.min(axis=1) - within, corners.max(axis=1) + within):
@@ -184,7 +186,7 @@ def _touches_bearing(blocks: BlockMesh, points: np.ndarray, within: float) -> np
 
 
 def draw_triad(axes: Axes, blocks: BlockMesh) -> None:
-    """Where x, y and z go, below on the left."""
+    """Draws where x, y and z go, below on the left."""
     points = VIEW.flat(blocks.points)
     low, width = points.min(axis=0), np.ptp(points[:, 0])
     length = 0.13 * np.ptp(blocks.points[:, 0])
@@ -211,15 +213,17 @@ class CrackFaces:
 
     @property
     def inclination(self) -> np.ndarray:
-        """(n,), degrees: of the normal from the horizontal, 0 for an upright crack."""
+        """Inclination (n,), degrees, of the normal from the horizontal, 0 for an upright crack."""
         return np.degrees(np.arcsin(np.clip(np.abs(self.normal[:, 1]), 0.0, 1.0)))
 
     def upright_share(self, within: float = 30.0) -> float:
-        """Share of the area whose normals are within an angle of the horizontal, degrees; NaN without cracks."""
+        """Returns the share of the area whose normals are within an angle of the horizontal, degrees; NaN without
+        cracks.
+        """
         return self._share(self.inclination <= within)
 
     def facing_share(self, axis: int, within: float = 30.0) -> float:
-        """Share of the area whose normals are within an angle of an axis, degrees; NaN without cracks."""
+        """Returns the share of the area whose normals are within an angle of an axis, degrees; NaN without cracks."""
         return self._share(np.degrees(np.arccos(np.clip(np.abs(self.normal[:, axis]), 0.0, 1.0))) <= within)
 
     def _share(self, which: np.ndarray) -> float:
@@ -227,14 +231,14 @@ class CrackFaces:
         return float(self.area[which].sum() / whole) if whole > 0.0 else float("nan")
 
     def damage_by_height(self, low: float, high: float, parts: int = _TENTHS) -> np.ndarray:
-        """(parts,): damaged area, each by its damage, over that of all, from the bottom up."""
+        """Returns (parts,): damaged area, each by its damage, over that of all, from the bottom up."""
         height = self.cells[:, 0, 1]
         sums, _ = np.histogram(height, bins=parts, range=(low, high), weights=self.area * self.damage)
         return sums / sums.sum() if sums.sum() > 0.0 else sums
 
 
 def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
-    """Contact points of a solid whose damage is above `least`: none where no law of its contacts has a damage."""
+    """Takes contact points of a solid whose damage is above `least`: none where no law of its contacts has a damage."""
     contacts = run.mesh.contacts
     modes = list(run.crack_modes) or ["tension"]
     values = np.array([run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes]
@@ -252,7 +256,8 @@ def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
 
 @style.in_style
 def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
-    """Crack faces inside the ghost of the body, the rose and the inclination of their normals, and damage by height.
+    """Draws the crack faces inside the ghost of the body, the rose and the inclination of their normals, and damage by
+    height.
 
     least: damage from which a contact point is drawn, and counted in rose and inclination.
     """
@@ -294,7 +299,7 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
 
 
 def _axes_inside(height: float) -> tuple[Figure, Axes, tuple[Axes, Axes, Axes]]:
-    """Figure with axes for the body, and for rose, inclination and heights beside it."""
+    """Makes a figure with axes for the body, and for rose, inclination and heights beside it."""
     figure = style.new_figure(style.page().highest if style.page().is_column else height + 0.5)
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0 if style.page().is_column else 1.25, 1.0])
     places = [grid[:, 0], grid[0, 1], grid[1, 1], grid[2, 1]]
@@ -312,7 +317,7 @@ def _frame(axes: Axes, box: np.ndarray) -> None:
 
 
 def _draw_rose(axes: Axes, faces: CrackFaces) -> None:
-    """Area by the azimuth of the normal, in either sense."""
+    """Draws the area by the azimuth of the normal, in either sense."""
     azimuth = np.arctan2(faces.normal[:, 2], faces.normal[:, 0])
     both = np.concatenate([azimuth, azimuth + np.pi]) % (2.0 * np.pi)
     sums, edges = np.histogram(both, bins=24, range=(0.0, 2.0 * np.pi), weights=np.tile(faces.area, 2))
@@ -353,7 +358,7 @@ def _draw_heights(axes: Axes, faces: CrackFaces, blocks: BlockMesh) -> None:
 
 @style.in_style
 def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnification: float = 1.0) -> Figure:
-    """A plane through a solid at a frame: blocks by material, and the cracks of each mode that it meets.
+    """Draws a plane through a solid at a frame: blocks by material, and the cracks of each mode that it meets.
 
     axis: "x", "y" or "z", across which the plane stands. at: its place, as a share of the specimen's size along the
     axis before it moved, 0 and 1 for its ends. magnification: of displacements. The picture is as large as the specimen
@@ -402,7 +407,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
 
 
 def axis_plane(blocks: BlockMesh, axis: str, share: float = 0.5) -> Plane:
-    """A plane across an axis, "x", "y" or "z", at a share of the specimen's size along it.
+    """Returns a plane across an axis, "x", "y" or "z", at a share of the specimen's size along it.
 
     Raises KeyError for another axis.
     """
@@ -412,7 +417,7 @@ def axis_plane(blocks: BlockMesh, axis: str, share: float = 0.5) -> Plane:
 
 
 def _in_the_middle(polygons: Polygons, blocks: BlockMesh, field: np.ndarray) -> np.ndarray:
-    """(P,): a field of gridpoints in the middle of polygons, each linear in the zone that it is of."""
+    """Returns (P,): a field of gridpoints in the middle of polygons, each linear in the zone that it is of."""
     zones = blocks.zones[polygons.owner]
     at = blocks.points[zones]
     edges = at[:, 1:] - at[:, :1]
@@ -424,7 +429,7 @@ def _in_the_middle(polygons: Polygons, blocks: BlockMesh, field: np.ndarray) -> 
 
 
 def draw_temperature_cut_open(axes: Axes, blocks: BlockMesh, field: np.ndarray, scale: Normalize) -> ScalarMappable:
-    """The body without the quarter towards the eye, each polygon in the colour of its middle; bearings dark.
+    """Draws the body without the quarter towards the eye, each polygon in the colour of its middle; bearings dark.
 
     field: (N,), °C. Returns what has the colours.
     """

@@ -87,12 +87,12 @@ class Page:
     has_table: bool = True  #: of values, beside a stress-strain curve
 
     def size(self, points: float) -> float:
-        """Of a text, which has these points unless a width is asked for."""
+        """Returns the size of a text, which has these points unless a width is asked for."""
         return COLUMN_TEXT if self.is_column else points
 
     @property
     def highest(self) -> float:
-        """Inches, of a picture."""
+        """Greatest height of a picture, inches."""
         return min(_HIGHEST, _HIGHEST_OF_WIDTH * self.width) if self.is_column else float("inf")
 
     def kept(self, panels: Sequence[_T]) -> list[_T]:
@@ -112,11 +112,11 @@ class Page:
 
     @property
     def letters(self) -> int:
-        """That fit a line of a title."""
+        """Letters that fit a line of a title."""
         return int((self.width - 0.65) / _LETTER) if self.is_column else _TITLE_WIDTH
 
     def fitting(self, least: float) -> int:
-        """How many panels of a width, inches, stand side by side."""
+        """Returns how many panels of a width, inches, stand side by side."""
         return max(1, int(self.width / least))
 
 
@@ -124,7 +124,7 @@ _page: ContextVar[Page] = ContextVar("page", default=Page())
 
 
 def page() -> Page:
-    """What figures are drawn for now."""
+    """Returns what figures are drawn for now."""
     return _page.get()
 
 
@@ -179,15 +179,18 @@ MILLI = 1e3  # metres to millimetres
 
 
 def phase_colours(names: Sequence[str], bearings: Container[int]) -> list[str]:
-    """A fill for each material of a mesh: aggregate and mortar as ever, bearings (by their places) dark, others in
-    turn."""
+    """Returns a fill for each material of a mesh: aggregate and mortar as ever, bearings (by their places) dark, others
+    in turn.
+    """
     known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
     more = cycle(_MORE_PHASE_COLOURS)
     return [PLATEN_COLOUR if i in bearings else known.get(name) or next(more) for i, name in enumerate(names)]
 
 
 def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> Figure:
-    """Empty figure for the page; inches, dots per inch (DPI where it is not stated). width: the most that it takes."""
+    """Makes an empty figure for the page; inches, dots per inch (DPI where it is not stated). width: the most that it
+    takes.
+    """
     figure = Figure(figsize=(page().width if width == WIDTH else min(width, page().width), min(height, page().highest)),
                     dpi=dpi or DPI)
     figure.of_page = page()  # type: ignore[attr-defined]
@@ -201,8 +204,8 @@ def number(figure: Figure, all_axes: Sequence[Axes]) -> None:
 
 def panels(height: float, rows: Sequence[float] = (1.0,), beside: float | None = None,
            below: float | None = None) -> tuple[Figure, list[Axes], Axes | None]:
-    """Figure of panels, one below the other, and axes for a legend, see `draw_legend`; None for these where legends
-    stand in the panels.
+    """Makes a figure of panels, one below the other, and axes for a legend, see `draw_legend`; None for these where
+    legends stand in the panels.
 
     height: inches, of the figure on a page of two columns. rows: heights of the panels, one over the other.
     beside, below: width of the axes for the legend over that of the panels, or height over the panels'.
@@ -261,7 +264,7 @@ def _draw_on_top(axes: Axes, handles: list, labels: list[str], title: str | None
 
 
 def lines_of(text: str, letters: int) -> list[str]:
-    """A text in lines of at most so many letters, longer words apart."""
+    """Returns a text in lines of at most so many letters, longer words apart."""
     words = re.split("[ \t\n]+", text.strip())
     return textwrap.wrap(" ".join(words), letters, break_long_words=False, break_on_hyphens=False)
 
@@ -360,7 +363,7 @@ def _with_legend_on_top(figure: Figure) -> list[Axes]:
 
 
 def _room_of_legend(axes: Axes, renderer: Any) -> float:
-    """Height, pixels."""
+    """Returns the height of a legend, pixels."""
     return axes.get_legend().get_window_extent(renderer).height + _LEGEND_GAP * axes.figure.dpi / 72.0
 
 
@@ -409,25 +412,25 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], alignment: str = 
 
 
 def plain(text: str) -> str:
-    """Text of the user's, as it stands: on one line, and no formula."""
+    """Returns a user's text, as it stands: on one line, and no formula."""
     return visible(text).replace("$", r"\$")
 
 
 def visible(text: str) -> str:
-    """On one line, with what cannot be seen written out, such as \\x1b, and cut where it is long."""
+    """Returns a text on one line, with what cannot be seen written out, such as \\x1b, and cut where it is long."""
     line = seen_on_a_line(" ".join(text.split()))
     return line if len(line) <= _MOST_OF_A_TEXT else f"{line[:_MOST_OF_A_TEXT]}… ({len(line)} characters)"
 
 
 def draw_parent(axes: Axes, parent, over, values) -> None:
-    """A curve of the run that the one in the figure is a fork of, behind that one's."""
+    """Draws a curve of the run that the one in the figure is a fork of, behind that one's."""
     axes.plot(over, values, color=FAINT, linewidth=1.2,
               label=f"{plain(parent.folder.name)}, of which this run is a fork")
 
 
 def title_of(run) -> str:
-    """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page; empty on a page
-    without titles.
+    """Returns a run's title, what was done to it as it came out, and its warnings, in lines that fit a page; empty on a
+    page without titles.
     """
     if not page().has_title:
         return ""
@@ -436,7 +439,7 @@ def title_of(run) -> str:
 
 
 def facts_of(run) -> list[str]:
-    """Load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
+    """Returns the load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
     test = Compressed(run)
     hot = Heated(run)
     if not run.moves or not hot.exchanged.any():
@@ -455,7 +458,7 @@ def facts_of(run) -> list[str]:
 
 
 def warnings_of(run) -> list[str]:
-    """That a run is not quasi-static or does not say, and how many exchanges did not converge."""
+    """Returns warnings that a run is not quasi-static or does not say, and how many exchanges did not converge."""
     test = Compressed(run)
     hot = Heated(run)
     warnings = []
@@ -469,7 +472,7 @@ def warnings_of(run) -> list[str]:
 
 
 def load_label(run) -> str:
-    """Load kept while heated, as level where that is known, else as stress; empty when none was kept."""
+    """Returns the load kept while heated, as level where that is known, else as stress; empty when none was kept."""
     hot = Heated(run)
     if hot.restrained:
         return ""
@@ -479,8 +482,8 @@ def load_label(run) -> str:
 
 
 def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.ndarray:
-    """(n,) bool: about so many points at most of a curve, or of several over the same x, that look the same: of each
-    stretch its ends, the extremes of all and the first gap of each.
+    """Returns (n,) bool: about so many points at most of a curve, or of several over the same x, that look the same: of
+    each stretch its ends, the extremes of all and the first gap of each.
     """
     if len(x) <= most:
         return np.ones(len(x), dtype=bool)
@@ -499,14 +502,14 @@ def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.nda
 
 
 def thinned(x: np.ndarray, y: np.ndarray, most: int = _MOST_POINTS) -> tuple[np.ndarray, np.ndarray]:
-    """A curve of which `kept` is left."""
+    """Returns what `kept` leaves of a curve."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     rows = kept(x, y, most=most)
     return x[rows], y[rows]
 
 
 def thin(figure: Figure) -> Figure:
-    """Lines and areas of a figure with few enough points to be drawn in no time. Returns the figure."""
+    """Thins the lines and areas of a figure to so few points that it is drawn in no time; returns the figure."""
     for axes in figure.axes:
         for line in axes.lines:
             x, y = line.get_xdata(orig=False), line.get_ydata(orig=False)
@@ -520,7 +523,9 @@ def thin(figure: Figure) -> Figure:
 
 @contextmanager
 def _laid_out_once(figure: Figure) -> Iterator[None]:
-    """Saving draws twice, first without ink for the layout. The second layout would find the same again."""
+    """Lays a figure out once. Saving draws twice, first without ink for the layout; the second layout would find the
+    same again.
+    """
     engine = figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # since Matplotlib 3.6
     if engine is None:
         yield
@@ -563,7 +568,7 @@ def letters_told_once() -> Iterator[None]:
 
 @matplotlib.rc_context(STYLE)
 def png(figure: Figure) -> bytes:
-    """The figure as a PNG."""
+    """Returns the figure as a PNG."""
     into = io.BytesIO()
     with letters_told_once():
         figure.savefig(into, format="png")

@@ -20,7 +20,7 @@ _SAMPLES = 3  # of a straight piece of the curve, in each cell that it may cross
 
 
 def plain_label(label: str) -> str:
-    """A label of a figure's axis without the marks of formulas, on one line."""
+    """Returns a label of a figure's axis without the marks of formulas, on one line."""
     text = re.sub(r"[${}]", "", label)
     for mark, plain in _PLAIN.items():
         text = text.replace(mark, plain)
@@ -28,7 +28,7 @@ def plain_label(label: str) -> str:
 
 
 def curve(x: np.ndarray, y: np.ndarray, x_label: str, y_label: str, size: tuple[int, int]) -> list[str]:
-    """Lines of a picture of the curve through these points, its last one marked; NaN is a gap.
+    """Returns lines of a picture of the curve through these points, its last one marked; NaN is a gap.
 
     x_label, y_label: with unit, as figures have them. size: columns and rows of all lines together.
     """
@@ -62,7 +62,7 @@ def curve(x: np.ndarray, y: np.ndarray, x_label: str, y_label: str, size: tuple[
 
 
 def _range(values: np.ndarray) -> tuple[float, float]:
-    """What an axis shows: the values, from zero on where that is near."""
+    """Returns what an axis shows: the values, from zero on where that is near."""
     if not len(values):
         return 0.0, 1.0
     low, high = float(values.min()), float(values.max())
@@ -77,7 +77,7 @@ def _range(values: np.ndarray) -> tuple[float, float]:
 
 
 def _ticks(low: float, high: float, most: int) -> list[float]:
-    """At most so many round numbers from low to high, and at least two, for which they may lie outside."""
+    """Returns at most so many round numbers from low to high, and at least two, for which they may lie outside."""
     rough = (high - low) / most
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= rough * (1.0 - 1e-9))
@@ -88,7 +88,7 @@ def _ticks(low: float, high: float, most: int) -> list[float]:
 
 
 def _printed(ticks: list[float]) -> list[str]:
-    """Numbers that differ in print, all with as many decimals."""
+    """Returns numbers that differ in print, all with as many decimals."""
     step, largest = ticks[1] - ticks[0], max(map(abs, ticks))
     if largest >= _LARGEST_PLAIN or step < _LEAST_PLAIN:
         return [f"{tick:.4g}" for tick in ticks]
@@ -97,12 +97,12 @@ def _printed(ticks: list[float]) -> list[str]:
 
 
 def _scaled(values, low: float, high: float, cells: int):
-    """Places of values on an axis of so many cells, the ends in the middle of the first and last."""
+    """Returns places of values on an axis of so many cells, the ends in the middle of the first and last."""
     return 0.5 + (np.asarray(values) - low) / (high - low) * (cells - 1)
 
 
 def _cells(x: np.ndarray, y: np.ndarray, columns: int, rows: int) -> list[list[str]]:
-    """Characters, from the lowest row. x in columns, y in thirds of rows."""
+    """Returns characters, from the lowest row. x in columns, y in thirds of rows."""
     thirds = np.zeros((rows, columns, 3), dtype=bool)
     pieces = [(x, y)]  # of the curve, at its points and between them
     for (x0, y0), (x1, y1) in zip(zip(x[:-1], y[:-1]), zip(x[1:], y[1:])):

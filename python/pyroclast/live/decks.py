@@ -29,7 +29,7 @@ _PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def toml(value: Value) -> str:
-    """As a deck writes it."""
+    """Returns a value as a deck writes it."""
     if isinstance(value, (np.ndarray, np.generic)):
         return toml(value.tolist())
     if isinstance(value, bool):
@@ -47,7 +47,7 @@ def toml(value: Value) -> str:
 
 
 def table_text(name: str, table: Mapping[str, Any], is_listed: bool = False) -> str:
-    """A table with its header, tables below it with headers of their own."""
+    """Returns a table with its header, tables below it with headers of their own."""
     lines = [f"[[{name}]]" if is_listed else f"[{name}]"]
     below = []
     for key, value in table.items():
@@ -61,12 +61,12 @@ def table_text(name: str, table: Mapping[str, Any], is_listed: bool = False) -> 
 
 
 def _parts(path: str) -> list[str | int]:
-    """Of "stages[1].to": "stages", 1, "to"."""
+    """Returns the parts of a path, of "stages[1].to": "stages", 1, "to"."""
     return [int(part[1:-1]) if part.startswith("[") else part for part in re.findall(r"[^.\[\]]+|\[\d+\]", path)]
 
 
 def _renumbered(key: str, above: Sequence[str | int], gone: str | int) -> str:
-    """The path of a key when an entry of a list is taken out."""
+    """Returns the path of a key when an entry of a list is taken out."""
     parts = _parts(key)
     n = len(above)
     if isinstance(gone, str) or len(parts) <= n or parts[:n] != list(above):
@@ -79,7 +79,7 @@ def _renumbered(key: str, above: Sequence[str | int], gone: str | int) -> str:
 
 
 def _list_at(tables: dict[str, Any], path: str) -> list[Any]:
-    """The list at a path, which is added where it is missing."""
+    """Returns the list at a path, which is added where it is missing."""
     *above, last = _parts(path)
     node: Any = tables
     for part in above:
@@ -89,12 +89,12 @@ def _list_at(tables: dict[str, Any], path: str) -> list[Any]:
 
 
 def is_list_of_tables(value: object) -> bool:
-    """Whether a deck writes a value as a list of tables, each with a header of its own."""
+    """Returns whether a deck writes a value as a list of tables, each with a header of its own."""
     return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
 
 
 def _plain(value: Any) -> Any:
-    """With dicts in the place of tables of decks."""
+    """Returns a value with dicts in the place of tables of decks."""
     if isinstance(value, Mapping):
         return {key: _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
@@ -121,7 +121,8 @@ class Deck:
 
     def __init__(self, file: str | Path | None = None, *, stages_in_python: Sequence[type[Stage]] = (),
                  laws: Sequence[str | Path] = (), **tables: Any):
-        """
+        """Reads a deck, or takes one as tables.
+
         file: a deck; without one, `tables` are all of it.
         stages_in_python: classes of stages that the deck may ask for beside the program's.
         laws: folders of contact laws that are not part of the program.
@@ -146,14 +147,15 @@ class Deck:
     @classmethod
     def from_text(cls, text: str, name: str = "deck", folder: str | Path = "", *,
                   stages_in_python: Sequence[type[Stage]] = (), laws: Sequence[str | Path] = ()) -> Deck:
-        """A deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from."""
+        """Makes a deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from.
+        """
         deck = cls(stages_in_python=stages_in_python, laws=laws)
         deck._text, deck._name, deck._folder, deck._is_own = text, name, str(folder), False
         deck._written()
         return deck
 
     def _set_tables(self, tables: Mapping[str, Any]) -> None:
-        """All of a deck that has no file."""
+        """Sets all of a deck that has no file."""
         plain: list[str] = []
         headed: list[tuple[str, list[Mapping[str, Any]], bool]] = []
         for name, value in tables.items():
@@ -182,8 +184,8 @@ class Deck:
         return _core.written(self._raw(self._placeholders(), with_files=False))
 
     def __getitem__(self, path: str) -> Any:
-        """The value at a path: a Quantity for a text that is one, a `DeckTable` for a table, a tuple for a list, a
-        function as it was given.
+        """Returns the value at a path: a Quantity for a text that is one, a `DeckTable` for a table, a tuple for a
+        list, a function as it was given.
 
         Raises KeyError where there is none.
         """
@@ -192,7 +194,7 @@ class Deck:
         return self._wrapped(path, self._node(path))
 
     def _node(self, path: str) -> Any:
-        """The value at a path as TOML has it. Raises KeyError where there is none."""
+        """Returns the value at a path as TOML has it. Raises KeyError where there is none."""
         node: Any = tomllib.loads(self.text)
         for part in _parts(path):
             try:
@@ -202,7 +204,7 @@ class Deck:
         return node
 
     def _wrapped(self, path: str, node: Any) -> Any:
-        """A value so that none of its changes is lost: each reaches the deck, or is refused."""
+        """Returns a value so that none of its changes is lost: each reaches the deck, or is refused."""
         if isinstance(node, dict):
             return DeckTable(self, path)
         if isinstance(node, list):
@@ -212,11 +214,11 @@ class Deck:
         return node
 
     def __iter__(self) -> Iterator[str]:
-        """The keys and tables at the top of the deck, in its order: `dict(deck)` has each with its value."""
+        """Returns the keys and tables at the top of the deck, in its order: `dict(deck)` has each with its value."""
         return iter(tomllib.loads(self.text))
 
     def keys(self) -> list[str]:
-        """The keys and tables at the top of the deck, in its order."""
+        """Returns the keys and tables at the top of the deck, in its order."""
         return list(self)
 
     def __contains__(self, path: str) -> bool:
@@ -354,7 +356,7 @@ class Deck:
         return self
 
     def copy(self) -> Deck:
-        """Another deck with the same contents."""
+        """Returns another deck with the same contents."""
         other = Deck(stages_in_python=self._stages, laws=self._laws)
         other._text, other._name, other._folder = self._text, self._name, self._folder
         other._changes, other._functions = list(self._changes), dict(self._functions)
@@ -367,7 +369,7 @@ class Deck:
         return _core.check(self._resolved(tables))
 
     def make_specimen(self, seed: int | None = None) -> Specimen | SolidSpecimen:
-        """The specimen that a run of this deck has, with this seed or the deck's. Raises as `Run`."""
+        """Makes the specimen that a run of this deck has, with this seed or the deck's. Raises as `Run`."""
         tables = functions.Scratch()
         return wrapped(_core.Specimen.of_deck(self._resolved(tables), seed))
 
@@ -401,7 +403,7 @@ class Deck:
         return _core.needed_unit(self._raw(more), path)
 
     def _placeholders(self, skip: str = "") -> list[tuple[str, str]]:
-        """Numbers in place of the functions."""
+        """Returns numbers in place of the functions."""
         numbers = []
         for path, function in self._functions.items():
             if path == skip:
@@ -412,7 +414,9 @@ class Deck:
         return numbers
 
     def _resolved(self, place: functions.Scratch) -> _core.DeckText:
-        """With tables, which are written into a folder, in place of the functions; blocks in a file there too."""
+        """Returns the deck with tables, which are written into a folder, in place of the functions; blocks in a file
+        there too.
+        """
         tables = [(path, _csv(table)) for path, table in self._tables(Path(place.folder))]
         if self._specimen:
             self._specimen[0].save(Path(place.folder) / _CELLS)
@@ -434,7 +438,7 @@ class Deck:
         return tables
 
     def _interval(self, path: str, stand_in: Sequence[tuple[str, str]]) -> tuple[float, float]:
-        """All that a function is asked for."""
+        """Returns all that a function is asked for."""
         if functions.is_of_drive(path):
             return 0.0, in_si(self[path.split(".")[0] + ".duration"], "s")
         low, high, begin, end = _core.ranges(self._raw(stand_in))
@@ -472,7 +476,7 @@ class DeckTable(MutableMapping[str, Any]):
         return f"<DeckTable {self._path}: {self._deck._node(self._path)}>"
 
     def __or__(self, other: Mapping[str, Any]) -> dict[str, Any]:
-        """A table of its own, which changes nothing in the deck."""
+        """Returns a table of its own, which changes nothing in the deck."""
         return {**self, **other}
 
     def __ror__(self, other: Mapping[str, Any]) -> dict[str, Any]:
@@ -484,7 +488,7 @@ class DeckTable(MutableMapping[str, Any]):
 
 
 def without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:
-    """A table whose functions stand in `found`, by their paths."""
+    """Takes the functions out of a table, into `found` by their paths; returns the rest."""
     plain: dict[str, Any] = {}
     for name, value in table.items():
         here = f"{path}.{name}" if path else name
@@ -508,5 +512,5 @@ def _read(file: str | Path) -> str:
 
 
 def as_deck(deck: Deck | str | Path) -> Deck:
-    """A deck, or that of a file."""
+    """Returns a deck, or that of a file."""
     return deck if isinstance(deck, Deck) else Deck(deck)

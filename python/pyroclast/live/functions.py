@@ -50,19 +50,19 @@ TIME = Axis("time", "s")
 
 
 def axis_of(key: str) -> Axis:
-    """What a key's curve goes over: what happens at boundaries, and drives, over the time, all else over the
+    """Returns what a key's curve goes over: what happens at boundaries, and drives, over the time, all else over the
     temperature.
     """
     return TIME if key.startswith("heat.boundaries") or is_of_drive(key) else TEMPERATURE
 
 
 def is_of_drive(key: str) -> bool:
-    """Whether it is the factor of a drive."""
+    """Returns whether it is the factor of a drive."""
     return _FACTOR.fullmatch(key) is not None
 
 
 def first(axis: Axis) -> float:
-    """Where a function is asked for the number that stands in for it until its interval is known."""
+    """Returns where a function is asked for the number that stands in for it until its interval is known."""
     return 0.0 if axis is TIME else _REFERENCE
 
 
@@ -80,7 +80,7 @@ def value_at(key: str, function: Function, x: float) -> float:
 
 
 def tabulate(key: str, function: Function, low: float, high: float) -> list[tuple[float, float]]:
-    """Points between which straight lines are off by less than 1e-6 of the range of values."""
+    """Returns points between which straight lines are off by less than 1e-6 of the range of values."""
     if not high > low:
         high = low + 1.0
     at = [low + (high - low) * i / _FIRST_INTERVALS for i in range(_FIRST_INTERVALS)] + [high]
@@ -113,7 +113,7 @@ def tabulate(key: str, function: Function, low: float, high: float) -> list[tupl
 
 def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[float, float]],
                 owner: str = "") -> Path:
-    """A CSV file as decks read it, named after its key. owner: what the name begins with."""
+    """Writes a CSV file as decks read it, named after its key. owner: what the name begins with."""
     axis = axis_of(key)
     name = "".join(c if c.isalnum() else "_" for c in key).strip("_")
     path = Path(folder) / f"{owner}{name}.csv"

@@ -45,7 +45,7 @@ class Grain:
 
 def grains_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low: Sequence[str | Quantity],
                        high: Sequence[str | Quantity], spacing: str | Quantity, phase: int = 0) -> list[Grain]:
-    """Grains where a signed distance is negative: a line around each, its holes filled.
+    """Makes grains where a signed distance is negative: a line around each, its holes filled.
 
     distance: takes places (n, 2) in m and returns n distances, negative within a grain, in any unit. It is asked once,
     here: what a deck reads is the table of `write_grains`.
@@ -118,7 +118,8 @@ def _grains_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArra
 
 def grains_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, matrix: int = 0,
                      phases: Mapping[Any, int | None] | None = None) -> list[Grain]:
-    """Grains of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own area.
+    """Makes grains of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own
+    area.
 
     A hole in a grain, as a pore is in a stone of a scan, is filled: grains are whole. Smoothing cuts a neck of one
     pixel, as segmentation leaves between stones that nearly touch: both sides become grains, and each gets the nearer

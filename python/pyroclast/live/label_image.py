@@ -20,7 +20,7 @@ _SEVERAL = (range, tuple, frozenset)  # types of keys that name several labels
 
 
 def pixels_of(image: ArrayLike | str | Path) -> tuple[NDArray[Any], str]:
-    """Pixels (rows, columns), whole numbers or texts, and what messages of them begin with."""
+    """Returns pixels (rows, columns), whole numbers or texts, and what messages of them begin with."""
     source = ""
     if isinstance(image, (str, Path)):
         source = f"{image}: "

@@ -34,7 +34,7 @@ class Law:
 
     @staticmethod
     def properties_of(law: str | Path, *, folders: Sequence[str | Path] = ()) -> dict[str, tuple[str, str]]:
-        """SI unit and meaning of each property that a law has, by its key."""
+        """Returns the SI unit and meaning of each property that a law has, by its key."""
         return {key: (unit, meaning) for key, unit, meaning in
                 _core.law_properties(str(law), "", [str(folder) for folder in folders])}
 

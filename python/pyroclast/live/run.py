@@ -70,7 +70,7 @@ class State:
         self._run, self._columns, self._values, self._look, self._lasts = run, columns, values, look, False
 
     def __getitem__(self, name: str) -> float:
-        """A column; raises KeyError where there is none."""
+        """Returns a column; raises KeyError where there is none."""
         if not self._lasts and self._look != self._run._look:
             raise Error("this state is of an earlier sample: the run has gone on; keep state.copy() instead")
         i, factor = self._columns.place(name)
@@ -98,7 +98,7 @@ class State:
         return int(self["stage"])
 
     def copy(self) -> State:
-        """The same numbers, for good."""
+        """Returns the same numbers, for good."""
         self["stage"]
         lasting = State(self._run, self._columns, self._values, self._look)
         lasting._lasts = True
@@ -123,23 +123,23 @@ class Views:
 
     @property
     def displacement(self) -> Array:
-        """(slots, dimension), m."""
+        """Displacement (slots, dimension), m."""
         return self._core.view("displacement")
 
     @property
     def velocity(self) -> Array:
-        """(packs, dimension, 8), m/s."""
+        """Velocity (packs, dimension, 8), m/s."""
         return self._core.view("velocity")
 
     @property
     def force(self) -> Array:
-        """(packs, dimension, 8), N: sums of all forces."""
+        """Force (packs, dimension, 8), N: sums of all forces."""
         return self._core.view("force")
 
     @property
     def internals(self) -> Array:
-        """(lines, 8): internal variables of contact points, a line for each number of eight of them, in the order of
-        the layout. `run.contacts()` has them by name and contact.
+        """Internal variables (lines, 8) of contact points, a line for each number of eight of them, in the order of the
+        layout. `run.contacts()` has them by name and contact.
         """
         return self._core.view("internals")
 
@@ -212,13 +212,13 @@ class Observer:
     """
 
     def begin(self, run: Run) -> None:
-        """Before the next look."""
+        """Begins to follow the run, before its next look."""
 
     def look(self, run: Run, state: State) -> None:
-        """After a look."""
+        """Takes in a look, after its row is written."""
 
     def finish(self, run: Run) -> None:
-        """At the end; again, where a run that was stopped goes on."""
+        """Ends to follow the run; is called again where a run that was stopped goes on."""
 
 
 class Run:
@@ -281,7 +281,7 @@ class Run:
     @classmethod
     def resume(cls, folder: str | Path, *, checkpoint: str | Path | None = None, threads: int = 0,
                laws: Sequence[str | Path] = (), stages_in_python: Sequence[type[Stage]] = ()) -> Run:
-        """A run that was broken off goes on in its folder, from its newest checkpoint or a stated one.
+        """Goes on with a run that was broken off, in its folder, from its newest checkpoint or a stated one.
 
         laws, stages_in_python: as a Deck has them.
 
@@ -297,7 +297,7 @@ class Run:
              more: str | Path | None = None, changes: Mapping[str, Value] | None = None, overwrite: bool = False,
              threads: int = 0, laws: Sequence[str | Path] = (),
              stages_in_python: Sequence[type[Stage]] = ()) -> Run:
-        """A new run that has its first stages in common with that of a folder, which is only read.
+        """Begins a new run that has its first stages in common with that of a folder, which is only read.
 
         from_stage: number or name of the last stage in common; None: the last of all.
         more: a file with stages to append.
@@ -474,7 +474,7 @@ class Run:
 
     def copy(self, changes: Mapping[str, Value] | None = None, *, out: str | Path | None = None,
              overwrite: bool = False) -> Run:
-        """A run that stands where this one does and goes its own way: one loaded specimen, three fires.
+        """Makes a run that stands where this one does and goes its own way: one loaded specimen, three fires.
 
         changes: of keys of stages that have not begun, by their paths.
         out: a folder, into which it writes all rows, and frames as far as this one has them.
@@ -500,7 +500,7 @@ class Run:
         return self._renewed()
 
     def _tabulated(self, found: Mapping[str, functions.Function], more: str = "") -> dict[str, Value]:
-        """Tables of functions, by the paths of their keys in the deck and text that is appended to it."""
+        """Returns tables of functions, by the paths of their keys in the deck and text that is appended to it."""
         if not found:
             return {}
         deck = Deck.from_text(self.deck_text + "\n" + more, folder=self._core.deck_folder, laws=self._laws,
@@ -510,7 +510,7 @@ class Run:
         return {path: {"csv": str(table)} for path, table in deck._tables(Path(self._kept[-1].folder))}
 
     def change(self, changes: Mapping[str, Value | Callable[[float], float] | functions.Function]) -> Run:
-        """Other values from now on, by the paths of the deck: of stages that have not begun, or of [materials] and
+        """Sets other values from now on, by the paths of the deck: of stages that have not begun, or of [materials] and
         [contacts], which act as a change of temperature does. Functions stand where they can in a deck. Returns the
         run.
 
@@ -562,8 +562,8 @@ class Run:
         return self
 
     def set_temperature(self, temperature: float | str | Quantity) -> Run:
-        """Another temperature of the whole specimen at once ("300 degC"; a number: degC); the body comes to rest in
-        what follows. Returns the run, which is then no longer that of its deck, as with `change`.
+        """Sets another temperature of the whole specimen at once ("300 degC"; a number: degC); the body comes to rest
+        in what follows. Returns the run, which is then no longer that of its deck, as with `change`.
 
         Raises Error where the temperatures are a computed field, or properties are not known at this one.
         """
@@ -587,13 +587,13 @@ class Run:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of the rows so far, in the units of the names."""
+        """Contents of summary.json for the rows so far, in the units of the names."""
         summary: dict[str, Any] = json.loads(self._core.summary())
         return summary
 
     @property
     def stages(self) -> list[dict[str, Any]]:
-        """What the summary says of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
+        """Summary of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
         stages: list[dict[str, Any]] = self.summary["stages"]
         return stages
 
@@ -605,7 +605,7 @@ class Run:
 
     @property
     def outcome(self) -> str:
-        """How the run ended, or that it is running."""
+        """Outcome: how the run ended, or that it is running."""
         return self._core.outcome
 
     @property
@@ -625,12 +625,12 @@ class Run:
 
     @property
     def title(self) -> str:
-        """Of the deck."""
+        """Title of the deck."""
         return self._core.title
 
     @property
     def seed(self) -> int:
-        """Of the specimen; 0 where its blocks come from a file."""
+        """Seed of the specimen; 0 where its blocks come from a file."""
         return self._core.seed
 
     @property
@@ -645,7 +645,7 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """Of deck and choices, a line each."""
+        """Warnings of deck and choices, a line each."""
         return self._core.warnings
 
     @property
@@ -655,17 +655,19 @@ class Run:
 
     @property
     def thickness(self) -> float:
-        """Out of plane, m."""
+        """Thickness out of plane, m."""
         return self._core.thickness
 
     @property
     def folder(self) -> Path | None:
-        """Of the results; None where nothing is written."""
+        """Folder of the results; None where nothing is written."""
         return Path(self._core.folder) if self._core.folder else None
 
     @property
     def threads(self) -> int:
-        """Most that the run takes its steps with, never more than processors are free; may be set at a look."""
+        """Largest number of threads that the run takes its steps with, never more than processors are free; may be set
+        at a look.
+        """
         return self._core.threads
 
     @threads.setter
@@ -676,17 +678,17 @@ class Run:
 
     @property
     def specimen(self) -> Specimen | SolidSpecimen:
-        """Its blocks, without bearings."""
+        """Specimen of the run, without bearings."""
         return wrapped(self._core.specimen)
 
     @property
     def sets(self) -> Sets:
-        """Of gridpoints: `specimen`, phases, sides, those of bearings and slits, and the deck's own."""
+        """Sets of gridpoints: `specimen`, phases, sides, those of bearings and slits, and the deck's own."""
         return Sets(self._core, False)
 
     @property
     def contact_sets(self) -> Sets:
-        """Of contact points, as rows of `contacts()`: slits, and the deck's own."""
+        """Sets of contact points, as rows of `contacts()`: slits, and the deck's own."""
         return Sets(self._core, True)
 
     @property
@@ -696,27 +698,27 @@ class Run:
 
     @property
     def slot(self) -> Indices:
-        """(gridpoints,): where each stands in `views`."""
+        """Place (gridpoints,) of each gridpoint in `views`."""
         return self._core.copied("slot")
 
     @property
     def position(self) -> Array:
-        """(gridpoints, dimension), m: when the body was made."""
+        """Position (gridpoints, dimension), m, when the body was made."""
         return self._core.copied("position")
 
     @property
     def zones(self) -> Indices:
-        """(zones, 3): gridpoints of each, counter-clockwise."""
+        """Gridpoints (zones, 3) of each zone, counter-clockwise."""
         return self._core.copied("zones")
 
     @property
     def zone_block(self) -> Indices:
-        """(zones,): block of each."""
+        """Block (zones,) of each zone."""
         return self._core.copied("zone_block")
 
     @property
     def block_material(self) -> Indices:
-        """(blocks,): indices into `material_names`."""
+        """Material (blocks,) of each block, as indices into `material_names`."""
         return self._core.copied("block_material")
 
     @property
@@ -730,21 +732,21 @@ class Run:
         return Fields(self._core)
 
     def contacts(self) -> pandas.DataFrame:
-        """State of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the number of the
-        `face`, `area_m2`, `normal_x` and `normal_y`, of a solid also `z_m` and `normal_z`, and fields of contacts that
-        are numbers (docs/lookup/fields.md):
-        `opening_m`, what their laws remember (`closure_m`), what they lost (`lost_tension_J_m2`), ...
+        """Returns the state of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the
+        number of the `face`, `area_m2`, `normal_x` and `normal_y`, of a solid also `z_m` and `normal_z`, and fields of
+        contacts that are numbers (docs/lookup/fields.md): `opening_m`, what their laws remember (`closure_m`), what
+        they lost (`lost_tension_J_m2`), ...
         """
         columns = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}
         table: pandas.DataFrame = library("pandas", "contacts").DataFrame(columns)
         return table.astype({"face": int})
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The history as a DataFrame, with the units of its columns in `attrs["units"]`."""
+        """Returns the history as a DataFrame, with the units of its columns in `attrs["units"]`."""
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0, or of tetrahedra, in m, with its fields
+        """Returns the body now as a mesh of triangles in space, z = 0, or of tetrahedra, in m, with its fields
         (`displacement_m`, `stress_Pa`, ...), and `block` and `material` of zones. `field_data` has the names of the
         materials: their number and the dimension of their zones, as meshes of gmsh do.
         """
@@ -764,13 +766,13 @@ class Run:
 
 
 def _of_item(core: _core.Session, item: str, components: int) -> dict[str, Array]:
-    """Its fields of so many components, by name with unit."""
+    """Returns its fields of so many components, by name with unit."""
     names = [bare for _, bare, _, of, count, _ in core.field_infos() if of == item and count == components]
     return core.fields(item, names) if names else {}
 
 
 def _in_space(vectors: Array) -> Array:
-    """(n, 3), as most formats of meshes want them."""
+    """Returns (n, 3), as most formats of meshes want them."""
     return np.column_stack([vectors, np.zeros(len(vectors))]) if vectors.shape[1] == 2 else vectors
 
 

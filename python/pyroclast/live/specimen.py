@@ -34,22 +34,23 @@ class _Blocks(Generic[_Core]):
 
     @property
     def phases(self) -> list[str]:
-        """Names of what blocks can be made of."""
+        """Names of the phases that blocks can be made of."""
         return self._core.phases
 
     @property
     def phase(self) -> NDArray[np.int32]:
-        """(blocks,): indices into `phases`."""
+        """Phase (blocks,) of each block, as indices into `phases`."""
         return self._core.phase
 
     @property
     def stone(self) -> NDArray[np.int32] | None:
-        """(blocks,): number of the stone of each, -1: none; None where no stones are known."""
+        """Number (blocks,) of the stone of each block, -1: none; None where no stones are known."""
         return self._core.stone if len(self._core.stone) else None
 
     @property
     def block_size(self) -> NDArray[np.float64] | None:
-        """(blocks,): size that each was to have, m, which its contact stiffness follows; None where all are alike."""
+        """Size (blocks,) that each block was to have, m, which its contact stiffness follows; None where all are alike.
+        """
         return np.array(self._core.block_size) if self._core.block_size else None
 
     @property
@@ -82,7 +83,7 @@ class Specimen(_Blocks[_core.Specimen]):
                     labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
                     block_size: ArrayLike | None = None, stone: ArrayLike | None = None,
                     unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
-        """A specimen of cells that are made elsewhere.
+        """Makes a specimen of cells that are made elsewhere.
 
         vertices: (n, 2), in `unit`.
         cells: for each the numbers of its vertices in turn, from 0, in either sense; neighbours share vertices.
@@ -111,8 +112,8 @@ class Specimen(_Blocks[_core.Specimen]):
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh, data: str | None = None, phases: Mapping[Any, str] | None = None, *,
                     unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
-        """A specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of triangles
-        and quads of a higher order the corners count, so that their sides are straight.
+        """Makes a specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of
+        triangles and quads of a higher order the corners count, so that their sides are straight.
 
         data: name of the cell data that label the cells, such as "gmsh:physical"; None: the cell sets say what they
             are of (`*ELSET` of Abaqus), or where there are none the physical groups of gmsh.
@@ -154,7 +155,7 @@ class Specimen(_Blocks[_core.Specimen]):
     def from_image(cls, image: ArrayLike | str | Path, pixel: str | Quantity, phases: Mapping[Any, str | None], *,
                    blocks: int, seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
                    radius_spread: float = 0.0) -> Specimen:
-        """A specimen of Voronoi blocks, each of the phase that most of its pixels are of.
+        """Makes a specimen of Voronoi blocks, each of the phase that most of its pixels are of.
 
         image: (rows, columns) of labels, the first row on top: the rectangle from [0, 0] to columns and rows times
             `pixel`. Or the name of a file that holds it: .npy, or .png and .tif of one page whose grey values, or
@@ -218,7 +219,8 @@ class Specimen(_Blocks[_core.Specimen]):
 
     @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
-        """From a file as `save` writes it, or with another unit in the name of its vertices (`vertices_mm`).
+        """Reads a specimen from a file as `save` writes it, or with another unit in the name of its vertices
+        (`vertices_mm`).
 
         join: as for `from_arrays`.
 
@@ -234,17 +236,17 @@ class Specimen(_Blocks[_core.Specimen]):
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """(vertices, 2), m."""
+        """Vertices (vertices, 2), m."""
         return self._core.vertices
 
     @property
     def cells(self) -> list[NDArray[np.int32]]:
-        """For each block the numbers of its vertices, counter-clockwise."""
+        """Numbers of the vertices of each block, counter-clockwise."""
         return self._core.cells
 
     @property
     def area(self) -> float:
-        """m²."""
+        """Area, m²."""
         return self._core.area
 
     @property
@@ -254,7 +256,7 @@ class Specimen(_Blocks[_core.Specimen]):
 
     @property
     def sides(self) -> list[str]:
-        """What the sides are called: `bottom`, `right`, `top`, `left` of a rectangle along the axes; of another outline
+        """Names of the sides: `bottom`, `right`, `top`, `left` of a rectangle along the axes; of another outline
         `side_1`, `side_2`, ... from its lowest corner on, counter-clockwise; then `hole_1`, ...
         """
         return self._core.sides
@@ -265,7 +267,7 @@ class Specimen(_Blocks[_core.Specimen]):
         return self._agreement
 
     def to_meshio(self) -> meshio.Mesh:
-        """As polygons in space, z = 0, with the cell data `phase`."""
+        """Returns the specimen as polygons in space, z = 0, with the cell data `phase`."""
         phase, cells = self.phase, self.cells
         size = np.array([len(cell) for cell in cells])
         of_size = [np.flatnonzero(size == n) for n in np.unique(size)]
@@ -292,7 +294,7 @@ class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
 
     @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> SolidSpecimen:
-        """From a file as `save` writes it; it has no `balls`.
+        """Reads a specimen from a file as `save` writes it; it has no `balls`.
 
         join: vertices nearer to each other than this length become one, and faces that then have the same corners one
             face between two blocks ("1 um"); None: blocks share the vertices and faces that the file says.
@@ -307,27 +309,27 @@ class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """(vertices, 3), m."""
+        """Vertices (vertices, 3), m."""
         return self._core.vertices
 
     @property
     def faces(self) -> list[NDArray[np.int32]]:
-        """For each face the numbers of its vertices, counter-clockwise seen from outside of its first neighbour."""
+        """Numbers of the vertices of each face, counter-clockwise seen from outside of its first neighbour."""
         return self._core.faces
 
     @property
     def neighbours(self) -> NDArray[np.int32]:
-        """(faces, 2): the blocks on both sides of each face; the second is -1 on the outline."""
+        """Blocks (faces, 2) on both sides of each face; the second is -1 on the outline."""
         return self._core.neighbours
 
     @property
     def cells(self) -> list[NDArray[np.int32]]:
-        """For each block the numbers of its faces."""
+        """Numbers of the faces of each block."""
         return self._core.cells
 
     @property
     def volume(self) -> float:
-        """m³."""
+        """Volume, m³."""
         return self._core.volume
 
     @property
@@ -337,24 +339,22 @@ class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
 
     @property
     def size(self) -> tuple[float, float, float]:
-        """Of the box around it, along x, y and z, m."""
+        """Size of the box around the specimen, along x, y and z, m."""
         return self._core.size
 
     @property
     def balls(self) -> NDArray[np.float64]:
-        """(balls, 4): x, y, z and diameter of each aggregate as it was placed, m; none where blocks were read."""
+        """Balls (balls, 4): x, y, z and diameter of each aggregate as it was placed, m; none where blocks were read."""
         return self._core.balls
 
     @property
     def sides(self) -> list[str]:
-        """What the sides are called: those of the section, then `front` and `back`; of a cylinder `rim`, `bottom`,
-        `top`.
-        """
+        """Names of the sides: those of the section, then `front` and `back`; of a cylinder `rim`, `bottom`, `top`."""
         return self._core.sides
 
     def to_meshio(self) -> meshio.Mesh:
-        """As polyhedra, with the cell data `phase`; meshio writes them as VTU. Blocks stand in the order of their
-        number of vertices.
+        """Returns the specimen as polyhedra, with the cell data `phase`; meshio writes them as VTU. Blocks stand in the
+        order of their number of vertices.
         """
         faces, own, phase = self.faces, self.cells, self.phase
         by_size: dict[int, list[int]] = {}
@@ -368,7 +368,7 @@ class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
 
 
 def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpecimen:
-    """A specimen that was made, in the plane or in space."""
+    """Returns a specimen that was made, in the plane or in space."""
     return SolidSpecimen(core) if isinstance(core, _core.SolidSpecimen) else Specimen(core)
 
 
@@ -407,7 +407,7 @@ def _corners(cell: ArrayLike, number: int) -> NDArray[np.int32]:
 
 def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None,
            cells: int) -> tuple[list[str], NDArray[np.int32]]:
-    """Names of phases, and of each cell an index into them."""
+    """Returns names of phases, and of each cell an index into them."""
     values: list[Any] = labels.ravel().tolist() if isinstance(labels, np.ndarray) else list(labels)
     if len(values) != cells:
         shape = f", in shape {labels.shape}" if isinstance(labels, np.ndarray) else ""
@@ -431,7 +431,7 @@ def _join(join: str | Quantity | None) -> float:
 
 
 def _stated(unit: str | Quantity | None, what: str) -> str | Quantity:
-    """What is taken where nobody says it."""
+    """Returns the unit of a size; m, with a warning, where nobody says it."""
     if unit is None:
         warnings.warn(f"{what} are taken in m, as no unit is stated; say unit=\"m\", or which it is", stacklevel=3)
     return unit or "m"
@@ -489,8 +489,8 @@ def _stones(seen: list[NDArray[Any]], phase: NDArray[Any], number: NDArray[Any],
 
 
 def _one_piece(cells: list[NDArray[np.int32]], phase: NDArray[Any], votes: NDArray[np.int64]) -> NDArray[Any]:
-    """Phases of blocks, -1 for those left out: the largest piece that hangs together by edges. Where two parts of it
-    meet in a point alone, the block between them that has most of a phase is filled in.
+    """Returns phases of blocks, -1 for those left out: the largest piece that hangs together by edges. Where two parts
+    of it meet in a point alone, the block between them that has most of a phase is filled in.
     """
     phase = phase.copy()
     around: dict[int, list[int]] = {}
@@ -535,7 +535,7 @@ def _one_piece(cells: list[NDArray[np.int32]], phase: NDArray[Any], votes: NDArr
 
 
 def _fans(vertex: int, some: list[int], cells: list[NDArray[np.int32]]) -> int:
-    """Into how many groups that hang together by edges the blocks around a vertex fall."""
+    """Returns how many groups that hang together by edges the blocks around a vertex form."""
     ends = []
     for i in some:
         cell = [int(corner) for corner in cells[i]]

@@ -65,23 +65,23 @@ class Stage:
         raise NotImplementedError(f"stage {self.kind!r} has no advance()")
 
     def judge(self, body: Body) -> Verdict:
-        """Called after each sample that `advance` asked for."""
+        """Judges each sample that `advance` asked for."""
         raise NotImplementedError(f"stage {self.kind!r} has no judge()")
 
     def progress(self) -> float:
-        """Share that is done, 0 to 1, as far as it can be foreseen."""
+        """Returns the share that is done, 0 to 1, as far as it can be foreseen."""
         return 0.0
 
     def values(self) -> list[float]:
-        """At a sample, in the order of `columns`."""
+        """Returns the values at a sample, in the order of `columns`."""
         return []
 
     def results(self) -> dict[str, float]:
-        """For the summary, by names with their units at the end: {"loss_J": 3.0}."""
+        """Returns numbers for the summary, by names with their units at the end: {"loss_J": 3.0}."""
         return {}
 
     def state(self) -> dict[str, Any] | None:
-        """All that lasts from one batch to the next, as JSON can hold it; None: it cannot be told."""
+        """Returns all that lasts from one batch to the next, as JSON can hold it; None: it cannot be told."""
         return None
 
     def take_state(self, state: dict[str, Any]) -> None:

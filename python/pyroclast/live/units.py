@@ -17,11 +17,13 @@ class Quantity:
 
     @property
     def unit(self) -> str:
-        """As decks write it: "MPa", "K min-1"; "1" without any."""
+        """Unit as decks write it: "MPa", "K min-1"; "1" without any."""
         return " ".join(name if n == 1 else f"{name}{n}" for name, n in self.powers.items()) or "1"
 
     def to(self, unit: str) -> float:
-        """The value in another unit of the same dimension; a temperature in "degC". Raises Error for another one."""
+        """Returns the value in another unit of the same dimension; a temperature in "degC". Raises Error for another
+        one.
+        """
         return _core.convert(str(self), unit)
 
     def __str__(self) -> str:
@@ -63,7 +65,7 @@ class Quantity:
 
 
 def in_si(value: Quantity | str | float, unit: str) -> float:
-    """A value in an SI unit, of temperature in degC: a number is taken to be in it already."""
+    """Returns a value in an SI unit, of temperature in degC: a number is taken to be in it already."""
     return float(value) if isinstance(value, (int, float)) else _core.convert(str(value), unit)
 
 

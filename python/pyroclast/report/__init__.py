@@ -53,7 +53,7 @@ def _page_of_runs(folders: Sequence[Path], reload_every: float | None) -> str:
 
 
 def _begun(folder: Path) -> list[tuple[int, int] | None]:
-    """Another value for each run that begins in a folder: first its files go, then it writes its manifest."""
+    """Returns marks that change as another run begins in a folder: first its files go, then it writes its manifest."""
     found: list[tuple[int, int] | None] = []
     for name, grows in (("manifest.json", False), ("history.csv", True)):
         try:

@@ -16,7 +16,8 @@ _TEXT_OF_BLOCK, _TEXT_OF_RIGID_BLOCK, _TEXT_OF_POLYHEDRON = 22.0, 11.0, 40.0
 
 
 def fitted(run: Results, most: int, needed: Callable[[Frame], bool]) -> PackedBody:
-    """A body in about so many characters at most: where all is too much with rigid blocks, and then with fewer frames.
+    """Packs a body into about so many characters at most: where all is too much with rigid blocks, and then with fewer
+    frames.
 
     needed: frames that are kept before others. Tells what was left out.
     """
@@ -40,7 +41,7 @@ def fitted(run: Results, most: int, needed: Callable[[Frame], bool]) -> PackedBo
 
 
 def chosen_frames(frames: Sequence[Frame], most: int, needed: Callable[[Frame], bool]) -> list[Frame]:
-    """So many of the frames at most: the first and the last, needed ones, and others evenly between them."""
+    """Chooses so many of the frames at most: the first and the last, needed ones, and others evenly between them."""
     if len(frames) <= most:
         return list(frames)
     ends = [0, len(frames) - 1]

@@ -26,7 +26,7 @@ _MOST_BODIES = 6
 
 
 def compare_page(runs: Sequence[Results]) -> str:
-    """All of the page. Raises Error where the runs have nothing in common to be drawn over."""
+    """Returns the whole page. Raises Error where the runs have nothing in common to be drawn over."""
     whole = [run_data(run, MOST_TEXT // min(len(runs), _MOST_BODIES) if i < _MOST_BODIES else 0)
              for i, run in enumerate(runs)]
     names = ends_apart([run.folder.resolve() for run in runs])
@@ -48,7 +48,7 @@ def compare_page(runs: Sequence[Results]) -> str:
 
 
 def _common(runs: list[dict[str, Any]], what: str) -> str:
-    """Of what the runs' own curves are drawn over, or of, the first that all runs have."""
+    """Returns the first quantity that all runs have, of those that their own curves show. what: "over" or "of"."""
     there = set.intersection(*({one["id"] for one in run["course"]["quantities"]} for run in runs))
     asked = [name for run in runs for name in ([run["course"]["over"]] if what == "over" else run["course"]["drawn"])]
     asked = [OVER_LOAD, *asked] if "strain" in asked and what == "over" else asked
@@ -67,7 +67,7 @@ class Result(NamedTuple):
 
 
 def _results(runs: Sequence[Results]) -> list[tuple[str, list[Result]]]:
-    """A row for each headline in which the runs differ: label with unit, and what each run has."""
+    """Returns a row for each headline in which the runs differ: label with unit, and what each run has."""
     found = [{(card.label, card.unit): card for card in cards(run)} for run in runs]
     labels = dict.fromkeys(key for one in found for key, card in one.items() if card.unit or card.value != "–")
     units = {label for label, unit in labels if unit}
@@ -94,7 +94,7 @@ class Difference(NamedTuple):
 
 
 def deck_differences(runs: Sequence[Results]) -> list[Difference]:
-    """In the order of the decks."""
+    """Returns the differences in the order of the decks."""
     decks = [values_of(run.deck) for run in runs]
     for run, values in zip(runs, decks):
         if "seed" in run.manifest:

@@ -39,7 +39,7 @@ class CurveQuantity:
 
 
 def quantities(run: Results) -> list[CurveQuantity]:
-    """All that a run has."""
+    """Returns all quantities that a run has."""
     return [one for one in _all(run) if one.column in run.history.names]
 
 
@@ -75,7 +75,7 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
 
 
 def _drawn(run: Results) -> tuple[str, list[str]]:
-    """Ids of what the first curve is drawn over, and of what."""
+    """Returns ids of what the first curve is drawn over, and of what."""
     hot = Heated(run)
     if not run.moves:
         return "minutes", ["temperature", "temperature_min", "temperature_max",
@@ -138,7 +138,7 @@ def course_of(run: Results) -> PackedCourse:
 
 
 def rows_of_frames(run: Results) -> list[int]:
-    """Row of the history of each frame."""
+    """Returns the row of the history of each frame."""
     if run.moves:
         rows = np.searchsorted(run.history["step"], [frame.step for frame in run.frames])
     else:
@@ -155,7 +155,7 @@ def _kept(run: Results, columns: list[str], needed: list[int]) -> np.ndarray:
 
 
 def _stages(run: Results, stage: np.ndarray) -> list[dict[str, Any]]:
-    """Kind, and first and last of the kept rows, of each stage that has rows."""
+    """Returns the kind, and first and last of the kept rows, of each stage that has rows."""
     kinds = [str(one.get("kind", "")) for one in run.deck_stages]
     found = []
     for number in np.unique(stage[np.isfinite(stage)]).astype(int).tolist():

@@ -32,8 +32,9 @@ class _Entry:
 
 
 def index_page(folder: Path, page_name: str, relative: Callable[[Path], str]) -> str:
-    """All of the page. page_name: of the page of a run in its folder, which is linked where there is one. relative:
-    the path from the index to a file."""
+    """Returns the whole page. page_name: of the page of a run in its folder, which is linked where there is one.
+    relative: the path from the index to a file.
+    """
     entries = [_entry(run, name, page_name, relative) for run, name in _named(folder)]
     return page("index.html", _SCRIPTS, title=f"Runs in {folder.resolve().name}", entries=entries)
 
@@ -58,7 +59,7 @@ def _named(folder: Path) -> list[tuple[Path, str]]:
 
 
 def _made_from(run: Path) -> tuple[str, int]:
-    """Name of the deck and seed; the folder's name where the manifest is damaged or missing."""
+    """Returns the name of the deck and seed; the folder's name where the manifest is damaged or missing."""
     try:
         manifest = Results(run).manifest
         return Path(manifest["deck"]).name, int(manifest["seed"])

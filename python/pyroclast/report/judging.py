@@ -72,7 +72,7 @@ def worst(reasons: list[Reason]) -> str:
 
 
 def verdict(run: Results) -> list[Reason]:
-    """Of a run with all its stages, worst first."""
+    """Judges a run with all its stages; the worst comes first."""
     reasons = _of_end(run)
     for number, stage in enumerate(run.stages, 1):
         of = f"stage {number}, {stage.get('kind')}"
@@ -82,7 +82,7 @@ def verdict(run: Results) -> list[Reason]:
 
 
 def _of_end(run: Results) -> list[Reason]:
-    """Against a run as a whole: how it ended, and its warnings."""
+    """Returns what speaks against a run as a whole: how it ended, and its warnings."""
     if "outcome_id" not in run.summary:
         said = {"running": "the run still goes on: its numbers are of this moment",
                 "killed": "the run was killed before it could sum up", "broken off": "the run broke off"}
@@ -95,7 +95,7 @@ def _of_end(run: Results) -> list[Reason]:
 
 
 def _of_ledgers(run: Results) -> list[Reason]:
-    """How well ledgers close; the program warns where that is not well enough."""
+    """Returns how well ledgers close; the program warns where that is not well enough."""
     reasons = []
     for ledger, name in (("energy_J", "error_over_turnover"), ("heat_J", "error_over_largest")):
         error = run.summary.get(ledger, {}).get(name)
@@ -107,7 +107,7 @@ def _of_ledgers(run: Results) -> list[Reason]:
 
 
 def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
-    """Of one stage of the summary."""
+    """Judges one stage of the summary."""
     results = stage.get("results", {})
     reasons = []
     if not stage.get("is_good", True):
@@ -127,7 +127,7 @@ def stage_verdict(stage: dict[str, Any]) -> list[Reason]:
 
 
 def cards(run: Results) -> list[Card]:
-    """The headlines of a run: of each result the last stage that has it."""
+    """Returns the headlines of a run: of each result the last stage that has it."""
     whole = _of_end(run) + _of_ledgers(run)
     found: dict[str, Card] = {}
     for stage in run.stages:
@@ -142,7 +142,9 @@ def cards(run: Results) -> list[Card]:
     asked = _asked(run)
 
     def rank(card: Card) -> tuple[int, int]:
-        """The known ones, then the deck's own, of which the last follow from the others, then peaks of records."""
+        """Returns the rank of a card: known ones stand first, then the deck's own, of which the last follow from the
+        others, then peaks of records.
+        """
         if card.label in order:
             return 0, order[card.label]
         if card.label in asked:
@@ -153,7 +155,7 @@ def cards(run: Results) -> list[Card]:
 
 
 def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
-    """Of a test between platens that measures no strength: what the specimen bore instead."""
+    """Returns what the specimen bore in a test between platens that measures no strength; None of other tests."""
     hot = Heated(run)
     if not run.has_platens or not run.stages or not hot.is_last:
         return None
@@ -173,7 +175,7 @@ def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
 
 
 def _asked(run: Results) -> list[str]:
-    """Labels of the results that the deck's stages work out, in its order; not of those that it only states."""
+    """Returns labels of the results that the deck's stages work out, in its order; not of those that it only states."""
     asked = [result for stage in run.deck_stages if isinstance(stage.get("results"), list)
              for result in stage["results"] if isinstance(result, dict)]
     return [str(result.get("name")) for result in asked if result.get("kind") != "given"]
@@ -201,8 +203,9 @@ def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> 
 
 
 def _own_headline(name: str, results: dict[str, Any]) -> _Headline | None:
-    """Of a result that a deck asked for by a name of its own. A time goes with another result, and the largest value
-    of a record with its peak."""
+    """Returns the headline of a result that a deck asked for by a name of its own. A time goes with another result, and
+    the largest value of a record with its peak.
+    """
     value = results[name]
     if name in _MINOR or name.endswith("_time_s") or isinstance(value, bool) or not isinstance(value, (int, float)):
         return None

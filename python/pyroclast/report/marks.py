@@ -27,12 +27,12 @@ class Mark:
 
     @property
     def rows(self) -> list[int]:
-        """Of a place its row, of a fall its ends."""
+        """Row of a place, or both ends of a fall."""
         return [self.row] if self.start is None else [self.start, self.row]
 
 
 def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> list[Mark]:
-    """In the order of the run.
+    """Returns the marks in the order of the run.
 
     leading: (rows,) of what the curve is about, such as the stress; None without one. over: (rows,) of what it is drawn
         over and goes back where the test unloads, such as the strain; None where only the time is known.
@@ -67,7 +67,7 @@ def _has_peak(run: Results) -> bool:
 
 
 def _peak_row(run: Results, largest: int) -> int:
-    """Where f_c is, as the summary has it; without one the row of the largest value."""
+    """Returns where f_c is, as the summary has it; without one the row of the largest value."""
     test = Compressed(run)
     if not run.has_platens or Heated(run).is_last or not test.has_peak:
         return largest
@@ -76,14 +76,18 @@ def _peak_row(run: Results, largest: int) -> int:
 
 
 def _is_peak(run: Results, leading: np.ndarray, row: int) -> bool:
-    """Whether the curve falls behind the row of its largest value: of a compression, whether the program has an f_c."""
+    """Returns whether the curve falls behind the row of its largest value: of a compression, whether the program has an
+    f_c.
+    """
     if run.has_platens and not Heated(run).is_last:
         return Compressed(run).has_peak
     return row < int(np.flatnonzero(np.isfinite(leading))[-1])
 
 
 def _least_extent(run: Results) -> tuple[float, str] | None:
-    """Length [m], of a solid area [m²], of damaged contacts that is marked, and how; None where it is not known."""
+    """Returns the length [m], of a solid area [m²], of damaged contacts that is marked, and how; None where it is not
+    known.
+    """
     if extent_of_cracks(run)[0] == "Length":
         return _CRACK_LENGTH, "1 m of contacts damaged"
     if not run.has_fields:
@@ -92,7 +96,7 @@ def _least_extent(run: Results) -> tuple[float, str] | None:
 
 
 def _sum(run: Results, ending: str) -> np.ndarray | None:
-    """(rows,) over all modes and interfaces; None where the history has no such column."""
+    """Returns the sum (rows,) over all modes and interfaces; None where the history has no such column."""
     columns = [run.history[f"{mode}_{interface}{ending}"] for mode, interfaces in run.crack_modes.items()
                for interface in interfaces if f"{mode}_{interface}{ending}" in run.history.names]
     return np.nansum(columns, axis=0) if columns else None
@@ -100,8 +104,8 @@ def _sum(run: Results, ending: str) -> np.ndarray | None:
 
 def _falls(run: Results, values: np.ndarray, over: np.ndarray | None, peak: int,
            is_peak: bool) -> list[Mark]:
-    """The steepest fall, which is the largest within a short stretch in which the test goes on, and the fall after the
-    peak, down to the least value that the test reached there as it went on.
+    """Finds the steepest fall, which is the largest within a short stretch in which the test goes on, and the fall
+    after the peak, down to the least value that the test reached there as it went on.
 
     Empty where nothing falls, and where several stages move the body and nothing tells which of them unload.
     """

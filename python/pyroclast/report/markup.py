@@ -16,18 +16,18 @@ class Markup(str):
 
 
 def element(name: str, *inside: str, **attributes: str) -> Markup:
-    """An element; texts inside and attributes are escaped. `class_` is `class`."""
+    """Returns an element; texts inside and attributes are escaped. `class_` is `class`."""
     said = "".join(f' {key.rstrip("_").replace("_", "-")}="{html.escape(value)}"' for key, value in attributes.items())
     return Markup(f"<{name}{said}>{together(*inside)}</{name}>")
 
 
 def together(*inside: str) -> Markup:
-    """One after the other; texts are escaped, with what cannot be seen written out."""
+    """Joins pieces one after the other; texts are escaped, with what cannot be seen written out."""
     return Markup("".join(part if isinstance(part, Markup) else html.escape(seen(part)) for part in inside))
 
 
 def picture(png: bytes, alt: str, width: int | None = None) -> Markup:
-    """An image within the page; width: in its pixels, the picture's own where it is not said."""
+    """Returns an image within the page; width: in its pixels, the picture's own where it is not said."""
     data = base64.b64encode(png).decode("ascii")
     wide = f' width="{width}"' if width else ""
     return Markup(f'<img alt="{html.escape(seen(alt))}"{wide} src="data:image/png;base64,{data}">')

@@ -18,7 +18,7 @@ _LARGEST = {1: 127, 2: 32767, 4: 2**31 - 1}  # steps that so many bytes hold
 
 
 def packed_steps(values: np.ndarray, step: float, size: int = 2) -> dict[str, Any]:
-    """Values as whole steps in `size` bytes each (1, 2 or 4), differences along the first dimension.
+    """Packs values as whole steps in `size` bytes each (1, 2 or 4), differences along the first dimension.
 
     The step becomes larger where so few bytes would not hold the largest value. What is kept differs from the values
     by half a step at most. Values that are not finite count as 0.
@@ -30,7 +30,7 @@ def packed_steps(values: np.ndarray, step: float, size: int = 2) -> dict[str, An
 
 
 def packed_whole(values: np.ndarray, size: int) -> dict[str, Any]:
-    """Whole numbers in `size` bytes each, differences along the first dimension."""
+    """Packs whole numbers in `size` bytes each, differences along the first dimension."""
     kind = np.dtype(f"<i{size}")
     whole = np.ascontiguousarray(values).astype(np.int64).astype(kind)  # wraps around
     change = whole.copy()
@@ -42,7 +42,7 @@ def packed_whole(values: np.ndarray, size: int) -> dict[str, Any]:
 
 
 def packed_floats(values: np.ndarray) -> dict[str, Any]:
-    """Numbers in single precision, NaN among them."""
+    """Packs numbers in single precision, NaN among them."""
     values = np.ascontiguousarray(values, dtype="<f4")
     return {"bytes": 0, "shape": list(values.shape), "data": _text_of(values)}
 
@@ -53,7 +53,7 @@ def _text_of(values: np.ndarray) -> str:
 
 
 def unpacked(array: dict[str, Any]) -> np.ndarray:
-    """What a page reads: of `packed_steps` the values, else the numbers themselves."""
+    """Returns what a page reads: of `packed_steps` the values, else the numbers themselves."""
     raw = np.frombuffer(zlib.decompress(base64.b64decode(array["data"])), np.uint8)
     size = array["bytes"] or 4
     apart = np.ascontiguousarray(raw.reshape(size, -1).T)

@@ -46,7 +46,7 @@ class Outline:
 
     @property
     def owner(self) -> np.ndarray:
-        """(n,) block of each corner."""
+        """Block (n,) of each corner."""
         return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
 
 
@@ -82,7 +82,7 @@ def _sides(mesh: Mesh, corner: np.ndarray, following: np.ndarray) -> np.ndarray:
 
 
 def meeting(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """(n,) whole numbers, the same for points that meet."""
+    """Returns (n,) whole numbers, the same for points that meet."""
     place = np.zeros(len(points), np.int64)
     for values in points.T:
         order = np.argsort(values, kind="stable")
@@ -103,7 +103,7 @@ class PackedBody:
 
     @property
     def size(self) -> int:
-        """Characters."""
+        """Size, characters."""
         return sum(len(array["data"]) for array in self.arrays.values())
 
 
@@ -146,7 +146,9 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
 
 def read_finite(read: Callable[[Frame], dict[str, np.ndarray]],
                 frames: Sequence[Frame]) -> tuple[list[Frame], dict[str, np.ndarray], list[str]]:
-    """Frames that are whole, with numbers that are all finite; these (frames, ...) by name; notes of other frames."""
+    """Returns frames that are whole, with numbers that are all finite; these (frames, ...) by name; notes of other
+    frames.
+    """
     taken: list[Frame] = []
     found: list[dict[str, np.ndarray]] = []
     notes = []
@@ -169,14 +171,14 @@ def read_finite(read: Callable[[Frame], dict[str, np.ndarray]],
 
 
 def exact_steps(run: Results, found: np.ndarray) -> np.ndarray:
-    """Steps of the history for those that the fields have in single precision; -1 where they are negative."""
+    """Returns steps of the history for those that the fields have in single precision; -1 where they are negative."""
     steps = run.history["step"]
     row = np.searchsorted(steps.astype(np.float32), found.astype(np.float32))
     return np.where(found < 0.0, -1.0, steps[np.minimum(row, len(steps) - 1)]).astype(np.int64)
 
 
 def about_body(run: Results) -> dict[str, Any]:
-    """Names of materials, interfaces and modes of cracks."""
+    """Returns names of materials, interfaces and modes of cracks."""
     mesh = run.mesh
     modes = run.crack_modes if run.moves else {}
     return {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
@@ -186,7 +188,7 @@ def about_body(run: Results) -> dict[str, Any]:
 
 
 def _packed_losses(run: Results, frames: list[Frame], lost: dict[str, np.ndarray]) -> dict[str, dict[str, Any]]:
-    """J, of energies (frames, contacts) over the thickness of the body, J/m; the history tells that thickness."""
+    """Packs energies [J] (frames, contacts) over the thickness of the body, J/m; the history tells that thickness."""
     there = [name for name in lost if f"dissipated_{name.removeprefix('lost_')}_J" in run.history.names]
     of_unit = sum(float(lost[name][-1].sum()) for name in there)
     if not of_unit > 0.0:
@@ -213,7 +215,9 @@ def _block_size(corner: np.ndarray, outline: Outline) -> float:
 
 
 def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians, by least squares over corners."""
+    """Returns (frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians, by least squares over
+    corners.
+    """
     first, count = outline.first[:-1], np.diff(outline.first)
     middle = np.add.reduceat(corner, first) / count[:, None]
     arm = corner - middle[outline.owner]
@@ -269,5 +273,5 @@ class _Reader:
             yield "creep_y", self._mean(read_array(path, "VTKHDF/CellData/creep_strain [1]", shape)[:, 1])
 
     def _mean(self, of_zones: np.ndarray) -> np.ndarray:
-        """(B,) over the zones of each block, by area."""
+        """Returns the mean (B,) over the zones of each block, by area."""
         return np.bincount(self._block, self._share * of_zones)

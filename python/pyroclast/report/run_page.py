@@ -34,7 +34,7 @@ class RunData(NamedTuple):
 
 
 def run_data(run: Results, most: int = MOST_TEXT) -> RunData:
-    """History and fields, the fields in about so many characters at most; none of them where that is 0."""
+    """Packs the history and fields, the fields in about so many characters at most; none of them where that is 0."""
     course = course_of(run)
     notes = list(course.notes)
     data: dict[str, Any] = {
@@ -81,14 +81,14 @@ def run_page(run: Results, reload_every: float | None = None) -> str:
 
 
 def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
-    """Those of the run; only one whose place the curve has leads there."""
+    """Returns the headlines of the run; only one whose place the curve has leads there."""
     places = {mark["id"] for mark in data["course"]["marks"]}
     return [replace(card, mark=card.mark if card.mark in places else "",
                     of=_tested(run) if card.mark == "peak" and card.unit == "MPa" else "") for card in cards(run)]
 
 
 def _tested(run: Results) -> str:
-    """How much a number of the run stands for: one specimen, of so many blocks."""
+    """Returns how much a number of the run stands for: one specimen, of so many blocks."""
     blocks = run.summary.get("specimen", {}).get("blocks")
     count = f", {blocks:,} blocks" if isinstance(blocks, int) else ""
     space = (", in space" if extent_of_cracks(run)[0] == "Area" else ", in the plane") if run.crack_modes else ""
@@ -97,7 +97,7 @@ def _tested(run: Results) -> str:
 
 
 def _temperature(run: Results) -> list[str]:
-    """Of a cold test its temperature."""
+    """Returns the temperature of a cold test; nothing of a heated one."""
     known = run.history["temperature_degC"]
     known = known[np.isfinite(known)]
     if not run.moves or not Heated(run).uniform or not len(known) or np.ptp(known) > _SAME_TEMPERATURE:
@@ -110,7 +110,7 @@ def _without_formulas(fact: str) -> str:
 
 
 def _stages(run: Results) -> list[dict[str, Any]]:
-    """What the summary says of each stage, with its numbers in short, and how it is judged."""
+    """Returns what the summary says of each stage, with its numbers in short, and how it is judged."""
     said = []
     for number, stage in enumerate(run.stages, 1):
         results = {name: _shown(value) for name, value in stage.get("results", {}).items() if value is not None}
@@ -126,7 +126,7 @@ def _shown(value: object) -> str:
 
 
 def _steps(run: Results, body: dict[str, Any] | None) -> list[tuple[str, str]]:
-    """Of what the page rounds, and to which step."""
+    """Returns what the page rounds, and to which step."""
     if body is None:
         return []
     names = {"corner": ("places", 1e6, "µm"), "point": ("places", 1e6, "µm"), "move_x": ("displacements", 1e6, "µm"),
@@ -154,7 +154,7 @@ def _specimen(run: Results) -> list[tuple[str, str]]:
 
 
 def _gradation(run: Results) -> list[tuple[str, str, str]]:
-    """Diameter, mm, and the percentages that were asked and placed below it."""
+    """Returns the diameter, mm, and the percentages that were asked and placed below it."""
     try:
         table = SpecimenFolder(run.folder).gradation
         return [(f"{1e3 * d:.3g}", f"{asked:.1f}", f"{placed:.1f}") for d, asked, placed
@@ -164,7 +164,7 @@ def _gradation(run: Results) -> list[tuple[str, str, str]]:
 
 
 def _properties(run: Results) -> list[dict[str, Any]]:
-    """Panels of properties over the temperature; none where the temperature of the run stays."""
+    """Returns panels of properties over the temperature; none where the temperature of the run stays."""
     path = run.folder / "properties.csv"
     if not path.exists():
         return []
@@ -174,7 +174,7 @@ def _properties(run: Results) -> list[dict[str, Any]]:
 
 
 def _changes(run: Results) -> list[str]:
-    """What `--set` and `--seed` of the command changed of the deck."""
+    """Returns what `--set` and `--seed` of the command changed of the deck."""
     try:
         words = shlex.split(str(run.manifest.get("command", "")))
     except ValueError:

@@ -23,7 +23,7 @@ _STYLE = "page.css"
 
 
 def page(template: str, scripts: tuple[str, ...] = (), data: Any = None, **context: Any) -> str:
-    """A page from one of the templates.
+    """Returns a page from one of the templates.
 
     scripts: files of page/, one after the other. data: goes to the script as JSON; numbers that are not finite as null.
     """
@@ -48,7 +48,7 @@ def _part(name: str) -> str:
 
 
 def _json(data: Any) -> str:
-    """JSON that ends no script element."""
+    """Returns JSON that ends no script element."""
     text = json.dumps(_finite(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c")
 

@@ -85,15 +85,15 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
 
 
 def _of_blocks(blocks: BlockMesh, number: np.ndarray) -> np.ndarray:
-    """(B,) material."""
+    """Returns the material (B,) of blocks."""
     material = np.empty(number.max() + 1, int)
     material[number] = blocks.material
     return material
 
 
 def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of the three edges of each triangle, one triangle after the other, (3 T, 3), m: their middles, and the ways from
-    there to the third corner.
+    """Returns, of the three edges of each triangle, one triangle after the other, (3 T, 3), m: their middles, and the
+    ways from there to the third corner.
     """
     corners = point[triangle]
     middle = 0.5 * (corners + np.roll(corners, -1, axis=1))
@@ -102,7 +102,7 @@ def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
            is_outer: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
-    """(K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
+    """Returns (K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
 
     A face is where two blocks meet. beside: (K, 2), those of each contact.
     """
@@ -126,7 +126,9 @@ def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: n
 
 
 def _cell_points(cells: np.ndarray, point: np.ndarray, of_point: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """(K, 3) gridpoints of a block that lie at a contact's point, at the next one of the face and at the one before."""
+    """Returns (K, 3) gridpoints of a block that lie at a contact's point, at the next one of the face and at the one
+    before.
+    """
     ends = np.stack([cells[:, 0], 2.0 * cells[:, 1] - cells[:, 0], 2.0 * cells[:, 3] - cells[:, 0]], axis=1)
     place = meeting(np.concatenate([point, ends.reshape(-1, 3)]), _near(point))
     count = int(of_point.max()) + 1
@@ -139,12 +141,12 @@ def _cell_points(cells: np.ndarray, point: np.ndarray, of_point: np.ndarray, blo
 
 
 def _near(point: np.ndarray) -> float:
-    """m: points so near to each other are one."""
+    """Returns the distance [m] within which points are one."""
     return MEET * float(np.ptp(point, axis=0).max())
 
 
 def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray) -> np.ndarray:
-    """(K, 2) blocks that contacts join; -1 where they are not found.
+    """Returns (K, 2) blocks that contacts join; -1 where they are not found.
 
     Both have a triangle on the edge behind the contact's point, and those two go from there as the contact's cell does.
     cells: (K, 4, 3), m. triangle: (T, 3), those between blocks. owner: (T,), their blocks.
@@ -173,8 +175,8 @@ def _blocks_beside(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, o
 
 
 def _traces(cells: np.ndarray, point: np.ndarray, triangle: np.ndarray, is_outer: np.ndarray) -> np.ndarray:
-    """(K,) where contacts show outside: twice an outer triangle whose edge they lie on, and 1 more where that edge is
-    the one before their point; -1 where they do not.
+    """Returns (K,) where contacts show outside: twice an outer triangle whose edge they lie on, and 1 more where that
+    edge is the one before their point; -1 where they do not.
     """
     outer = np.flatnonzero(is_outer)
     middle = _edges(point, triangle[outer])[0]

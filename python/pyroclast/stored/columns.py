@@ -25,7 +25,8 @@ class ColumnNames:
     """Names of columns: the program's ("stress_MPa"), and those without their units ("stress", in SI)."""
 
     def __init__(self, columns: Sequence[tuple[str, str]], factor: Callable[[str], float]):
-        """
+        """Takes the columns of a table.
+
         columns: names and units; "1" for a number.
         factor: from a unit to SI.
         """
@@ -41,13 +42,15 @@ class ColumnNames:
 
     @classmethod
     def of_header(cls, names: Sequence[str]) -> ColumnNames:
-        """From the header of a file of the program: the units are what names end with."""
+        """Takes the header of a file of the program: the units are what names end with."""
         ends = [name.rpartition("_") for name in names]
         return cls([(name, unit if rest and unit in _IN_SI else "1") for name, (rest, _, unit) in zip(names, ends)],
                    _IN_SI.__getitem__)
 
     def place(self, name: str) -> tuple[int, float]:
-        """Number of a column, and by what its values are to be multiplied. Raises KeyError where there is none."""
+        """Returns the number of a column, and by what its values are to be multiplied. Raises KeyError where there is
+        none.
+        """
         return self._places[name]
 
     def __contains__(self, name: object) -> bool:
@@ -70,12 +73,12 @@ class Columns(Mapping[str, Array]):
 
     @abstractmethod
     def _cells(self, column: int) -> Array:
-        """(rows,) of a column."""
+        """Returns the cells (rows,) of a column."""
 
     @property
     @abstractmethod
     def rows(self) -> int:
-        """Their number."""
+        """Number of rows."""
 
     def __getitem__(self, name: str) -> Array:
         i, factor = self._names.place(name)
@@ -103,7 +106,8 @@ class Columns(Mapping[str, Array]):
         return dict(self._names.units)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """As a DataFrame, the columns by the program's names; its `attrs["units"]` has their units."""
+        """Returns the table as a DataFrame, the columns by the program's names; its `attrs["units"]` has their units.
+        """
         table: pandas.DataFrame = library("pandas", "to_pandas").DataFrame(dict(self))
         table.attrs["units"] = self.units
         return table

@@ -29,8 +29,8 @@ class Compressed:
 
     @property
     def results(self) -> dict[str, Any]:
-        """E_GPa, f_c_MPa, strain_at_peak, strain_ic, quasi_static of the last compression that has a modulus; empty
-        without one.
+        """Results of the last compression that has a modulus: E_GPa, f_c_MPa, strain_at_peak, strain_ic, quasi_static;
+        empty without one.
         """
         tests = results_with(self.run, "E_GPa")
         return tests[-1] if tests else {}
@@ -43,7 +43,7 @@ class Compressed:
 
     @property
     def rows(self) -> NDArray[np.bool_]:
-        """(rows,) rows of that stage that have a stress."""
+        """Rows (rows,) of that stage that have a stress."""
         stage, is_there = self.run.history["stage"], np.isfinite(self.run.history["stress_MPa"])
         self.run.history.known("stress_MPa")
         rows: NDArray[np.bool_] = (stage == stage[is_there].max()) & is_there
@@ -55,7 +55,7 @@ class Compressed:
 
     @property
     def before(self) -> NDArray[np.bool_]:
-        """(rows,) rows of the stages that moved the platen before `rows`, since heat last changed the body."""
+        """Rows (rows,) of the stages that moved the platen before `rows`, since heat last changed the body."""
         stages = [number for number, stage in enumerate(self.run.deck_stages) if stage.get("kind") == "compress"]
         first, heated = int(self.rows.argmax()), np.flatnonzero(Heated(self.run).exchanged)
         row = np.arange(self.run.history.rows)
@@ -88,7 +88,7 @@ class Compressed:
 
     @property
     def rise_again(self) -> float:
-        """How far the stress rises above f_c behind it, over f_c; 0 where it does not, or there is no f_c."""
+        """Rise of the stress above f_c behind it, over f_c; 0 where it does not, or there is no f_c."""
         strength, largest = self._tested("f_c_MPa"), self._tested("stress_max_MPa")
         return max(0.0, largest / strength - 1.0) if strength and largest else 0.0
 

@@ -17,11 +17,11 @@ class Plane:
     offset: float
 
     def above(self, points: np.ndarray) -> np.ndarray:
-        """Distance along the normal, m."""
+        """Returns the distance along the normal, m."""
         return points @ self.normal - self.offset
 
     def along(self, vectors: np.ndarray) -> np.ndarray:
-        """(n, 3): the parts of vectors that lie in the plane."""
+        """Returns (n, 3): the parts of vectors that lie in the plane."""
         return vectors - (vectors @ self.normal)[:, None] * self.normal
 
     @property
@@ -41,13 +41,13 @@ class Polygons:
 
     @property
     def area_vectors(self) -> np.ndarray:
-        """(P, 3), m²: along the normals."""
+        """Areas (P, 3), m², along the normals."""
         from_first = self.corners - self.corners[:, :1]
         return 0.5 * np.cross(from_first[:, 1:-1], from_first[:, 2:]).sum(axis=1)
 
 
 def joined(parts: list[Polygons]) -> Polygons:
-    """All of these, in turn."""
+    """Joins all of these, in turn."""
     most = max(part.corners.shape[1] for part in parts)
     padded = [np.concatenate([part.corners, np.repeat(part.corners[:, -1:], most - part.corners.shape[1], axis=1)],
                              axis=1) for part in parts]
@@ -55,7 +55,7 @@ def joined(parts: list[Polygons]) -> Polygons:
 
 
 def surface(blocks: BlockMesh, points: np.ndarray | None = None) -> Polygons:
-    """Sides of all blocks, also where they meet: triangles that look out of their block, each of a zone.
+    """Returns the sides of all blocks, also where they meet: triangles that look out of their block, each of a zone.
 
     points: (N, 3), places of the gridpoints, m; None: the reference configuration.
     """
@@ -64,12 +64,12 @@ def surface(blocks: BlockMesh, points: np.ndarray | None = None) -> Polygons:
 
 
 def outline(blocks: BlockMesh, points: np.ndarray | None = None) -> Polygons:
-    """Triangles of `surface` that no other block meets."""
+    """Returns triangles of `surface` that no other block meets."""
     return surface(blocks, points).of(blocks.sides[2])
 
 
 def clip(polygons: Polygons, plane: Plane) -> Polygons:
-    """What of the polygons lies below a plane."""
+    """Returns what of the polygons lies below a plane."""
     here = polygons.corners
     if not len(here):
         return polygons
@@ -86,7 +86,7 @@ def clip(polygons: Polygons, plane: Plane) -> Polygons:
 
 
 def _packed(corners: np.ndarray, kept: np.ndarray, owner: np.ndarray) -> Polygons:
-    """Polygons of the corners that are kept, in their order."""
+    """Returns polygons of the corners that are kept, in their order."""
     count = kept.sum(axis=1)
     whole = count >= 3
     corners, kept, owner, count = corners[whole], kept[whole], owner[whole], count[whole]
@@ -99,7 +99,7 @@ def _packed(corners: np.ndarray, kept: np.ndarray, owner: np.ndarray) -> Polygon
 
 
 def section(blocks: BlockMesh, plane: Plane, points: np.ndarray | None = None) -> Polygons:
-    """Polygons of the zones that a plane cuts, triangles and quadrangles, each of a zone.
+    """Returns the polygons of the zones that a plane cuts, triangles and quadrangles, each of a zone.
 
     points: as of `surface`.
     """
@@ -125,7 +125,7 @@ def section(blocks: BlockMesh, plane: Plane, points: np.ndarray | None = None) -
 
 
 def traces(cells: np.ndarray, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
-    """Lines (L, 2, 3) in which a plane cuts quadrangles (C, 4, 3), and the quadrangle of each."""
+    """Returns lines (L, 2, 3) in which a plane cuts quadrangles (C, 4, 3), and the quadrangle of each."""
     after = np.roll(cells, -1, axis=1)
     height, height_after = plane.above(cells), plane.above(after)
     crosses = (height <= 0.0) != (height_after <= 0.0)
@@ -139,7 +139,7 @@ def traces(cells: np.ndarray, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
 
 def without_corner(blocks: BlockMesh, planes: tuple[Plane, Plane],
                    points: np.ndarray | None = None) -> tuple[Polygons, Polygons]:
-    """A body from which the corner above two planes is cut away: what is left of its outline, and the two cuts.
+    """Cuts the corner above two planes away from a body; returns what is left of its outline, and the two cuts.
 
     points: as of `surface`.
     """

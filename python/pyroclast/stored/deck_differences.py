@@ -16,7 +16,7 @@ _PLAIN = ("value", "builtin", "csv", "table")  # keys that say how a value is gi
 
 
 def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
-    """A name for each run: the values in which their decks differ, such as "E 50 GPa, seed 2".
+    """Returns a name for each run: the values in which their decks differ, such as "E 50 GPa, seed 2".
 
     None where decks are missing, do not differ, differ in more than three values, or do not tell all runs apart.
     """
@@ -34,24 +34,24 @@ def names_by_decks(runs: Sequence[Results]) -> list[str] | None:
 
 
 def values_of(deck: Any) -> dict[DeckPath, str]:
-    """Text of each value of a deck, by its path: keys, and numbers of tables of a list."""
+    """Returns the text of each value of a deck, by its path: keys, and numbers of tables of a list."""
     return dict(_values(deck))
 
 
 def differing_keys(decks: Sequence[dict[DeckPath, str]]) -> list[DeckPath]:
-    """Those whose values are not the same in all, or that some do not have; in the order of the decks."""
+    """Returns the keys whose values are not the same in all, or that some do not have; in the order of the decks."""
     keys = dict.fromkeys(key for deck in decks for key in deck)
     return [key for key in keys if len({deck.get(key) for deck in decks}) > 1]
 
 
 def written(path: DeckPath) -> str:
-    """A path as messages have it, such as "stages[1].duration"."""
+    """Returns a path as messages have it, such as "stages[1].duration"."""
     text = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)
     return text.removeprefix(".")
 
 
 def tells_nothing(path: DeckPath) -> bool:
-    """Whether a value changes no result."""
+    """Returns whether a value changes no result."""
     return path[0] in _TELL_NOTHING
 
 
@@ -75,7 +75,7 @@ def _text(value: Any) -> str:
 
 
 def _short(paths: Sequence[DeckPath]) -> list[str]:
-    """Of each path its last word, with that before it where two have the same."""
+    """Returns the last word of each path, with that before it where two have the same."""
     told = [path[:-1] if path[-1] in _PLAIN and len(path) > 1 else path for path in paths]
     lasts = Counter(path[-1] for path in told)
     return [str(path[-1]) if lasts[path[-1]] == 1 else " ".join(map(str, path[-2:])) for path in told]

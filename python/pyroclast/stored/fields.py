@@ -56,7 +56,7 @@ class _Field:
 
     @property
     def on(self) -> str:
-        """What its rows are of."""
+        """Kind of item that the rows are of."""
         if self.part == "contacts":
             return "end" if "PointData" in self.path else "contact"
         return "gridpoint" if "PointData" in self.path else "zone"
@@ -67,7 +67,7 @@ class _Field:
         return {name: len(labels) for name, labels in (_labels(n, self.dimension) for n in self.shape[1:])}
 
     def read(self, folder: Path, frame: int) -> Array:
-        """(rows, components) of a frame."""
+        """Returns (rows, components) of a frame."""
         path = folder / f"{self.part}_{frame:04d}.hdf"
         if self.is_optional and not _has(path, self.path):
             values: Array = np.full(self.shape, np.nan, self.dtype)
@@ -77,7 +77,7 @@ class _Field:
 
 
 def _labels(length: int, dimension: int) -> tuple[str, list[str]]:
-    """Of `_COMPONENTS`, those that a body has."""
+    """Returns those of `_COMPONENTS` that a body has."""
     name, labels = _COMPONENTS[length]
     return name, labels[:dimension] if name == "component" else labels
 
@@ -86,7 +86,7 @@ class _OfFrames(BackendArray):
     """An array (frames, ...) of which a frame is read when values of it are asked for, and nothing is kept."""
 
     def __init__(self, read: Callable[[int], Array], frames: list[int], shape: tuple[int, ...], dtype: np.dtype[Any]):
-        """shape: of one frame."""
+        """Takes a reader of frames. shape: of one frame."""
         self._read, self._frames = read, np.array(frames)
         self.shape, self.dtype = (len(frames), *shape), dtype
 
@@ -157,7 +157,7 @@ def block_fields_of(run: Path, mesh: Mesh, frames: list[Frame], moves: bool) -> 
 
 
 def _part(values: Array, key: tuple[Any, ...]) -> Array:
-    """What a key has for each axis by itself."""
+    """Returns what a key has for each axis by itself."""
     for axis in reversed(range(len(key))):
         values = values[(slice(None),) * axis + (key[axis],)]
     return values
@@ -181,14 +181,14 @@ def _listed(run: Path, mesh: Mesh, frames: list[Frame], moves: bool) -> list[_Fi
 
 
 def _sizes(mesh: Mesh) -> dict[str, dict[str, int]]:
-    """Dimensions of the rows of fields, with their sizes, by what they are on."""
+    """Returns dimensions of the rows of fields, with their sizes, by what they are on."""
     contacts, ends = ({name: length} for name, length in zip(("contact", "end"), mesh.contacts.cells.shape))
     return {"gridpoint": {"gridpoint": len(mesh.blocks.points)}, "zone": {"zone": len(mesh.blocks.zones)},
             "contact": contacts, "end": contacts | ends}
 
 
 def _arrays(path: Path) -> list[tuple[str, tuple[int, ...], np.dtype[Any]]]:
-    """Path, shape and type of what is of a frame alone: not a link into the mesh."""
+    """Returns the path, shape and type of what is of a frame alone: not a link into the mesh."""
     found = []
     with open_hdf(path) as file:
         for kind in ("PointData", "CellData"):
@@ -209,7 +209,7 @@ def _has(path: Path, name: str) -> bool:
 
 def _variable(frames: list[Frame], field: _Field, sizes: Mapping[str, int], read: Callable[[int], Array],
               dtype: np.dtype[Any]) -> Variable:
-    """sizes: of a frame, by dimensions."""
+    """Makes a variable of a field. sizes: of a frame, by dimensions."""
     of_frames = _OfFrames(read, [frame.number for frame in frames], tuple(sizes.values()), dtype)
     values = indexing.LazilyIndexedArray(of_frames)  # type: ignore[no-untyped-call]
     return ("frame", *sizes), values, {"units": field.unit}
@@ -241,7 +241,7 @@ def _of_components(fields: list[_Field], mesh: Mesh) -> dict[str, Variable]:
 
 
 def _size_of(mesh: Mesh, on: str, sizes: Array) -> dict[str, Variable]:
-    """Areas, or in space volumes, of zones or blocks."""
+    """Returns areas, or in space volumes, of zones or blocks."""
     if mesh.blocks.dimension == 2:
         return {"area": ((on,), sizes, {"units": "m2"})}
     return {"volume": ((on,), sizes, {"units": "m3"})}

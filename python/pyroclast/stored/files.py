@@ -75,8 +75,8 @@ class Table(Columns):
             raise Error(f"{path}: has a header but no rows")
 
     def _take_added(self) -> bool:
-        """The lines that came since, piece by piece, so that a long file is never in memory as a text. Returns whether
-        there were any.
+        """Takes the lines that came since, piece by piece, so that a long file is never in memory as a text; returns
+        whether there were any.
         """
         before = self._next_line
         for piece in self._pieces():
@@ -86,7 +86,7 @@ class Table(Columns):
         return self._next_line > before
 
     def _pieces(self) -> Iterator[bytes]:
-        """Whole lines, and at the end that which is not whole."""
+        """Yields the whole lines, and at the end that which is not whole."""
         try:
             with open(self.path, "rb") as file:
                 if self._taken:  # a pipe has no places
@@ -143,7 +143,7 @@ class Table(Columns):
             raise Error(f"{self.path}: cannot be read: {_reason(error)}") from error
 
     def _append(self, numbers: np.ndarray) -> None:
-        """numbers: (columns, rows)."""
+        """Appends numbers (columns, rows)."""
         count = self._count + numbers.shape[1]
         if count > self._values.shape[1]:
             room = max(count, int(1.02 * self._left * numbers.shape[1]) + count, 2 * self._count)
@@ -154,7 +154,7 @@ class Table(Columns):
         self._count = count
 
     def _parsed(self, lines: list[list[str]]) -> np.ndarray:
-        """(columns, rows) of lines that are cut into cells."""
+        """Reads the numbers (columns, rows) of lines that are cut into cells."""
         rows = [self._numbers(number, cells) for number, cells in enumerate(lines, start=self._next_line) if cells]
         self._next_line += len(lines)
         return np.array(rows).reshape(-1, len(self.names)).T
@@ -189,7 +189,7 @@ class Table(Columns):
 
     @property
     def rows(self) -> int:
-        """That were read by now."""
+        """Number of rows that were read by now."""
         return self._count
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -201,7 +201,7 @@ class Table(Columns):
         return super().__getitem__(name)
 
     def whole(self, name: str, none: int | None = None) -> np.ndarray:
-        """(rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
+        """Returns (rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
 
         Raises Error naming file and column when a cell holds something else.
         """
@@ -213,7 +213,7 @@ class Table(Columns):
         return values.astype(np.int64)
 
     def known(self, name: str, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """The finite values of a column in some rows; raises Error when there is none."""
+        """Returns the finite values of a column in some rows; raises Error when there is none."""
         values = self[name][rows]
         values = values[np.isfinite(values)]
         if not len(values):
@@ -321,7 +321,7 @@ _sound: set[tuple[int, ...]] = set()
 
 
 def _fault_of_dataset(made: h5py.h5p.PropDCID) -> str | None:
-    """Why a dataset cannot be data of a run, by how it was made; None where nothing is wrong."""
+    """Returns why a dataset cannot be data of a run, by how it was made; None where nothing is wrong."""
     if made.get_layout() == h5py.h5d.VIRTUAL:
         return "is put together from other files"
     if made.get_external_count():
@@ -332,7 +332,7 @@ def _fault_of_dataset(made: h5py.h5p.PropDCID) -> str | None:
 
 
 def _fault_of_link(path: Path, file: h5py.h5f.FileID, name: bytes, link: h5py.h5l.LinkInfo) -> str | None:
-    """What is wrong with a link of a file; None where nothing is."""
+    """Returns what is wrong with a link of a file; None where nothing is."""
     fault = None
     if link.type == h5py.h5l.TYPE_HARD:
         try:
@@ -355,14 +355,14 @@ def _fault_of_link(path: Path, file: h5py.h5f.FileID, name: bytes, link: h5py.h5
 
 
 def within(file: h5py.File, name: str) -> Any:
-    """The object of this name; None where there is none, and where a link leads to it."""
+    """Returns the object of this name; None where there is none, and where a link leads to it."""
     parts = name.split("/")
     places = ("/".join(parts[:i]) for i in range(1, len(parts) + 1))
     return file.get(name) if all(isinstance(file.get(p, getlink=True), h5py.HardLink) for p in places) else None
 
 
 def dataset(file: h5py.File, name: str) -> np.ndarray:
-    """All of a dataset of numbers; raises Error when there is none of that name, or one is not finite."""
+    """Reads all of a dataset of numbers; raises Error when there is none of that name, or one is not finite."""
     values = within(file, name)
     if not isinstance(values, h5py.Dataset):
         raise Error(f"{file.filename}: has no dataset /{name}")
@@ -378,7 +378,7 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
 
 
 def names_in(path: Path, group: str) -> list[str]:
-    """Names in a group of an HDF5 file; raises Error as `open_hdf`, and when there is no such group."""
+    """Returns names in a group of an HDF5 file; raises Error as `open_hdf`, and when there is no such group."""
     with open_hdf(path) as file:
         inner = within(file, group)
         if not isinstance(inner, h5py.Group):
@@ -387,7 +387,8 @@ def names_in(path: Path, group: str) -> list[str]:
 
 
 def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
-    """All of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape."""
+    """Reads all of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape.
+    """
     with open_hdf(path) as file:
         values = dataset(file, name)
     if values.shape != shape:
@@ -396,7 +397,7 @@ def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def read_json(path: Path) -> dict:
-    """The object in a JSON file; raises Error when it cannot be read or is something else."""
+    """Reads the object in a JSON file; raises Error when it cannot be read or is something else."""
     value = _read_json(path)
     if not isinstance(value, dict):
         raise Error(f"{path}: is not a JSON object")
@@ -404,7 +405,7 @@ def read_json(path: Path) -> dict:
 
 
 def read_json_list(path: Path) -> list:
-    """The list in a JSON file; raises Error when it cannot be read or is something else."""
+    """Reads the list in a JSON file; raises Error when it cannot be read or is something else."""
     value = _read_json(path)
     if not isinstance(value, list):
         raise Error(f"{path}: is not a JSON list")
@@ -419,7 +420,9 @@ def _read_json(path: Path) -> Any:
 
 
 def _read_rows(lines: bytes, columns: int) -> np.ndarray | None:
-    """(columns, rows) of whole lines of finite numbers, NaN where a cell is empty; None where they are something else."""
+    """Reads (columns, rows) of whole lines of finite numbers, NaN where a cell is empty; None where they are something
+    else.
+    """
     global _core
     if _core is None and len(lines) > _FEW:
         try:
@@ -436,7 +439,7 @@ _core: Any = None  # once it was asked for
 
 
 def read_rows(lines: bytes, columns: int) -> np.ndarray | None:
-    """As the compiled part does it, but slower."""
+    """Reads rows as the compiled part does, but slower."""
     if not lines.endswith(b"\n") or lines.translate(None, _NUMBERS):
         return None
     text = np.frombuffer(lines, dtype=np.uint8)
@@ -464,10 +467,10 @@ def read_rows(lines: bytes, columns: int) -> np.ndarray | None:
 
 
 def _reason(error: Exception) -> str:
-    """One line."""
+    """Returns the reason on one line."""
     return " ".join((getattr(error, "strerror", None) or str(error) or type(error).__name__).split())
 
 
 def _shown(cell: str) -> str:
-    """What stands in a file, for a message: in quotes, on one line, not long."""
+    """Returns what stands in a file, for a message: in quotes, on one line, not long."""
     return ascii(cell if len(cell) <= _MOST_SHOWN else cell[:_MOST_SHOWN] + "...")

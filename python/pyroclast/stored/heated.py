@@ -77,13 +77,15 @@ class Heated:
 
     @property
     def exchanged(self) -> NDArray[np.bool_]:
-        """(rows,) rows of the history written after an exchange of temperatures."""
+        """Rows (rows,) of the history written after an exchange of temperatures."""
         history = self.run.history
         return np.greater(history["exchange"], 0) if "exchange" in history.names else np.zeros(history.rows, dtype=bool)
 
     @property
     def rows(self) -> NDArray[np.bool_]:
-        """(rows,) `exchanged` and the row before, from which heating started; none of a body that was never heated."""
+        """Rows (rows,): `exchanged` and the row before, from which heating started; none of a body that was never
+        heated.
+        """
         rows = self.exchanged
         if rows.any():
             rows[max(int(rows.argmax()) - 1, 0)] = True
@@ -101,7 +103,7 @@ class Heated:
 
     @property
     def standing(self) -> NDArray[np.bool_]:
-        """(rows,) `rows` without that of the exchange at which the specimen failed."""
+        """Rows (rows,): `rows` without that of the exchange at which the specimen failed."""
         return self.rows & ~self._failing
 
     @property
@@ -114,7 +116,7 @@ class Heated:
 
     @property
     def unconverged(self) -> NDArray[np.bool_]:
-        """(rows,) exchanges whose cycles did not reach equilibrium, without that of the failure."""
+        """Rows (rows,) of exchanges whose cycles did not reach equilibrium, without that of the failure."""
         rows = self.exchanged
         if rows.any():
             rows &= (self.run.history["converged"] == 0) & ~self._failing

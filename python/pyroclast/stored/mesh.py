@@ -31,7 +31,7 @@ class BlockMesh:
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Dimension, 2 or 3."""
         return self.points.shape[1]
 
     @property
@@ -41,7 +41,7 @@ class BlockMesh:
 
     @cached_property
     def sizes(self) -> np.ndarray:
-        """(Z,): area of each zone, m², in space its volume, m³."""
+        """Sizes (Z,): area of each zone, m², in space its volume, m³."""
         return _sizes(self.points, self.zones)
 
     @cached_property
@@ -80,7 +80,7 @@ class Mesh:
 
 
 def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner of the specimen without bearings, m."""
+    """Returns the lower and upper corner of the specimen without bearings, m."""
     points = blocks.points[blocks.zones[~blocks.of_bearing].ravel()]
     if not len(points):
         raise Error(f"{blocks.path}: /blocks/material has bearings only")
@@ -88,7 +88,7 @@ def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cells_of_contacts(points: np.ndarray, face: np.ndarray) -> np.ndarray:
-    """(C, 4, 3), m: the quadrangles of `ContactMesh`, of contact points of a solid that go around their faces.
+    """Returns (C, 4, 3), m: the quadrangles of `ContactMesh`, of contact points of a solid that go around their faces.
 
     points: (C, 3), m. face: (C,), the face of each; the points of a face stand together.
     """
@@ -129,13 +129,13 @@ def read_mesh(path: Path) -> Mesh:
 
 
 def _type_of(file: h5py.File, group: str) -> int:
-    """VTK's number of the first cell."""
+    """Returns VTK's number of the first cell."""
     types = dataset(file, f"{group}/Types")
     return int(types[0]) if types.ndim == 1 and len(types) else 0
 
 
 def _names(file: h5py.File, name: str) -> tuple[str, ...]:
-    """What the values of a dataset stand for."""
+    """Returns what the values of a dataset stand for."""
     names = within(file, f"{name}_names")
     if not isinstance(names, h5py.Dataset) or names.dtype.kind != "S" or names.ndim != 1:
         raise Error(f"{file.filename}: has no dataset /{name}_names of texts")
@@ -149,7 +149,7 @@ def _names(file: h5py.File, name: str) -> tuple[str, ...]:
 
 
 def _cells(file: h5py.File, group: str, cell_type: int, name: str, dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (N, dimension) and corners of each cell, all cells of one type."""
+    """Returns points (N, dimension) and corners of each cell, all cells of one type."""
     points = dataset(file, f"{group}/Points")
     if points.ndim != 2 or points.shape[1] != 3:
         raise Error(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
@@ -172,7 +172,7 @@ def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
 
 
 def _kinds(file: h5py.File, name: str, cells: int) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Of each cell an index into the names, and the names."""
+    """Returns an index into the names for each cell, and the names."""
     values, names = _cell_values(file, name, cells), _names(file, name)
     if values.dtype.kind not in "iu" or cells and not 0 <= values.min() <= values.max() < len(names):
         raise Error(f"{file.filename}: /{name} holds numbers for which there is no name")
@@ -180,7 +180,7 @@ def _kinds(file: h5py.File, name: str, cells: int) -> tuple[np.ndarray, tuple[st
 
 
 def _sizes(points: np.ndarray, zones: np.ndarray) -> np.ndarray:
-    """(Z,), m² or m³: negative where the corners are in the wrong order."""
+    """Returns the sizes (Z,), m² or m³: negative where the corners are in the wrong order."""
     edges = [points[zones[:, i]] - points[zones[:, 0]] for i in range(1, zones.shape[1])]
     if len(edges) == 2:
         return 0.5 * (edges[0][:, 0] * edges[1][:, 1] - edges[0][:, 1] * edges[1][:, 0])

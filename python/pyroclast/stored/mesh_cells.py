@@ -22,7 +22,7 @@ _PHYSICAL, _PLANE = "gmsh:physical", 2  # gmsh's cell data; the dimension of its
 
 
 def corners_of_type(cell_type: str) -> int | None:
-    """How many of its points are corners of a cell of a mesh, 0: all; None: it is left out."""
+    """Returns how many of its points are corners of a cell of a mesh, 0: all; None: it is left out."""
     kind = re.fullmatch(r"([a-z]+?)(\d*)", cell_type)
     name = kind[1] if kind else cell_type
     if name in _LESS_THAN_CELLS:
@@ -35,7 +35,7 @@ def corners_of_type(cell_type: str) -> int | None:
 
 def labels_of(mesh: meshio.Mesh, data: str | None, phases: Mapping[Any, str] | None,
               taken: Sequence[int]) -> tuple[list[Any], Mapping[Any, str] | None]:
-    """Of each cell that is taken a label, and the names of the labels' phases.
+    """Returns a label of each cell that is taken, and the names of the labels' phases.
 
     taken: numbers of the mesh's blocks of cells. Raises Error where there are no such labels.
     """
@@ -72,7 +72,7 @@ def labels_of(mesh: meshio.Mesh, data: str | None, phases: Mapping[Any, str] | N
 
 def _labels_of_sets(mesh: meshio.Mesh, sets: Mapping[str, Sequence[Any]], phases: Mapping[Any, str] | None,
                     taken: Sequence[int]) -> tuple[list[Any], Mapping[Any, str] | None]:
-    """The same from cell sets."""
+    """Returns the labels of `labels_of` from cell sets."""
     unknown = [] if phases is None else [name for name in phases if name not in mesh.cell_sets]
     if unknown:
         raise Error(f"the mesh has no cell set {unknown[0]!r}; it has {', '.join(mesh.cell_sets)}")

@@ -50,12 +50,12 @@ class References:
     tables: tuple[Reference, ...] = ()
 
     def of(self, of: str, over: str) -> list[Reference]:
-        """The tables of a quantity over another, as the deck names both."""
+        """Returns the tables of a quantity over another, as the deck names both."""
         return [table for table in self.tables if (table.of, table.over) == (of, over)]
 
 
 def read_references(path: Path) -> References:
-    """From references.json, which the program leaves in the folder of a run; none without it.
+    """Reads references.json, which the program leaves in the folder of a run; none without it.
 
     Raises Error when it is malformed.
     """
@@ -130,7 +130,7 @@ AT_LAST_STRAIN = _AT_STRAIN_AT_TANGENT - _parabola(_AT_STRAIN_AT_TANGENT) / AT_D
 
 
 def at_stress(strain):
-    """Stress [MPa] of the Anderberg and Thelandersson law at room temperature, generated, not measured.
+    """Returns the stress [MPa] of the Anderberg and Thelandersson law at room temperature, generated, not measured.
 
     A parabola with initial slope E and apex f_c at 2 f_c / E, continued by the line of slope AT_DESCENT that
     is tangent to it. Takes a number or an array within [0, AT_LAST_STRAIN]; throws ValueError outside.
@@ -164,7 +164,7 @@ class StrainBand:
     high: np.ndarray  #: (n,)
 
     def at(self, temperature):
-        """Low, central and high strain at a temperature [°C] or an array of them; ValueError outside."""
+        """Returns the low, central and high strain at a temperature [°C] or an array of them; ValueError outside."""
         temperature = np.asarray(temperature, dtype=float)
         first, last = self.temperature[[0, -1]]
         if (temperature < first).any() or (temperature > last).any():
@@ -174,7 +174,7 @@ class StrainBand:
 
 @cache
 def strain_bands() -> tuple[StrainBand, ...]:
-    """The four load levels of Anderberg and Thelandersson's transient tests, lowest first."""
+    """Returns the four load levels of Anderberg and Thelandersson's transient tests, lowest first."""
     with open(_BANDS_FILE, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     names = ("temperature_degC", "strain_low", "strain_central", "strain_high")
@@ -187,7 +187,7 @@ def strain_bands() -> tuple[StrainBand, ...]:
 
 
 def strain_band(level: float | None) -> StrainBand | None:
-    """The band of a load level, given to three digits; None when there is none for it."""
+    """Returns the band of a load level, given to three digits; None when there is none for it."""
     if level is None:
         return None
     return next((band for band in strain_bands() if abs(band.level - level) < _SAME_LEVEL), None)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def read(folder: str | Path) -> Results:
-    """The results of a run, from its folder: one that is over, is under way or broke off.
+    """Returns the results of a run, from its folder: one that is over, is under way or broke off.
 
     Raises Error where the folder holds no run, and says what it holds.
     """
@@ -55,8 +55,8 @@ def read(folder: str | Path) -> Results:
 
 
 def read_at_once(folder: str | Path) -> Results:
-    """The same of a run that may go on: the end is read first and the history last, so that it has the row of each frame,
-    and all that a summary tells.
+    """Reads the results of a run that may go on: the end first and the history last, so that it has the row of each
+    frame, and all that a summary tells.
     """
     run = read(folder)
     run._known_end = run._end
@@ -71,7 +71,7 @@ def runs_in(folder: Path) -> list[Path]:
 
 
 def is_of_run(folder: Path) -> bool:
-    """Whether a folder is that of a run."""
+    """Returns whether a folder is that of a run."""
     return any((folder / name).exists() for name in ("history.csv", "summary.json"))
 
 
@@ -105,7 +105,7 @@ class Results:
         return table
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The history as a DataFrame, with the units of its columns in `attrs["units"]`."""
+        """Returns the history as a DataFrame, with the units of its columns in `attrs["units"]`."""
         return self.history.to_pandas()
 
     @cached_property
@@ -150,7 +150,7 @@ class Results:
 
     @cached_property
     def deck(self) -> dict:
-        """The same as tables."""
+        """The deck as tables."""
         try:
             return tomllib.loads(self.deck_text)
         except (ValueError, RecursionError) as error:
@@ -159,23 +159,23 @@ class Results:
 
     @property
     def deck_stages(self) -> list[dict]:
-        """What the deck says of each stage; empty without a deck."""
+        """Table of each stage in the deck; empty without a deck."""
         stages = self.deck.get("stages")
         return [s if isinstance(s, dict) else {} for s in stages] if isinstance(stages, list) else []
 
     @cached_property
     def references(self) -> References:
-        """What the deck of the run asks figures to draw beside the results."""
+        """References that the deck of the run asks figures to draw beside the results."""
         return read_references(self.folder / "references.json")
 
     @property
     def title(self) -> str:
-        """As the summary has it, else the deck, else the folder's name."""
+        """Title as the summary has it, else the deck, else the folder's name."""
         return str(self.summary.get("title") or self.deck.get("title") or self.folder.resolve().name)
 
     @property
     def outcome(self) -> str:
-        """How the run ended; of one without a summary that it is running, or how it broke off."""
+        """Outcome: how the run ended; of one without a summary that it is running, or how it broke off."""
         writer, has_summary = self._end
         if has_summary:
             return str(self.summary.get("outcome", "over"))
@@ -183,13 +183,14 @@ class Results:
 
     @property
     def _end(self) -> tuple[Writer, bool]:
-        """Who writes into the folder, and whether it has a summary: asked in this order, as a run leaves its folder
-        behind its summary."""
+        """Writer of the folder, and whether it has a summary: asked in this order, as a run leaves its folder behind
+        its summary.
+        """
         return self._known_end or (Lock(self.folder).writer, (self.folder / "summary.json").exists())
 
     @property
     def warnings(self) -> list[str]:
-        """Of deck and choices, a line each."""
+        """Warnings of deck and choices, a line each."""
         told = self.summary.get("warnings", [])
         if not isinstance(told, list) or not all(isinstance(line, str) for line in told):
             raise Error(f"{self.folder / 'summary.json'}: 'warnings' is no list of texts")
@@ -204,7 +205,7 @@ class Results:
 
     @cached_property
     def stages(self) -> list[dict[str, Any]]:
-        """What the summary says of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
+        """Summary of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
         path = self.folder / "summary.json"
         stages = self.summary.get("stages")
         if not isinstance(stages, list):
@@ -255,21 +256,22 @@ class Results:
         return read_mesh(self.folder / "fields" / MESH)
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
-        """(N, dimension), m."""
+        """Returns the displacement (N, dimension), m."""
         blocks = self.mesh.blocks
         return self._field("blocks", frame, "PointData/displacement [m]", (len(blocks.points), 3))[:, :blocks.dimension]
 
     def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
-        """(N,), °C."""
+        """Returns the temperature (N,), °C."""
         return self._field("blocks", frame, "PointData/temperature [degC]", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
-        """Of the points of the contact mesh, m."""
+        """Returns the displacement of the points of the contact mesh, m."""
         points = self.mesh.contacts.points
         return self._field("contacts", frame, "PointData/displacement [m]", (len(points), 3))[:, :points.shape[1]]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
-        """(C,), by its name with unit, for instance "tension_damage [1]" or "opening [m]"."""
+        """Returns a field (C,) of contacts, by its name with unit, for instance "tension_damage [1]" or "opening [m]".
+        """
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.cells),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
@@ -360,7 +362,7 @@ class SpecimenFolder:
         return read_json(self._tables / "specimen.json")
 
     def fact(self, name: str) -> float:
-        """A number of specimen.json. Raises Error where there is none of that name."""
+        """Returns a number of specimen.json. Raises Error where there is none of that name."""
         value = self.facts.get(name)
         if not is_number(value):
             raise Error(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
@@ -368,7 +370,7 @@ class SpecimenFolder:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Of the area, of a solid of the volume, by material."""
+        """Share of the area, of a solid of the volume, by material."""
         shares = self.facts.get("fraction")
         if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
                                                    for v in shares.values()):
@@ -392,7 +394,7 @@ class SpecimenFolder:
 
     @cached_property
     def gradation(self) -> Table:
-        """d_m, asked_percent, placed_percent."""
+        """Columns d_m, asked_percent, placed_percent."""
         return Table(self._tables / "gradation.csv")
 
     @cached_property

@@ -21,7 +21,7 @@ from .modules import hash_of_function, imported, modules_of_function
 
 
 def function_at(place: str, code: str = "") -> Callable[..., Any]:
-    """Of FILE.py:NAME. code: hash that it must have; "" for any.
+    """Returns the function FILE.py:NAME. code: hash that it must have; "" for any.
 
     Raises Error where there is none, or it is other code.
     """
@@ -36,7 +36,7 @@ def function_at(place: str, code: str = "") -> Callable[..., Any]:
 
 
 def answer(function: Callable[..., Any], values: Mapping[str, Any], seed: int) -> dict[str, float]:
-    """Outputs by name. Raises Error where the function gives something else."""
+    """Returns outputs by name. Raises Error where the function gives something else."""
     outputs = function(**values, seed=seed)
     if not isinstance(outputs, Mapping):
         raise Error(f"the function returned {type(outputs).__name__}, not a dict of outputs by name")

@@ -47,7 +47,7 @@ class StudyCode:
 
 
 def code_of(study: StudySetup) -> StudyCode:
-    """The code of a study as it stands now; without a name where runs are those of a deck.
+    """Returns the code of a study as it stands now; without a name where runs are those of a deck.
 
     Raises Error where a file cannot be read, and where a module has the name of another one.
     """
@@ -78,7 +78,7 @@ def require_options(study: StudySetup, named: bool) -> None:
 
 
 def words_of(command: str) -> list[str]:
-    """Of a command line, before anything is put into its words. Raises Error where a quote stays open."""
+    """Splits a command line into words, before anything is put into these. Raises Error where a quote stays open."""
     try:
         return shlex.split(command)
     except ValueError as error:
@@ -104,7 +104,8 @@ class _Command:
                                                    self._files.items()}, "; ".join(dict.fromkeys(self._unknown)))
 
     def _forms(self, words: Sequence[str]) -> Iterator[list[str]]:
-        """The command by the values of its parameters that are choices or whole numbers: these may name files."""
+        """Yields the command by the values of its parameters that are choices or whole numbers: these may name files.
+        """
         used = {name for word in words for name in _fields(word)}
         countable = [p for p in self._study.parameters if p.name in used and p.distribution.count is not None]
         count = 1
@@ -237,7 +238,7 @@ def _values(parameter: Parameter) -> Sequence[object]:
 
 
 def _fill(word: str, values: Mapping[str, object]) -> str:
-    """A word with some of its fields filled in."""
+    """Returns a word with some of its fields filled in."""
     text = ""
     for before, name, form, _ in string.Formatter().parse(word) if _fields(word) else ():
         text += before

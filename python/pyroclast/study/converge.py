@@ -83,7 +83,7 @@ def _run_in(out: Path, deck: Path, options: argparse.Namespace, say: Callable[[s
 
 
 def variants_of(deck: Mapping[str, Any]) -> list[Variant]:
-    """What can be halved or doubled in a deck."""
+    """Returns what can be halved or doubled in a deck."""
     rates: list[str] = []
     times: list[str] = []
     for number, stage in enumerate(deck.get("stages", [])):
@@ -106,7 +106,8 @@ def variants_of(deck: Mapping[str, Any]) -> list[Variant]:
 
 
 def _blocks_of_size(deck: Mapping[str, Any], factor: float) -> tuple[str, ...]:
-    """The change that makes blocks so many times as large; none where they were made elsewhere or are too few."""
+    """Returns the change that makes blocks so many times as large; none where they were made elsewhere or are too few.
+    """
     if found := _found(deck, ["blocks.size"]):
         return _scaled(deck, found, factor)
     count = deck.get("blocks", {}).get("count", 0) / factor ** _dimension(deck)
@@ -143,7 +144,9 @@ class Effect:
 
 
 def effect(result: str, variant: Variant, before: NDArray[np.float64], after: NDArray[np.float64]) -> Effect:
-    """Of values by seed. Seeds are paired where they make the same specimens; else Welch's interval."""
+    """Returns the effect of a change from values by seed. Seeds are paired where they make the same specimens; else
+    Welch's interval.
+    """
     from scipy.stats import t
 
     mean = float(np.nanmean(before))

@@ -92,7 +92,8 @@ class Driver:
     def __init__(self, study: StudySetup, store: Store, program: str = "pyroclast",
                  functions: Mapping[str, Callable[[Results], float]] = MappingProxyType({}),
                  code: StudyCode | None = None):
-        """
+        """Takes a study.
+
         program: makes the runs, and is what the command line of each names.
         functions: outputs by name that are taken of what is kept of a run.
         code: of the study, where it is known already.
@@ -123,12 +124,12 @@ class Driver:
             raise Error("\n".join(dict.fromkeys(wrong)))
 
     def _not_seen(self) -> list[Output]:
-        """Outputs that no run has had yet."""
+        """Returns outputs that no run has had yet."""
         seen = {what for r in self.store for what, (value, _) in r.outputs.items() if value is not None}
         return [o for o in self.study.outputs if o.what not in seen]
 
     def forecast(self) -> StudyForecast:
-        """Of what the method asks for now."""
+        """Foresees what the method asks for now."""
         proposal = self.plan.propose(self._answers)
         wanted = self._wanted(proposal)
         known = sum(self._result(w) is not None for w in wanted)
@@ -201,7 +202,9 @@ class Driver:
         return sum(self.store.get(run) is None for run in self.store.begun())
 
     def rows(self) -> list[dict[str, Any]]:
-        """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""
+        """Returns a line for each run that the method asked for: what it was, what came of it, and how to make it
+        again.
+        """
         rows = []
         for wanted in self._wanted(self.plan.propose(self._answers)):
             result = self._result(wanted)
@@ -220,7 +223,7 @@ class Driver:
         return rows
 
     def missing(self) -> dict[str, list[str]]:
-        """By output, why the runs that came to their end lack it."""
+        """Returns, by output, why the runs that came to their end lack it."""
         found: dict[str, list[str]] = {output.name: [] for output in self.study.outputs}
         for result in map(self._result, self._wanted(self.plan.propose(self._answers))):
             for output in self.study.outputs:
@@ -230,13 +233,13 @@ class Driver:
         return found
 
     def write_table(self) -> Path:
-        """table.csv in the folder of the study, in the place of an earlier one."""
+        """Writes table.csv in the folder of the study, in the place of an earlier one."""
         file = self.store.folder / "table.csv"
         write_text(file, self.table_text())
         return file
 
     def table_text(self) -> str:
-        """Of `rows`, as CSV."""
+        """Returns `rows` as CSV."""
         rows = self.rows()
         text = io.StringIO(newline="")
         writer = csv.writer(text, lineterminator="\n")
@@ -245,8 +248,8 @@ class Driver:
         return text.getvalue()
 
     def write_best(self) -> Path | None:
-        """best.toml in the folder of the study: the deck with the parameters that come nearest to the targets. None
-        where the method has no such point, or runs have no deck. Raises Error where there is no such point yet.
+        """Writes best.toml in the folder of the study: the deck with the parameters that come nearest to the targets.
+        None where the method has no such point, or runs have no deck. Raises Error where there is no such point yet.
         """
         if self.study.method.kind not in WITH_A_BEST or self.study.runner.kind != "pyroclast":
             return None
@@ -264,18 +267,18 @@ class Driver:
         return file
 
     def findings(self) -> dict[str, Any]:
-        """What the method makes of the results; numbers, texts, lists and dicts only."""
+        """Returns what the method makes of the results; numbers, texts, lists and dicts only."""
         return self.plan.findings(self._answers)
 
     def _points(self, cube: NDArray[np.float64]) -> list[Point]:
         return [self.points.at(self.values(u)) for u in cube]
 
     def values(self, u: Iterable[float]) -> list[Value]:
-        """Of the parameters at a point of the unit cube."""
+        """Returns the values of the parameters at a point of the unit cube."""
         return [p.distribution.at(float(x)) for p, x in zip(self.study.parameters, u)]
 
     def _wanted(self, proposal: Proposal) -> list[Wanted]:
-        """Each run once."""
+        """Returns each run once."""
         found: dict[tuple[str, ...], Wanted] = {}
         for point in self._points(proposal.points):
             if not point.infeasible:
@@ -303,7 +306,9 @@ class Driver:
         return Answers(y, is_known, is_feasible, doubts)
 
     def _result(self, wanted: Wanted) -> RunResult | None:
-        """What is known of a run, with outputs that the study has only now; None where it has to be made for them."""
+        """Returns what is known of a run, with outputs that the study has only now; None where it has to be made for
+        them.
+        """
         result = self.store.get(*wanted.ids)
         if result is None or result.state not in (DONE, NO_VALUE):
             return result
@@ -389,8 +394,8 @@ def _of_point(values: Mapping[str, Any], seed: int) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """What no spreadsheet takes for a formula, and what acts on no terminal: a text that would be a formula stands
-    behind an apostrophe, and control characters are written out.
+    """Returns a cell that no spreadsheet takes for a formula and that acts on no terminal: a text that would be a
+    formula stands behind an apostrophe, and control characters are written out.
     """
     if not isinstance(value, str):
         return value
@@ -399,7 +404,7 @@ def _cell(value: Any) -> Any:
 
 
 def _text(cell: str) -> str:
-    """What `_cell` made a cell of."""
+    """Returns the text that `_cell` made a cell of."""
     return cell[1:] if cell.startswith("'") and cell[1:].startswith(_BEGINS_FORMULA) else cell
 
 
@@ -414,7 +419,7 @@ def _result_of(row: dict[str, str], outputs: Sequence[Output]) -> RunResult:
 
 
 def duration(seconds: float) -> str:
-    """For a reader: "45 s", "3 min", "2 h 10 min"."""
+    """Returns a duration for a reader: "45 s", "3 min", "2 h 10 min"."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
@@ -422,5 +427,5 @@ def duration(seconds: float) -> str:
 
 
 def free_cores() -> int:
-    """That this process may use."""
+    """Returns how many cores this process may use."""
     return len(os.sched_getaffinity(0))

@@ -130,7 +130,7 @@ class StudySetup:
     slurm: SlurmSettings = SlurmSettings()
 
     def place(self, key: str) -> str:
-        """Where a table or key of the study file stands, as "file:line"."""
+        """Returns where a table or key of the study file stands, as "file:line"."""
         table, _, last = key.rpartition(".")
         node = _core.TomlFile(str(self.file)).root()
         for part in filter(None, table.split(".")):
@@ -150,12 +150,12 @@ def read_setup(file: str | Path, functions: Sequence[str] = ()) -> StudySetup:
 
 
 def reference() -> str:
-    """Every table and key that a study file may hold, as Markdown."""
+    """Returns every table and key that a study file may hold, as Markdown."""
     return _core.reference_of(lambda toml: _read(toml, Path("study.toml")))
 
 
 def schema() -> str:
-    """JSON Schema (draft 4) of study files, for editors."""
+    """Returns the JSON Schema (draft 4) of study files, for editors."""
     return _core.schema_of(lambda toml: _read(toml, Path("study.toml")), "Study file of Pyroclast")
 
 
@@ -374,7 +374,7 @@ def _keys(table: _core.Table) -> list[tuple[str, float]]:
 
 
 def _line(table: _core.Table, key: str = "") -> int:
-    """Where a key or table stands: what is named stays in the order of the file."""
+    """Returns where a key or table stands: what is named stays in the order of the file."""
     return int(table.where(key).rpartition(":")[2])
 
 
@@ -383,7 +383,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _quantities(values: list[Any]) -> tuple[list[float], str]:
-    """Numbers in the unit of the first."""
+    """Returns numbers in the unit of the first."""
     numbers: list[float] = []
     unit = ""
     for i, value in enumerate(values):
@@ -473,7 +473,7 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
 
 
 def _number_of_output(table: _core.Table, key: str, unit: str, meaning: str) -> float:
-    """A number in an output's unit, written without a unit or with another one of its kind."""
+    """Returns a number in an output's unit, written without a unit or with another one of its kind."""
     value = json.loads(table.json(key, "number or quantity", meaning))
     if value is None:
         return 0.0

@@ -13,7 +13,7 @@ from ..errors import Error
 
 
 def hash_of(parts: Iterable[tuple[str, bytes]]) -> str:
-    """SHA-256 of texts by name, in their order."""
+    """Returns the SHA-256 of texts by name, in their order."""
     hashed = [(name, hashlib.sha256(text).hexdigest()) for name, text in parts]
     return hashlib.sha256(json.dumps(hashed).encode()).hexdigest()
 
@@ -26,7 +26,7 @@ def require_unchanged(files: Mapping[str, str]) -> None:
 
 
 def hash_of_file(file: Path) -> str:
-    """SHA-256 of a file. Raises Error where it cannot be read."""
+    """Returns the SHA-256 of a file. Raises Error where it cannot be read."""
     try:
         known = os.stat(file)
         return _hash_at(str(file), (known.st_dev, known.st_ino, known.st_size, known.st_mtime_ns, known.st_ctime_ns))
@@ -36,6 +36,6 @@ def hash_of_file(file: Path) -> str:
 
 @functools.cache
 def _hash_at(file: str, state: tuple[int, ...]) -> str:
-    """Once for each state of a file: some are large, and each run asks."""
+    """Hashes a file once for each of its states: some are large, and each run asks."""
     with open(file, "rb") as opened:
         return hashlib.file_digest(opened, "sha256").hexdigest()

@@ -41,7 +41,7 @@ def hash_of_function(sources: Mapping[str, SourceFile], function: str) -> str:
 
 
 def modules_of_function(file: Path) -> dict[str, SourceFile]:
-    """A file and the modules beside it that it imports, and so on, by the names under which they are imported.
+    """Returns a file and the modules beside it that it imports, and so on, by the names under which they are imported.
 
     Raises Error where a file cannot be read, and where Python has another module of one of the names.
     """
@@ -63,7 +63,7 @@ def modules_of_function(file: Path) -> dict[str, SourceFile]:
 
 
 def modules_of_script(file: Path | None, folder: Path, code: bytes = b"") -> list[Path]:
-    """Files that Python may take from a folder, which stands first on its path, for a script.
+    """Returns files that Python may take from a folder, which stands first on its path, for a script.
 
     file: the script; None for `python -c`, which runs code. Compiled modules count, and modules that take the place of
     one of Python, whoever imports it.
@@ -91,7 +91,9 @@ def modules_of_script(file: Path | None, folder: Path, code: bytes = b"") -> lis
 
 
 def imported(sources: Mapping[str, SourceFile]) -> ModuleType:
-    """The module of the file that a study names. It and all that it imports beside it run from the texts in memory."""
+    """Imports the module of the file that a study names. It and all that it imports beside it run from the texts in
+    memory.
+    """
     finder = _Beside(sources)
     sys.meta_path.append(finder)  # last: what Python has comes first
     spec = finder.find_spec(OWN)
@@ -141,7 +143,7 @@ class _Beside(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
 
 
 def _growing(found: Mapping[str, Any]) -> Iterator[str]:
-    """The keys of a dict, with those that are added on the way."""
+    """Yields the keys of a dict, with those that are added on the way."""
     done = 0
     while done < len(found):
         yield list(found)[done]
@@ -149,7 +151,7 @@ def _growing(found: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _source(folder: Path, name: str) -> SourceFile | None:
-    """The package or the module of a name below a folder."""
+    """Returns the package or the module of a name below a folder."""
     base = folder / name.replace(".", "/")
     for path in (base / "__init__.py", base.with_name(f"{base.name}.py")):
         if path.is_file():
@@ -158,7 +160,7 @@ def _source(folder: Path, name: str) -> SourceFile | None:
 
 
 def _files(base: Path) -> list[Path]:
-    """What Python would take for a module, but for packages: its source and compiled forms."""
+    """Returns what Python would take for a module, but for packages: its source and compiled forms."""
     named = [base.with_name(f"{base.name}{ending}") for ending in (*_COMPILED, ".py")]
     return [path for path in named if path.is_file()]
 
@@ -180,7 +182,7 @@ def _elsewhere(name: str, folder: Path) -> str | None:
 
 
 def _imported(name: str, source: SourceFile) -> Iterator[str]:
-    """Full names of modules that a file imports by a statement, with the packages that hold them."""
+    """Yields full names of modules that a file imports by a statement, with the packages that hold them."""
     try:
         tree = ast.parse(source.text)
     except (SyntaxError, ValueError, RecursionError):

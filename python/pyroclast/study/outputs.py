@@ -48,7 +48,7 @@ class Output:
 
     @classmethod
     def of_function(cls, name: str) -> Output:
-        """One that a script takes of each run."""
+        """Returns an output that a script takes of each run."""
         return cls(name, f"{_FUNCTION}{name}")
 
     @property
@@ -73,18 +73,18 @@ class Output:
 
     @property
     def columns(self) -> list[str]:
-        """Of the history, that it needs."""
+        """Columns of the history that it needs."""
         found = _HISTORY.fullmatch(self._place) if self.of_history else None
         return [c for c in (found["column"], found["at"], found["of"]) if c] if found else []
 
     @property
     def summary_name(self) -> str:
-        """Of a number of the summary: a name, or a path."""
+        """Name of a number of the summary: a name, or a path."""
         return self.what.removeprefix("summary:").strip()
 
     def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
-        """The number, and why there is none (NaN) or why it is in doubt; empty where nothing is against it. Not of
-        functions.
+        """Returns the number, and why there is none (NaN) or why it is in doubt; empty where nothing is against it. Not
+        of functions.
         """
         return self._of_history(folder) if self.of_history else self._of_summary(summary)
 
@@ -124,7 +124,7 @@ class Offer:
     columns: Sequence[str]  #: of the history
 
     def lacks(self, output: Output) -> str:
-        """Why no run has an output, with the nearest name; empty where runs may have it. Not of functions."""
+        """Returns why no run has an output, with the nearest name; empty where runs may have it. Not of functions."""
         if not output.of_history:
             name = output.summary_name
             if name in self.numbers:
@@ -147,13 +147,16 @@ def _unknown(what: str, name: str, known: Sequence[str]) -> str:
 
 
 def unit_of_name(name: str) -> str:
-    """Unit that the name of a result or of a column ends on: of "rate_K_s" "K/s"; "1" where it ends on none."""
+    """Returns the unit that the name of a result or of a column ends on: of "rate_K_s" "K/s"; "1" where it ends on
+    none.
+    """
     found = _UNIT_IN_NAME.search(name)
     return found[1].replace("_", "/") if found else "1"
 
 
 def number_in(value: Any, unit: str) -> float:
-    """The number of a value in a unit: a bare number counts in it, a quantity with a unit is converted. "1" is no unit.
+    """Returns the number of a value in a unit: a bare number counts in it, a quantity with a unit is converted. "1" is
+    no unit.
 
     Raises Error, which names the unit, where the value is no number, is not finite, or is a quantity of another kind.
     """
@@ -180,7 +183,9 @@ def number_in(value: Any, unit: str) -> float:
 
 
 def with_plain_numbers(what: str) -> str:
-    """An output whose "at COLUMN = QUANTITY" is a number in the unit of that column. Raises Error as number_in does."""
+    """Returns an output whose "at COLUMN = QUANTITY" is a number in the unit of that column. Raises Error as number_in
+    does.
+    """
     found = re.fullmatch(r"(history:.* at (\S+) = )(\S.*)", " ".join(what.split()))
     if not found:
         return what
@@ -191,7 +196,7 @@ def with_plain_numbers(what: str) -> str:
 
 
 def _because(name: str, what: str) -> str:
-    """Key of the summary that says why a number is missing or doubtful: of "f_c_MPa" "f_c_none_because"."""
+    """Returns the key of the summary that says why a number is missing or doubtful: of "f_c_MPa" "f_c_none_because"."""
     return f"{re.sub(r'_(?:[A-Z][A-Za-z]*|degC|percent)$', '', name)}_{what}_because"
 
 
@@ -215,13 +220,13 @@ def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
 
 
 def column_names(history: Path) -> list[str]:
-    """Of a history, from its first line."""
+    """Returns the names of a history's columns, from its first line."""
     with open(history, newline="", encoding="utf-8") as file:
         return next(csv.reader(file), [])
 
 
 def read_summary(folder: Path) -> dict[str, Any] | None:
-    """summary.json; None where there is none that is whole."""
+    """Reads summary.json; None where there is none that is whole."""
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):

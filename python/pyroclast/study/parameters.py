@@ -19,7 +19,7 @@ _CURVE = ("value", "table", "csv", "builtin", "expression", "from")  # keys, one
 
 @dataclass(frozen=True)
 class Distribution:
-    """Of one parameter: its inverse takes a number of [0, 1] to a value.
+    """Distribution of one parameter: its inverse takes a number of [0, 1] to a value.
 
     kind: "uniform" and "log_uniform" between two numbers, "normal" and "truncated_normal" with mean and standard
         deviation (and two bounds), "integer" between two, both included, "choice" of a list.
@@ -31,13 +31,13 @@ class Distribution:
 
     @property
     def count(self) -> int | None:
-        """Of values, where they are countable."""
+        """Number of values, where they are countable."""
         if self.kind == "choice":
             return len(self.choices)
         return int(self.numbers[1] - self.numbers[0]) + 1 if self.kind == "integer" else None
 
     def at(self, u: float) -> Value:
-        """The value at a number of [0, 1]."""
+        """Returns the value at a number of [0, 1]."""
         if (count := self.count) is not None:
             i = min(int(u * count), count - 1)
             return self.choices[i] if self.kind == "choice" else int(self.numbers[0]) + i
@@ -52,7 +52,8 @@ class Distribution:
         return float(self._normal().ppf(min(max(u, 1e-9), 1.0 - 1e-9)))
 
     def to_unit(self, value: Value) -> float:
-        """The number of [0, 1] of a value, the middle of its share where values are countable; may lie outside."""
+        """Returns the number of [0, 1] of a value, the middle of its share where values are countable; may lie outside.
+        """
         if self.kind == "choice":
             return (self.choices.index(value) + 0.5) / len(self.choices)
         number, low, high = float(value), self.numbers[0], self.numbers[1]
@@ -73,7 +74,9 @@ class Distribution:
         return stats.truncnorm((bounds[0] - mean) / sd, (bounds[1] - mean) / sd, mean, sd)
 
     def ends(self) -> list[Value]:
-        """Least and largest values that are drawn, of a normal distribution all but one of 1,000; all choices."""
+        """Returns the least and largest values that are drawn, of a normal distribution all but one of 1,000; all
+        choices.
+        """
         if self.kind == "choice":
             return list(self.choices)
         tail = 1e-3 if self.kind == "normal" else 0.0
@@ -100,11 +103,13 @@ class Parameter:
 
     @property
     def column(self) -> str:
-        """Of tables: name and unit."""
+        """Column of tables: name and unit."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def changes(self, value: Value, deck: Mapping[str, Any]) -> list[tuple[str, str]]:
-        """Keys and what is written there, as TOML. deck: as it stands. Raises Error for what must not be replaced."""
+        """Returns keys and what is written there, as TOML. deck: as it stands. Raises Error for what must not be
+        replaced.
+        """
         return [(self._key(path, deck), self._text(path, factor, value, deck)) for path, factor in self.keys]
 
     def _key(self, path: str, deck: Mapping[str, Any]) -> str:
@@ -130,7 +135,7 @@ class Parameter:
 
 
 def value_at(deck: Mapping[str, Any], path: str) -> Any:
-    """What stands at a path of a deck such as "stages[1].to"; None where there is nothing."""
+    """Returns what stands at a path of a deck such as "stages[1].to"; None where there is nothing."""
     node: Any = deck
     for part in path.replace("]", "").replace("[", ".").split("."):
         if isinstance(node, Mapping):
@@ -143,7 +148,7 @@ def value_at(deck: Mapping[str, Any], path: str) -> Any:
 
 
 def numbered(path: str, deck: Mapping[str, Any]) -> str:
-    """The path with numbers in the place of names of stages: "stages[heating].to" -> "stages[1].to".
+    """Returns the path with numbers in the place of names of stages: "stages[heating].to" -> "stages[1].to".
 
     A stage is named by its `name`, or by its kind where no other is of that kind. Raises Error where none or several
     are called so.
@@ -167,7 +172,7 @@ def _is_curve(there: Any) -> bool:
 
 
 def scaled(path: str, there: Any, factor: float) -> str | float:
-    """A quantity of the deck times a factor."""
+    """Returns a quantity of the deck times a factor."""
     if isinstance(there, (int, float)) and not isinstance(there, bool):
         return float(f"{there * factor:.{_DIGITS}g}")
     number, _, unit = str(there).partition(" ")

@@ -35,7 +35,7 @@ class Answers:
     doubts: dict[str, dict[tuple[int, int], str]]
 
     def has_all(self) -> bool:
-        """Whether each point is known or cannot be run."""
+        """Returns whether each point is known or cannot be run."""
         return bool(np.all(self.is_known | ~self.is_feasible[:, None]))
 
 
@@ -59,14 +59,14 @@ class Plan(Protocol):
     most_points: int | None  #: that a method which draws as it goes may come to ask for; None: it is not known
 
     def propose(self, ask: Ask) -> Proposal:
-        """All points that are wanted, given what is known."""
+        """Returns all points that are wanted, given what is known."""
 
     def findings(self, ask: Ask) -> dict[str, Any]:
-        """What comes of the answers: numbers, texts, lists and dicts. Raises Error where nothing does yet."""
+        """Returns what comes of the answers: numbers, texts, lists and dicts. Raises Error where nothing does yet."""
 
 
 def plan_of(study: StudySetup) -> Plan:
-    """The plan of the study's method."""
+    """Returns the plan of the study's method."""
     kinds: dict[str, type[_Plan]] = {"ensemble": _Ensemble, "grid": _Grid, "lhs": _LatinHypercube, "morris": _Morris,
                                      "sobol": _Sobol, "chaos": _Chaos, "calibrate": _Calibrate, "secant": _Secant,
                                      "posterior": _Posterior}
@@ -94,7 +94,7 @@ class _Plan:
         raise NotImplementedError
 
     def _by_output(self, answers: Answers, find: Callable[[Array], Any]) -> dict[str, Any]:
-        """For each output what `find` makes of its values, or why it makes nothing."""
+        """Returns for each output what `find` makes of its values, or why it makes nothing."""
         found: dict[str, Any] = {}
         for name in self.outputs:
             try:
@@ -104,7 +104,8 @@ class _Plan:
         return found
 
     def _grown(self, first: int, enough: Callable[[int], bool | None]) -> tuple[int, bool]:
-        """Number of samples, doubled until it is enough (None: not known yet), and whether it is complete."""
+        """Returns the number of samples, doubled until it is enough (None: not known yet), and whether it is complete.
+        """
         n, most = first, max(int(self.settings.get("most", first)), first)
         while self.study.method.until is not None and n < most:
             is_enough = enough(n)
@@ -116,7 +117,7 @@ class _Plan:
         return n, True
 
     def _mixed(self, v: Array, keep_columns: bool = False) -> Array:
-        """Independent points given the correlations of the study."""
+        """Gives independent points the correlations of the study."""
         if not self.study.correlations:
             return v
         rank = np.eye(self.k)
@@ -132,7 +133,7 @@ class _Plan:
         return [p.distribution.kind in ("uniform", "log_uniform", "truncated_normal") for p in self.study.parameters]
 
     def _pulled_in(self, u: Array, levels: int) -> Array:
-        """Levels of parameters without ends in the middles of their classes."""
+        """Moves levels of parameters without ends into the middles of their classes."""
         for i, has_ends in enumerate(self._has_ends):
             if not has_ends:
                 u[..., i] = sampling.inside(u[..., i], levels)
@@ -252,7 +253,7 @@ class _OnSurrogate(_Plan):
         return Proposal(self._mixed(self._independent(len(answers.is_known))), self.study.seeds, answers.has_all())
 
     def _answers(self, ask: Ask) -> Answers:
-        """Of all points that are wanted so far."""
+        """Returns the answers at all points that are wanted so far."""
         n, least = int(self.settings["samples"]), int(self.settings["held"])
         held = least
         while True:
@@ -274,7 +275,7 @@ class _OnSurrogate(_Plan):
         return fitted, surrogate.validate(fitted, v[n:], y[n:])
 
     def _curves(self, fitted: surrogate.Surrogate) -> list[dict[str, Any]]:
-        """Of each parameter, all others in the middle."""
+        """Returns a curve of each parameter, all others in the middle."""
         u = np.linspace(0.0, 1.0, _MOST_CURVE)
         curves = []
         for i in range(self.k):
@@ -312,18 +313,20 @@ class _ToTargets(_Plan):
                                    np.array([t.sd for t in targets]))
 
     def _of_targets(self, answers: Answers) -> Array:
-        """(points, seeds, targets)."""
+        """Returns the values (points, seeds, targets) of the targets."""
         return np.stack([answers.y[t.output] for t in self.study.targets], axis=2)
 
     def _answer(self, ask: Ask, u: Array) -> calibration.Answer:
-        """What is known of the targets at a point (k,)."""
+        """Returns what is known of the targets at a point (k,)."""
         answers = ask(u[None, :], self.study.seeds)
         if not answers.is_feasible[0]:
             return calibration.Infeasible()
         return self._of_targets(answers)[0] if answers.has_all() else None
 
     def _doubts(self, ask: Ask, u: Array) -> dict[str, str]:
-        """By target that is not counted as met at a point (k,): how many seeds are in doubt, and why the first is."""
+        """Returns, by target that is not counted as met at a point (k,): how many seeds are in doubt, and why the first
+        is.
+        """
         answers = ask(u[None, :], self.study.seeds)
         doubts = {t.output: list(answers.doubts[t.output].values()) for t in self.study.targets}
         return {output: f"{len(texts)} of {len(self.study.seeds)} seeds {'is' if len(texts) == 1 else 'are'} in doubt: "
@@ -477,7 +480,7 @@ def _plain(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def plain(found: Any) -> Any:
-    """Of dataclasses and arrays: dicts, lists and numbers, None for what is not finite."""
+    """Turns dataclasses and arrays into dicts, lists and numbers, with None for what is not finite."""
     if dataclasses.is_dataclass(found) and not isinstance(found, type):
         return {f.name: plain(getattr(found, f.name)) for f in dataclasses.fields(found)}
     if isinstance(found, dict):

@@ -32,14 +32,16 @@ class Point:
     """A value for each parameter, in their order, and the runs that it asks for."""
 
     def __init__(self, values: tuple[Value, ...], hashes: Sequence[Callable[[int], str]], infeasible: str = ""):
-        """hashes: identity of the run with a seed, and that by an earlier physics version which counts too."""
+        """Takes the deck of a point. hashes: identity of the run with a seed, and that by an earlier physics version
+        which counts too.
+        """
         self.values = values
         self.infeasible = infeasible  #: why it cannot be run; empty if it can
         self._hashes = hashes
 
     @functools.cache  # noqa: B019 - a point lives as long as its study
     def ids(self, seed: int) -> tuple[str, ...]:
-        """By which the run with a seed is known: the first is that of this program."""
+        """Returns the identities of the run with a seed: the first is that of this program."""
         return tuple(hashed(seed) for hashed in self._hashes)
 
 
@@ -47,13 +49,15 @@ class Points:
     """Makes the points of a study. Those whose deck is refused are infeasible."""
 
     def __init__(self, study: StudySetup, code: StudyCode | None = None):
-        """code: of the study, where it is known already. Raises Error where a file of the code cannot be read."""
+        """Takes the points of a study. code: of the study, where it is known already. Raises Error where a file of the
+        code cannot be read.
+        """
         self._study = study
         self.code = code or code_of(study)
         self._made: dict[tuple[Value, ...], Point] = {}
 
     def at(self, values: Sequence[Value]) -> Point:
-        """The point of these values, made once."""
+        """Returns the point of these values, made once."""
         key = tuple(values)
         if key not in self._made:
             self._made[key] = self._make(key)
@@ -75,11 +79,13 @@ class Points:
         return Point(values, [functools.partial(run_id, tables, files, version=v) for v in versions])
 
     def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Diagnostic]]:
-        """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
+        """Resolves the deck of a point; returns it, hashes of its files, and warnings. Raises Error, as DeckError for a
+        deck in error.
+        """
         return _core.resolve(self._deck_text(values))
 
     def text(self, values: Sequence[Value]) -> str:
-        """The deck of a point."""
+        """Returns the deck of a point."""
         return _core.written(self._deck_text(values))
 
     def _deck_text(self, values: Sequence[Value]) -> _core.DeckText:
@@ -88,7 +94,7 @@ class Points:
         return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [], False, False)
 
     def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
-        """Keys of the deck and what a point writes there, as `--set` takes them."""
+        """Returns keys of the deck and what a point writes there, as `--set` takes them."""
         own = (self._changes_of(p, value) for p, value in zip(self._study.parameters, values))
         return [*self._common, *(change for changes in own for change in changes)]
 
@@ -97,7 +103,7 @@ class Points:
         return replace(parameter, keys=keys).changes(value, self._tables) if keys else []
 
     def command(self, program: str, values: Sequence[Value], seed: int, folder: Path | None = None) -> list[str]:
-        """The command line of a run; a folder where its results go."""
+        """Returns the command line of a run; a folder where its results go."""
         runner = self._study.runner
         if runner.kind == "function":
             return [f"{runner.file}:{runner.function}"]
@@ -144,11 +150,11 @@ class Points:
 
     @property
     def middle(self) -> list[Value]:
-        """Of all ranges."""
+        """Middle of all ranges."""
         return [p.distribution.at(0.5) for p in self._study.parameters]
 
     def check_ends(self) -> list[str]:
-        """What is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
+        """Returns what is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
         middle = self.middle
         if self._study.runner.kind == "pyroclast":
             try:
@@ -172,17 +178,19 @@ class Points:
         return list(said.values())
 
     def warnings(self) -> list[Diagnostic]:
-        """What the check of the deck in the middle of all ranges warns of."""
+        """Returns what the check of the deck in the middle of all ranges warns of."""
         if self._study.runner.kind != "pyroclast":
             return []
         return self.resolve(self.middle)[2]
 
     def seconds_of_run(self, seed: int) -> float:
-        """Wall time of a run of the middle of all ranges, s, by its first steps. Of decks."""
+        """Returns the wall time of a run of the middle of all ranges, s, by its first steps. Of decks."""
         return _core.seconds_of_run(self._deck_text(self.middle), seed if self.has_seed else None)
 
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
-        """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""
+        """Returns which of these no run has, by a run of the middle point that is not begun. Of decks, not of
+        functions.
+        """
         outputs = [o for o in outputs if not o.is_function]
         if not outputs or self._study.runner.kind != "pyroclast":
             return []
@@ -193,7 +201,7 @@ class Points:
                 if (why := offer.lacks(o))]
 
     def _wrong_keys(self, middle: Sequence[Value]) -> list[str]:
-        """Of parameters whose keys, or whose place in the command, there are not."""
+        """Returns errors of parameters whose keys, or whose place in the command, do not exist."""
         wrong = []
         if self._study.runner.kind == "command":
             try:
@@ -223,7 +231,9 @@ class Points:
 
 
 def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, version: int) -> str:
-    """Of a run: the hash of its deck with all that the deck names, its seed and the physics version."""
+    """Returns the identity of a run: the hash of its deck with all that the deck names, its seed and the physics
+    version.
+    """
     specimen = {**tables.get("specimen", {}), "seed": seed}
     output = {key: value for key, value in tables.get("output", {}).items() if key not in _NO_RESULT}
     deck = {key: value for key, value in tables.items() if key != "title"}
@@ -235,7 +245,7 @@ def _hash(what: Any) -> str:
 
 
 def _filled(word: str, fields: Mapping[str, Any]) -> str:
-    """A word of a command with fields in the place of `{name}` or `{name:format}`.
+    """Returns a word of a command with fields in the place of `{name}` or `{name:format}`.
 
     Raises Error for other fields, and for formats that may ask for all memory; and what str.format raises.
     """

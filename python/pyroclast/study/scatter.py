@@ -74,12 +74,12 @@ def _run_in(out: Path, deck: Path, options: argparse.Namespace, say: Callable[[s
 
 
 def deck_text(deck: Path, changes: Sequence[str]) -> _core.DeckText:
-    """A deck with changes as --set takes them."""
+    """Returns a deck with changes as --set takes them."""
     return _core.DeckText(_core.read(str(deck)), str(deck), str(deck.parent), list(changes), [], [], False, False)
 
 
 def result_names(deck: _core.DeckText) -> list[str]:
-    """Names of the results of the test that a run of a deck may have."""
+    """Returns names of the results of the test that a run of a deck may have."""
     session = _core.Session.begin(deck, None, 1, "", None, None, False)
     names = session.test_results()
     session.close()
@@ -88,8 +88,8 @@ def result_names(deck: _core.DeckText) -> list[str]:
 
 def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str], names: Sequence[str],
                    options: argparse.Namespace, **keys: str) -> Study:
-    """An ensemble of a deck in a folder. changes: as --set takes them; names: of its outputs; keys: further ones of
-    [study].
+    """Makes an ensemble of a deck in a folder. changes: as --set takes them; names: of its outputs; keys: further ones
+    of [study].
     """
     stated = dict(map(_change, changes))
     headline = next((name for name in _HEADLINE if name in names), "")
@@ -101,17 +101,17 @@ def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str],
 
 
 def values_of(rows: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
-    """Results by name, a number for each seed; NaN where it has none."""
+    """Returns results by name, a number for each seed; NaN where it has none."""
     return {name: np.array([np.nan if row[name] is None else float(row[name]) for row in rows]) for name in names}
 
 
 def has_scatter(y: NDArray[np.float64]) -> bool:
-    """Whether a seed has the result, and it is not 0 in all of them."""
+    """Returns whether a seed has the result, and it is not 0 in all of them."""
     return bool(np.isfinite(y).any() and np.nanmax(np.abs(y)) > 0.0)
 
 
 def _change(text: str) -> tuple[str, Any]:
-    """A key and its value of `--set key=value`; what is no TOML is a text."""
+    """Returns a key and its value of `--set key=value`; what is no TOML is a text."""
     path, _, value = text.partition("=")
     try:
         return path.strip(), tomllib.loads(f"value = {value}")["value"]
@@ -136,7 +136,7 @@ def _lines(found: dict[str, ensemble.Summary], seeds: int) -> list[str]:
 
 
 def _digits(s: ensemble.Summary) -> int:
-    """Digits of a mean down to the first of its interval's half-width, and one more: three or four."""
+    """Returns digits of a mean down to the first of its interval's half-width, and one more: three or four."""
     half = 0.5 * (s.high - s.low)
     if not np.isfinite(half) or half <= 0.0 or s.mean == 0.0:
         return 4
@@ -160,7 +160,7 @@ def _table(found: dict[str, ensemble.Summary]) -> str:
 
 def _draw(study: Study, rows: Sequence[dict[str, Any]], found: dict[str, ensemble.Summary], out: Path,
           options: argparse.Namespace, say: Callable[[str], None]) -> None:
-    """The curves of all seeds with their band, and all pictures of the specimen in the middle."""
+    """Draws the curves of all seeds with their band, and all pictures of the specimen in the middle."""
     try:
         say(f"figure          {save(compare_seeds(_runs(study, rows)), out / 'figures' / 'seeds.png')}")
     except Error as error:

@@ -15,7 +15,7 @@ FOLDER = "\0"
 
 
 def python(module: str, *words: str) -> list[str]:
-    """The command line of a module of this package; nothing of the current folder stands on its path."""
+    """Returns the command line of a module of this package; nothing of the current folder stands on its path."""
     return [sys.executable, "-P", "-m", module, *words]
 
 

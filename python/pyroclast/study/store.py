@@ -58,14 +58,14 @@ class RunResult:
     version: int = 0
 
     def number(self, what: str) -> float:
-        """An output; NaN where there is none, and where the run failed as a whole."""
+        """Returns the number of an output; NaN where there is none, and where the run failed as a whole."""
         if self.state not in (DONE, NO_VALUE):
             return math.nan
         value = self.outputs.get(what, (None, ""))[0]
         return math.nan if value is None else value
 
     def doubt(self, what: str) -> str:
-        """Why an output that has a value is in doubt; empty where nothing is against it."""
+        """Returns why an output that has a value is in doubt; empty where nothing is against it."""
         return "" if math.isnan(self.number(what)) else self.outputs[what][1]
 
 
@@ -88,17 +88,21 @@ def judged(result: RunResult, outputs: Iterable[str], may_lack: Container[str] =
 
 
 def result_file(runs: Path, run: str) -> Path:
-    """Beside the folder of a run: what came of it."""
+    """Returns the file beside the folder of a run that says what came of it."""
     return runs / f"{run}.json"
 
 
 def begun_file(runs: Path, run: str) -> Path:
-    """Beside the folder of a run that was begun: its attempts so far. It goes last, when nothing is left to do."""
+    """Returns the file beside the folder of a run that was begun, with its attempts so far. It goes last, when nothing
+    is left to do.
+    """
     return runs / f"{run}.begun"
 
 
 def read_result(file: Path) -> RunResult | None:
-    """None where there is none. None of a damaged one too, which is said once: its run is made again."""
+    """Reads a result; None where there is none. A damaged one counts as none, which is said once: its run is made
+    again.
+    """
     try:
         named: dict[str, Any] = json.loads(file.read_bytes())
         outputs = {what: (None if value is None else float(value), str(why))
@@ -120,7 +124,9 @@ def read_result(file: Path) -> RunResult | None:
 
 
 def write_result(file: Path, result: RunResult) -> None:
-    """In the place of an earlier one, which stays whole if this is broken off; not where it is there already."""
+    """Writes a result in the place of an earlier one, which stays whole if this is broken off; not where it is there
+    already.
+    """
     if read_result(file) != result:
         write_text(file, json.dumps(asdict(result)))
 
@@ -129,7 +135,7 @@ class Store:
     """Results by the identity of their runs."""
 
     def __init__(self, folder: Path):
-        """folder: of the study. What is put in is written down by `only_writer` alone."""
+        """Opens a store. folder: of the study. What is put in is written down by `only_writer` alone."""
         self.folder = folder
         self.runs = folder / "runs"
         self.is_writer = False
@@ -152,11 +158,13 @@ class Store:
         self._stamps = there
 
     def begun(self) -> set[str]:
-        """Identities of the runs that are under way or were broken off."""
+        """Returns identities of the runs that are under way or were broken off."""
         return {file.stem for file in self.runs.glob("*.begun")}
 
     def _stamps_now(self) -> dict[str, tuple[int, ...]]:
-        """A file is replaced by another one, so it is changed where its number or its time is."""
+        """Returns the number and time of each file: a file is replaced by another one, so it is changed where its
+        number or its time is.
+        """
         found: dict[str, tuple[int, ...]] = {}
         for name in os.listdir(self.runs) if self.runs.exists() else ():
             if name.endswith(".json"):
@@ -166,7 +174,7 @@ class Store:
         return found
 
     def get(self, *ids: str) -> RunResult | None:
-        """The result of the first of these runs that there is one of."""
+        """Returns the result of the first of these runs that there is one of."""
         return next((self._results[i] for i in ids if i in self._results), None)
 
     def put(self, result: RunResult) -> None:
@@ -188,7 +196,7 @@ class Store:
 
 @contextmanager
 def only_writer(folder: Path) -> Iterator[Store]:
-    """The results of a study, which no other driver writes meanwhile.
+    """Holds the results of a study, which no other driver writes meanwhile.
 
     Raises Error where another process runs a study in the folder.
     """

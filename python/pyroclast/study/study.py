@@ -46,7 +46,8 @@ class Study:
 
     def __init__(self, file: str | Path, *, program: str | None = None,
                  functions: Mapping[str, Callable[[Any], float]] | None = None, **tables: Any):
-        """
+        """Reads a study.
+
         file: a study file. With tables, it is written from these first: `study={"deck": "starter.toml"}`, ...
         program: pyroclast itself; None: that on the PATH.
         functions: further outputs, by names of their own: of a `pyroclast.Results`, called once for each run. What they
@@ -74,7 +75,7 @@ class Study:
         return driver.points.warnings()
 
     def forecast(self) -> StudyForecast:
-        """What is left to run."""
+        """Returns what is left to run."""
         return self._driver().forecast()
 
     def run(self, executor: str | Executor = "local", jobs: int | None = None,
@@ -96,7 +97,7 @@ class Study:
             return self._hold(store, code).run(chosen, stopped, say or (lambda line: None))
 
     def executor(self, name: str, jobs: int | None = None) -> Executor:
-        """By its name. Raises Error for another one."""
+        """Returns an executor by its name. Raises Error for another one."""
         if name == "local":
             return Local(jobs or free_cores())
         if name == "commands":
@@ -130,7 +131,7 @@ class Study:
 
     @property
     def findings(self) -> dict[str, Any]:
-        """What the method makes of the results; docs/do/studies.md tells what stands where."""
+        """Findings that the method makes of the results; docs/do/studies.md tells what stands where."""
         return self._driver().findings()
 
     def count_values(self) -> int:
@@ -138,7 +139,8 @@ class Study:
         return self._driver().count_values()
 
     def warnings(self) -> list[str]:
-        """Warnings of the runs whose summaries are kept: of each kind how many runs have it, and how the first says it.
+        """Returns warnings of the runs whose summaries are kept: of each kind how many runs have it, and how the first
+        says it.
 
         Warnings are of one kind where they are alike up to the first colon; numbers stand behind it.
         """
@@ -165,7 +167,7 @@ class Study:
         return self._driver().count_begun()
 
     def rows(self) -> list[dict[str, Any]]:
-        """The table as it is written: None where there is no value."""
+        """Returns the table as it is written: None where there is no value."""
         return self._driver().rows()
 
     def forget_failures(self) -> None:
@@ -174,32 +176,36 @@ class Study:
             store.drop([r.id for r in store if r.state in (CRASHED, TIMED_OUT)])
 
     def time_of_a_run(self) -> float | None:
-        """Of the middle of all ranges on one thread, by its first steps, s; None where runs are not those of a deck."""
+        """Returns the time of a run of the middle of all ranges on one thread, by its first steps, s; None where runs
+        are not those of a deck.
+        """
         if self.setup.runner.kind != "pyroclast":
             return None
         return self._driver().points.seconds_of_run(self.setup.seeds[0])
 
     def missing(self) -> dict[str, list[str]]:
-        """By output, why the runs that came to their end lack it."""
+        """Returns, by output, why the runs that came to their end lack it."""
         return self._driver().missing()
 
     def write_best(self) -> Path | None:
-        """best.toml in the folder of the study: the deck with the parameters that come nearest to the targets, of
-        `calibrate` and `secant`; None of other methods, and where runs have no deck. File names in it are taken from
+        """Writes best.toml in the folder of the study: the deck with the parameters that come nearest to the targets,
+        of `calibrate` and `secant`; None of other methods, and where runs have no deck. File names in it are taken from
         the place of the study's deck. Raises Error where no point has all targets yet.
         """
         return self._driver().write_best()
 
     def write_table(self) -> Path:
-        """table.csv in the folder of the study."""
+        """Writes table.csv in the folder of the study."""
         return self._driver().write_table()
 
     def table_text(self) -> str:
-        """What table.csv would hold now; nothing is written."""
+        """Returns what table.csv would hold now; nothing is written."""
         return self._driver().table_text()
 
     def _driver(self) -> Driver:
-        """That knows what any process has written by now; made anew where the setup, the deck or the model changed."""
+        """Returns a driver that knows what any process has written by now; made anew where the setup, the deck or the
+        model changed.
+        """
         code = code_of(self.setup)
         if self._held is None or self._made_from != self._sources(code):
             return self._hold(Store(self.setup.folder), code)
@@ -232,7 +238,7 @@ def _write(file: Path, tables: Mapping[str, Any]) -> None:
 
 
 def _program() -> str:
-    """Beside the package where it was built or installed, else on the PATH."""
+    """Finds the program: beside the package where it was built or installed, else on the PATH."""
     package = Path(_core.__file__).parent
     for folder in (package.parents[1], package.parents[3], Path(sys.prefix)):  # of a build, of cmake, of pip
         if (folder / "bin" / "pyroclast").exists():
@@ -245,7 +251,7 @@ def _program() -> str:
 
 @contextmanager
 def _interrupts() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C and SIGTERM ask to stop; a second one raises KeyboardInterrupt."""
+    """Lets Ctrl-C and SIGTERM ask to stop; a second one raises KeyboardInterrupt."""
     asked = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield asked.is_set

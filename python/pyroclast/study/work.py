@@ -76,7 +76,7 @@ class Job:
         return json.dumps(asdict(self))
 
     def line(self, folder: Path) -> list[str]:
-        """The command line of the run from its beginning, with results in a folder."""
+        """Returns the command line of the run from its beginning, with results in a folder."""
         if self.kind == "function":
             return python("pyroclast.study.call", self.command[0], self.code, json.dumps(self.values),
                           str(self.seed), str(folder / "summary.json"))
@@ -87,7 +87,7 @@ class Job:
 
 
 def _log_file(runs: Path, run: str) -> Path:
-    """What a run prints, until it is over."""
+    """Returns what a run prints, until it is over."""
     return runs / f"{run}.log"
 
 
@@ -132,7 +132,7 @@ class Attempt:
 
     @property
     def time_left(self) -> float:
-        """Until the wall limit, s."""
+        """Time until the wall limit, s."""
         return self.job.wall_limit - self._wall_before - self._wall()
 
     def _wall(self) -> float:
@@ -150,7 +150,8 @@ class Attempt:
             _signal(self.process, signal.SIGKILL)
 
     def end(self) -> RunResult | None:
-        """What came of the process, which has ended; None where it was ended from outside and another one goes on.
+        """Returns what came of the process, which has ended; None where it was ended from outside and another one goes
+        on.
 
         Raises Error where the disk is full: that is no fault of the run, and the next one would fare no better.
         """
@@ -180,7 +181,7 @@ class Attempt:
         return kept(self.folder) != self._kept_before
 
     def give_up(self) -> RunResult:
-        """The result where one attempt after the other was ended from outside."""
+        """Returns the result where one attempt after the other was ended from outside."""
         return self._finish(CRASHED, f"ended from outside {MOST_IN_VAIN} times before anything new was kept; is there "
                             "memory enough?", None)
 
@@ -194,7 +195,7 @@ class Attempt:
                          version=self.job.version)
 
     def _said(self) -> str:
-        """What the process wrote last."""
+        """Returns what the process wrote last."""
         try:
             lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
@@ -203,7 +204,7 @@ class Attempt:
 
 
 def collected(job: Job, runs: Path) -> RunResult:
-    """The result of a run that was made by its command line alone; its summary is there."""
+    """Returns the result of a run that was made by its command line alone; its summary is there."""
     folder = runs / job.id
     summary = read_summary(folder) or {}
     state, reason = judge(summary)
@@ -214,7 +215,9 @@ def collected(job: Job, runs: Path) -> RunResult:
 
 
 def _concluded(result: RunResult, reason: str, job: Job, runs: Path, summary: dict[str, Any] | None) -> RunResult:
-    """With its outputs, written down, its folder thinned. The result that there is where another process was first."""
+    """Writes down the result of a run with its outputs, and thins its folder. Returns the result that there is where
+    another process was first.
+    """
     outputs = {}
     if summary is not None and result.state == DONE:
         for what in job.outputs:
@@ -229,14 +232,14 @@ def _concluded(result: RunResult, reason: str, job: Job, runs: Path, summary: di
 
 
 def _tidy(job: Job, runs: Path) -> None:
-    """Once it is written down what came of a run."""
+    """Tidies up once it is written down what came of a run."""
     thin(runs / job.id, job.keep)
     _log_file(runs, job.id).unlink(missing_ok=True)
     begun_file(runs, job.id).unlink(missing_ok=True)
 
 
 def judge(summary: dict[str, Any]) -> tuple[str, str]:
-    """State of a run that came to its end, and why it gives no value, or a value to be looked at."""
+    """Returns the state of a run that came to its end, and why it gives no value, or a value to be looked at."""
     stages = [s for s in summary.get("stages", []) if isinstance(s, dict)]
     for ended in (summary, *stages):
         if (state := _STATES.get(str(ended.get("outcome_id", "")))) is not None:
@@ -253,7 +256,7 @@ def judge(summary: dict[str, Any]) -> tuple[str, str]:
 
 
 def was_stopped(summary: dict[str, Any]) -> bool:
-    """Whether a run was ended from outside, so that it can go on."""
+    """Returns whether a run was ended from outside, so that it can go on."""
     return summary.get("outcome_id") == "stopped"
 
 
@@ -269,14 +272,16 @@ def thin(folder: Path, keep: str) -> None:
 
 
 def known_result(job: Job, runs: Path) -> RunResult | None:
-    """What came of a run; None where it has to be made, be it for further outputs."""
+    """Returns what came of a run; None where it has to be made, be it for further outputs."""
     result = read_result(result_file(runs, job.id))
     is_lacking = result is not None and result.state in (DONE, NO_VALUE) and not set(job.outputs) <= set(result.outputs)
     return None if is_lacking else result
 
 
 def made(job: Job, runs: Path) -> RunResult | None:
-    """`known_result`, also of a run that is whole in its folder as its driver was killed before it wrote that down."""
+    """Returns `known_result`, also of a run that is whole in its folder because its driver was killed before it wrote
+    that down.
+    """
     begun = read_result(begun_file(runs, job.id))
     known = known_result(job, runs)
     if begun is None:
@@ -293,14 +298,14 @@ def made(job: Job, runs: Path) -> RunResult | None:
 
 
 def given_up(job: Job, runs: Path, reason: str) -> RunResult:
-    """The result of a run that is not tried again."""
+    """Returns the result of a run that is not tried again."""
     begun = read_result(begun_file(runs, job.id)) or RunResult(job.id, job.seed, CRASHED, values=job.values,
                                                                version=job.version)
     return _concluded(replace(begun, state=CRASHED), reason, job, runs, None)
 
 
 def kept(folder: Path) -> tuple[str, int] | None:
-    """The newest checkpoint that a run can go on from; None without one."""
+    """Returns the newest checkpoint that a run can go on from; None without one."""
     files = [(f.stat().st_mtime_ns, f.name) for f in folder.glob("checkpoints/*.state")]
     return (max(files)[1], max(files)[0]) if files and (folder / "manifest.json").exists() else None
 
@@ -313,12 +318,12 @@ def _signal(process: subprocess.Popen[bytes], number: int) -> None:
 
 
 def is_of_full_disk(said: str) -> bool:
-    """Whether a process said that it could write no more."""
+    """Returns whether a process said that it could write no more."""
     return any(os.strerror(number) in said for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG))
 
 
 def die_with_parent(parent: int) -> Callable[[], None]:
-    """For a child, between fork and exec: it gets SIGTERM when its parent ends."""
+    """Returns what a child calls between fork and exec, so that it gets SIGTERM when its parent ends."""
 
     def arrange() -> None:
         _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
@@ -329,5 +334,5 @@ def die_with_parent(parent: int) -> Callable[[], None]:
 
 
 def jobs_of(text: str) -> Sequence[Job]:
-    """Of a file with a job on each line."""
+    """Reads the jobs of a file with a job on each line."""
     return [Job.from_json(line) for line in text.splitlines() if line.strip()]

@@ -25,7 +25,7 @@ _PATIENCE = 60.0  # s, for an answer of Slurm
 
 
 def jobs_of_task(file: Path, task: int, count: int) -> list[Job]:
-    """Of a file with the jobs of all tasks."""
+    """Reads the jobs of this task from a file with the jobs of all tasks."""
     with open(file, encoding="utf-8") as lines:
         return list(jobs_of("".join(itertools.islice(lines, task * count, (task + 1) * count))))
 
@@ -45,7 +45,9 @@ def requeue(task: str) -> bool:
 
 
 def main(words: list[str]) -> int:
-    """Exit code: 0 where all runs are over or the task is in the queue again, else 1; what is wrong stands last."""
+    """Runs the program; returns the exit code: 0 where all runs are over or the task is in the queue again, else 1;
+    what is wrong stands last.
+    """
     file, runs, count = Path(words[0]), Path(words[1]), int(words[2])
     array, index = os.environ["SLURM_ARRAY_JOB_ID"], os.environ["SLURM_ARRAY_TASK_ID"]
     asked = threading.Event()

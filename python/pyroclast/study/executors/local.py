@@ -25,7 +25,7 @@ _LOOK = 0.2  # s between two looks at wall limits and at what asks to stop
 
 @dataclass
 class Local:
-    """As many runs at once as `slots`, each in a process of its own that dies with this one."""
+    """An executor of as many runs at once as `slots`, each in a process of its own that dies with this one."""
 
     slots: int
     name: str = field(default="local", init=False)
@@ -82,7 +82,7 @@ class _Server:
     """A process that calls the function of a study, point by point."""
 
     def __init__(self, job: Job):
-        """job: one of those that call the same function."""
+        """Starts a process. job: one of those that call the same function."""
         self.process = subprocess.Popen(python("pyroclast.study.call", job.command[0], job.code), bufsize=0,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                                         preexec_fn=die_with_parent(os.getpid()))
@@ -93,7 +93,7 @@ class _Server:
 
     @property
     def wall(self) -> float:
-        """Of the call that goes on, s."""
+        """Time of the call that goes on, s."""
         return time.monotonic() - self._begun if self.is_ready else 0.0
 
     @property
@@ -110,7 +110,9 @@ class _Server:
             pass  # the end of its answers tells
 
     def hear(self) -> tuple[RunResult | None, bool]:
-        """Its answer, where it is whole, and whether the process has ended. Called when there is something to read."""
+        """Returns its answer, where it is whole, and whether the process has ended. Called when there is something to
+        read.
+        """
         piece = os.read(self.descriptor, 65536)
         self._said += piece
         result = None

@@ -99,7 +99,7 @@ class Book:
         write_text(self._file, text)
 
     def add(self, jobs: Sequence[Job], count: int) -> Array:
-        """Before it is submitted, so that it is known whatever happens."""
+        """Writes an array down before it is submitted, so that it is known whatever happens."""
         make_folder(self.folder)
         self._number += 1
         array = Array(f"{self.prefix}{self._number}", [job.id for job in jobs], count)
@@ -117,7 +117,7 @@ class Book:
         return self.folder / f"{array.name}.jobs"
 
     def log(self, array: Array, task: int | str) -> Path:
-        """What a task prints."""
+        """Returns what a task prints."""
         return self.folder / f"{array.name}_{task}.log"
 
 
@@ -188,7 +188,7 @@ class _Queue:
             time.sleep(min(left, _LOOK))
 
     def _tell(self, text: str) -> None:
-        """Once, as long as it stays the same."""
+        """Tells something once, as long as it stays the same."""
         if text != self._said:
             self._slurm.say(text)
         self._said = text
@@ -210,7 +210,7 @@ class _Queue:
         self._finished(result)
 
     def _states(self) -> dict[tuple[str, int], str] | None:
-        """Of our tasks in the queue; None where Slurm does not answer."""
+        """Returns the states of our tasks in the queue; None where Slurm does not answer."""
         try:
             said = _ask("squeue", "--noheader", "--array", f"--user={os.getuid()}", "--format=%j|%F|%K|%T")
         except Error as error:
@@ -286,7 +286,7 @@ class _Queue:
                                 f"kept; is there memory enough?{said}"))
 
     def _submit(self, states: dict[tuple[str, int], str]) -> None:
-        """What is in no task, unless Slurm has just refused it."""
+        """Submits the jobs that are in no task, unless Slurm has just refused them."""
         settings = self._slurm.settings
         queued = {run for array in self._book.arrays for task in array.open for run in array.of_task(task)}
         waiting = [job for job in self._left.values() if job.id not in queued]
@@ -325,11 +325,11 @@ class _Queue:
             waiting = [job for job in waiting if job.id not in taken]
 
     def _expected(self, jobs: Sequence[Job]) -> float:
-        """Time that a run will probably take, s; 0: not known."""
+        """Returns the time that a run will probably take, s; 0: not known."""
         return max(max(job.expected for job in jobs), statistics.median(self._walls) if self._walls else 0.0)
 
     def _sbatch(self, array: Array, after: str) -> str:
-        """The number of the job. Raises Error with the words of sbatch."""
+        """Submits an array; returns the number of its job. Raises Error with the words of sbatch."""
         settings = self._slurm.settings
         seconds = round(settings.time)
         warning = min(_WARNING, round(_SHARE_OF_WARNING * seconds))
@@ -372,7 +372,9 @@ class _Queue:
 
 
 def runs_per_task(settings: SlurmSettings, jobs: int, expected: float) -> int:
-    """As the study file says, else by the time that a run will probably take, s; 0: not known."""
+    """Returns how many runs a task takes: as the study file says, else by the time that a run will probably take, s; 0:
+    not known.
+    """
     if settings.points_per_task:
         return settings.points_per_task
     if not expected > 0.0:
@@ -382,7 +384,7 @@ def runs_per_task(settings: SlurmSettings, jobs: int, expected: float) -> int:
 
 
 def _ask(*words: str) -> str:
-    """What a command of Slurm prints. Raises Error with its words."""
+    """Returns what a command of Slurm prints. Raises Error with its words."""
     try:
         said = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, start_new_session=True)
     except FileNotFoundError:
@@ -393,13 +395,13 @@ def _ask(*words: str) -> str:
 
 
 def _words(name: str, code: int, lines: Iterable[str]) -> str:
-    """What a command of Slurm says is wrong, on a line."""
+    """Returns what a command of Slurm says is wrong, on a line."""
     said = "; ".join(line.strip() for line in lines if line.strip()) or f"exit code {code}"
     return said if said.startswith(name) else f"{name}: {said}"
 
 
 def _largest_array() -> int:
-    """Tasks that an array may have. Raises Error where there is no Slurm."""
+    """Returns tasks that an array may have. Raises Error where there is no Slurm."""
     _ask("sbatch", "--version")
     found = re.search(r"^MaxArraySize\s*=\s*(\d+)", _ask("scontrol", "show", "config"), re.MULTILINE)
     return max(1, int(found[1])) if found else 1001

@@ -11,7 +11,7 @@ from ...libraries import library as library
 
 @contextmanager
 def openturns(purpose: str, seed: int = 0) -> Iterator[Any]:
-    """openturns with its random numbers from `seed` and without warnings; both are afterwards as before."""
+    """Lends openturns with its random numbers from `seed` and without warnings; both are afterwards as before."""
     ot = library("openturns", purpose)
     state, flags = ot.RandomGenerator.GetState(), ot.Log.Flags()
     ot.RandomGenerator.SetSeed(seed)

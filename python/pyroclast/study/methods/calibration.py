@@ -103,7 +103,7 @@ class Uncertainty:
 
 
 def seed_covariance(answers: Sequence[Array]) -> tuple[Array, int]:
-    """Covariance of single runs between seeds, pooled over points, and its degrees of freedom d.
+    """Returns the covariance of single runs between seeds, pooled over points, and its degrees of freedom d.
 
     answers: (seeds, q) each; those with a missing value are left out. Towards its own diagonal it is shrunk by
     q/(q + d), as if q observations of independent outputs stood beside. All zero with d = 0.
@@ -120,7 +120,8 @@ def seed_covariance(answers: Sequence[Array]) -> tuple[Array, int]:
 
 
 def misfit_covariance(answers: Sequence[Array], targets: Targets, error: ArrayLike = 0.0) -> Array:
-    """Covariance of mean over seeds minus target, (q, q): seeds' + measurement's + surrogate's (error, (q,), its sd).
+    """Returns the covariance of mean over seeds minus target, (q, q): seeds' + measurement's + surrogate's (error,
+    (q,), its sd).
 
     Raises `Error` where a target has no scatter at all.
     """
@@ -134,19 +135,19 @@ def misfit_covariance(answers: Sequence[Array], targets: Targets, error: ArrayLi
 
 
 def misfit(outputs: Array, targets: Targets, covariance: Array) -> Array:
-    """r^T C^-1 r with r = outputs - targets. outputs: (points, q), result: (points,)."""
+    """Returns r^T C^-1 r with r = outputs - targets. outputs: (points, q), result: (points,)."""
     departure = outputs - targets.values
     squares: Array = np.einsum("pq,pq->p", departure, np.linalg.solve(covariance, departure.T).T)
     return squares
 
 
 def usual_population(k: int) -> int:
-    """Points of a generation where none is stated, as CMA-ES has it by default."""
+    """Returns the points of a generation where none is stated, as CMA-ES has it by default."""
     return 4 + int(3.0 * math.log(max(k, 2)))
 
 
 def search(k: int, settings: Settings, judge: Callable[[Sequence[Array]], tuple[Array, Array] | None]) -> Search:
-    """CMA-ES in the unit cube from its middle, replayed from the first generation on.
+    """Searches by CMA-ES in the unit cube from its middle, replayed from the first generation on.
 
     judge: gets all generations so far, (population, k) each. It gives the misfits of the last one, infinite where
         infeasible, and how far the infeasible points are outside, (population,) both; None where they are not yet
@@ -185,7 +186,7 @@ def search(k: int, settings: Settings, judge: Callable[[Sequence[Array]], tuple[
 
 
 def calibrate(k: int, targets: Targets, settings: Settings, answer: Callable[[Array], Answer]) -> Calibration:
-    """The search for the targets so far, and its next generation.
+    """Returns the search for the targets so far, and its next generation.
 
     answer: what is known of a point (k,).
 
@@ -218,7 +219,7 @@ def calibrate(k: int, targets: Targets, settings: Settings, answer: Callable[[Ar
 
 def uncertainty(best: Array, u: Array, y: Array, targets: Targets, covariance: Array, seed: int = 0,
                 neighbours: int | None = None, draws: int = 4000) -> Uncertainty:
-    """Linear posterior around a best point, uniform prior in the unit cube.
+    """Returns the linear posterior around a best point, uniform prior in the unit cube.
 
     best: (k,). u: (n, k), y: (n, q) means over seeds; rows with NaN are left out. covariance: (q, q), of the misfit.
     neighbours: nearest points that enter; None: all, which steadies the derivatives where the outputs are noisy.
@@ -274,13 +275,15 @@ def _why_finished(settings: Settings, misfits: Sequence[Array], sigma: Array) ->
 
 
 def _covariance_of(answers: Sequence[Answer], targets: Targets) -> Array:
-    """All that is known enters; without any values the measurements' part alone, which then judges nothing."""
+    """Adds up all covariances that are known; without any values the measurements' part alone, which then judges
+    nothing.
+    """
     known = [entry for entry in answers if isinstance(entry, np.ndarray) and np.isfinite(entry).all()]
     return misfit_covariance(known, targets) if known else np.diag(targets.sd**2)
 
 
 def _misfits_of(answers: Sequence[Answer], targets: Targets, covariance: Array) -> Array:
-    """Infinite where infeasible or failed, NaN where not yet known."""
+    """Returns misfits: infinite where infeasible or failed, NaN where not yet known."""
     misfits = np.array([np.nan if entry is None else np.inf for entry in answers])
     means = {row: entry.mean(axis=0) for row, entry in enumerate(answers) if isinstance(entry, np.ndarray)}
     means = {row: values for row, values in means.items() if np.isfinite(values).all()}
@@ -290,7 +293,7 @@ def _misfits_of(answers: Sequence[Answer], targets: Targets, covariance: Array) 
 
 
 def _noise_limit(product: Array) -> float:
-    """What noise's part of the information exceeds in 5 % of cases, over its mean.
+    """Returns what noise's part of the information exceeds in 5 % of cases, over its mean.
 
     A sum of squares, taken as a chi square distribution of the same mean and variance (Satterthwaite, Biometrics Bull.
     2, 1946). product: C^-1 times the residuals' covariance.
@@ -314,7 +317,9 @@ class _LocalForm:
 
 
 def _local_form(best: Array, u: Array, y: Array, neighbours: int) -> _LocalForm:
-    """Weighted least squares around the best point. (Cleveland, J. Am. Stat. Assoc. 74, 1979, for the weights.)"""
+    """Returns the weighted least squares around the best point. (Cleveland, J. Am. Stat. Assoc. 74, 1979, for the
+    weights.)
+    """
     k = len(best)
     distance = np.linalg.norm(u - best, axis=1)
     nearest = np.argsort(distance, kind="stable")[:neighbours]
@@ -339,7 +344,8 @@ def _local_form(best: Array, u: Array, y: Array, neighbours: int) -> _LocalForm:
 
 def _truncated_normal(best: Array, values: Array, vectors: Array, pull: Array, draws: int,
                       random: np.random.Generator) -> Array:
-    """As many chains as draws, each from the best point, of exp(pull.d - d.H d/2) with d = u - best, within the cube.
+    """Draws as many chains as draws, each from the best point, of exp(pull.d - d.H d/2) with d = u - best, within the
+    cube.
 
     values, vectors: of H.
     """

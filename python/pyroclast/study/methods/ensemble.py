@@ -33,7 +33,7 @@ class Summary:
 
 
 def summary(values: ArrayLike, level: float = 0.95, percentiles: Sequence[float] = (5, 50, 95)) -> Summary:
-    """Of the values (seeds,), NaN where a run gave none. level: of the confidence interval."""
+    """Returns the summary of the values (seeds,), NaN where a run gave none. level: of the confidence interval."""
     given = np.asarray(values, float)
     found = given[np.isfinite(given)]
     n = len(found)
@@ -62,12 +62,12 @@ def seeds_for(share: float, variation: float, level: float = 0.95) -> int | None
 
 
 def _half_width(sd: float, n: int, level: float) -> float:
-    """Of the confidence interval of a mean of n values."""
+    """Returns the half-width of the confidence interval of a mean of n values."""
     from scipy.stats import t
 
     return float(t.ppf(0.5 * (1.0 + level), n - 1)) * sd / float(np.sqrt(n))
 
 
 def widest(summaries: Iterable[Summary]) -> float:
-    """The largest relative width: what "widest interval" means in a criterion to stop."""
+    """Returns the largest relative width: what "widest interval" means in a criterion to stop."""
     return max((entry.relative_width for entry in summaries), default=float("inf"))

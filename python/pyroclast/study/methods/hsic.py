@@ -27,7 +27,7 @@ class Dependence:
 
 
 def dependence(u: Array, y: Array, seed: int = 0, permutations: int = 500) -> Dependence:
-    """How strongly the mean over seeds depends on each parameter. u: (n, k), y: (n, seeds) or (n,).
+    """Returns how strongly the mean over seeds depends on each parameter. u: (n, k), y: (n, seeds) or (n,).
 
     Gaussian kernels of the sample's standard deviation, U-statistics. Nothing is assumed of the dependence between
     parameters: a parameter without effect that is correlated with one that has one shows dependence too. (Gretton,

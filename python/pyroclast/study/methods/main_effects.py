@@ -43,7 +43,7 @@ class RankEffects:
 
 
 def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) -> ClassMeans:
-    """Mean output by classes of one parameter. u: (n,), y: (n, seeds) or (n,); missing points drop out.
+    """Returns the mean output by classes of one parameter. u: (n,), y: (n, seeds) or (n,); missing points drop out.
 
     count: values that the parameter has, each an even share of the range; None: any. Each value is a class of its own,
         in the middle of its share, and so are the levels of a grid up to most_classes; else classes of equal count are
@@ -72,7 +72,7 @@ def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) 
 
 
 def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> RankEffects:
-    """Rank correlation and regression. u: (n, k), y: (n, seeds); missing points drop out.
+    """Returns the rank correlation and regression. u: (n, k), y: (n, seeds); missing points drop out.
 
     Told from the seeds is a coefficient whose interval excludes 0, over the points and over the seeds: there it is beyond
     Student's t of 95 % times its standard error, twice it for many seeds, more for few. Raises `Error` with fewer than k + 2 points. (Saltelli, Sobol', Reliab. Eng. Syst. Saf. 50, 1995.)
@@ -103,7 +103,7 @@ def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ra
 
 
 def _ranked(u: Array, y: Array) -> tuple[Array, Array, float]:
-    """Spearman's correlations, standardised rank regression coefficients and R2."""
+    """Returns Spearman's correlations, standardised rank regression coefficients and R2."""
     from scipy.stats import rankdata
 
     ranks = rankdata(np.column_stack([u, y]), axis=0)

@@ -38,7 +38,7 @@ class Effects:
 
 
 def design(k: int, trajectories: int, levels: int, seed: int) -> Array:
-    """Trajectories in which one parameter after the other makes one step, shape (trajectories, k + 1, k).
+    """Returns trajectories in which one parameter after the other makes one step, shape (trajectories, k + 1, k).
 
     levels: even, at least 2, from 0 to 1; the step is levels/(2 (levels - 1)) up or down. Trajectory t depends on
     (seed, t) alone, so that more trajectories extend the fewer.
@@ -61,7 +61,7 @@ def design(k: int, trajectories: int, levels: int, seed: int) -> Array:
 
 
 def effects(design: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Effects:
-    """Elementary effects of the mean over seeds. design: (T, k + 1, k), y: (T, k + 1, seeds).
+    """Returns the elementary effects of the mean over seeds. design: (T, k + 1, k), y: (T, k + 1, seeds).
 
     Steps that touch a missing point drop out. An absolute value makes an effect of noise, and more trajectories do not
     take it away: an effect is therefore told from the seeds where its interval is above what they alone give.

@@ -100,7 +100,7 @@ def sample(surrogates: Sequence[Surrogate], validations: Sequence[Validation], t
 
 
 def check_points(posterior: Posterior, n: int, seed: int = 0) -> Array:
-    """n draws from the posterior that true runs are to check, (n, k); more of them extend the fewer."""
+    """Returns n draws from the posterior that true runs are to check, (n, k); more of them extend the fewer."""
     rows = np.random.default_rng(seed).permutation(len(posterior.chain))[:n]
     drawn: Array = posterior.chain[rows]
     return drawn

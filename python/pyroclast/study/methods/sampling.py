@@ -16,7 +16,8 @@ _DESIGNS = 100
 
 
 def grid(levels: Sequence[int], ends: bool | Sequence[bool] = True) -> Array:
-    """All combinations of evenly spaced levels, shape (product of levels, parameters), the last parameter fastest.
+    """Returns all combinations of evenly spaced levels, shape (product of levels, parameters), the last parameter
+    fastest.
 
     levels: how many of each parameter; a single one lies at 0.5.
     ends: whether the levels reach from 0 to 1; if not, they are the middles of equal classes, (i + 0.5)/n, as a
@@ -33,18 +34,18 @@ def grid(levels: Sequence[int], ends: bool | Sequence[bool] = True) -> Array:
 
 
 def inside(u: Array, levels: int) -> Array:
-    """Levels that reach from 0 to 1 moved to the middles of equal classes: i/(n - 1) becomes (i + 0.5)/n."""
+    """Moves levels that reach from 0 to 1 to the middles of equal classes: i/(n - 1) becomes (i + 0.5)/n."""
     return (np.asarray(u, float) * (levels - 1) + 0.5) / levels
 
 
 def in_shares(u: Array, count: int) -> Array:
-    """Anywhere in one of `count` equal shares moved to its middle, (i + 0.5)/n."""
+    """Moves a point in one of `count` equal shares to the middle of its share, (i + 0.5)/n."""
     shares: Array = np.minimum(np.floor(np.asarray(u, float) * count), count - 1)
     return (shares + 0.5) / count
 
 
 def latin_hypercube(n: int, k: int, seed: int) -> Array:
-    """n points, one in each of n equal classes of every parameter, shape (n, k).
+    """Returns n points, one in each of n equal classes of every parameter, shape (n, k).
 
     Of 100 such designs it is the one with the least centred discrepancy. It cannot be extended: another n gives other
     points. (McKay, Beckman, Conover, Technometrics 21, 1979; Hickernell, Math. Comput. 67, 1998.)
@@ -56,7 +57,7 @@ def latin_hypercube(n: int, k: int, seed: int) -> Array:
 
 
 def sobol_sequence(n: int, k: int, seed: int, first: int = 0) -> Array:
-    """Points first to first + n of the scrambled Sobol' sequence in k dimensions, shape (n, k), never 0 or 1.
+    """Returns points first to first + n of the scrambled Sobol' sequence in k dimensions, shape (n, k), never 0 or 1.
 
     Extendable: the first n of 2n points are the same. Best balanced where n is a power of two. (Joe, Kuo, SIAM J. Sci.
     Comput. 30, 2008; scrambled as in Matoušek, J. Complexity 14, 1998.)
@@ -73,7 +74,7 @@ def sobol_sequence(n: int, k: int, seed: int, first: int = 0) -> Array:
 
 
 def correlated(u: Array, rank_correlation: ArrayLike, keep_columns: bool = False) -> Array:
-    """Independent points given a Spearman correlation by a Gaussian copula. u: (n, k), inside the open cube.
+    """Gives independent points a Spearman correlation by a Gaussian copula. u: (n, k), inside the open cube.
 
     rank_correlation: (k, k), symmetric, ones on the diagonal.
     keep_columns: give each column exactly its old values in their new order, so that a Latin hypercube remains one

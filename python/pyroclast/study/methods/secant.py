@@ -81,8 +81,8 @@ def approach(targets: Targets, start: Array, slopes: Array, rounds: int,
 
 
 def _step(jacobian: Array, left: Array, u: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """The step that meets all targets, and which parameters it takes to an end of their range: their own targets are
-    given up, and the others are met beside.
+    """Returns the step that meets all targets, and which parameters it takes to an end of their range: their own
+    targets are given up, and the others are met beside.
     """
     step, is_at_end = np.zeros_like(u), np.zeros(len(u), bool)
     while not is_at_end.all():
@@ -98,7 +98,9 @@ def _step(jacobian: Array, left: Array, u: Array) -> tuple[Array, NDArray[np.boo
 
 
 def _learned(jacobian: Array, step: Array, change: Array, slopes: Sequence[float] | Array) -> Array:
-    """The slopes with what a step told of them; as they were where it told less than scatter, or nothing sensible."""
+    """Returns the slopes with what a step told of them; as they were where it told less than scatter, or nothing
+    sensible.
+    """
     if np.abs(jacobian @ step).max() < _LEAST_LEARNED:
         return jacobian
     told = jacobian + np.outer(change - jacobian @ step, step) / (step @ step)

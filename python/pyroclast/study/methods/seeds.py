@@ -34,13 +34,13 @@ class Share:
 
 
 def over_seeds(y: Array) -> Array:
-    """Mean over the seeds, NaN where a point misses one. y: (..., seeds), result: (...)."""
+    """Returns the mean over the seeds, NaN where a point misses one. y: (..., seeds), result: (...)."""
     mean: Array = np.asarray(y, float).mean(axis=-1)
     return mean
 
 
 def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
-    """The seed's share of the variance of one output. y: (points, seeds).
+    """Returns the seed's share of the variance of one output. y: (points, seeds).
 
     Two-way analysis of variance with points and seeds crossed: y = point + seed + rest. The variance between seeds is
     that of seed and rest together, averaged over the points; the points' own variance is free of the rest's part in it.
@@ -61,7 +61,8 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
 
 
 def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
-    """Shares in single runs and in the mean, one for each row of weights (resamples, seeds), the sum of each being 1.
+    """Returns shares in single runs and in the mean, one for each row of weights (resamples, seeds), the sum of each
+    being 1.
 
     Variances are divided by what makes them free of bias for these weights: a resample has some seeds more than once.
     """
@@ -79,7 +80,7 @@ def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
 
 
 def rest_variance(y: Array) -> float:
-    """Variance of what a seed does differently at each point, of single runs. y: (points, seeds).
+    """Returns the variance of what a seed does differently at each point, of single runs. y: (points, seeds).
 
     NaN with fewer than two complete points or seeds.
     """
@@ -92,7 +93,8 @@ def rest_variance(y: Array) -> float:
 
 
 def contrasts(count: int, seed: int) -> Array:
-    """Mixtures of the seeds in which all cancels that they have in common, each as long as their mean: (seeds, draws).
+    """Returns mixtures of the seeds in which all cancels that they have in common, each as long as their mean: (seeds,
+    draws).
 
     Where seeds are alike, such a mixture scatters as the mean over them does around the true one. It is a permutation of
     the seeds, made continuous by rotations, as so few have few permutations (Langsrud, Stat. Comput. 15, 2005, 53-60).
@@ -104,7 +106,7 @@ def contrasts(count: int, seed: int) -> Array:
 
 
 def alone(estimator: Callable[[Array], Any], y: Array, seed: int) -> Array:
-    """What the estimator gives, in LEVEL of the draws at most, for seeds alone; NaN with fewer than LEAST.
+    """Returns what the estimator gives, in LEVEL of the draws at most, for seeds alone; NaN with fewer than LEAST.
 
     y: (..., seeds). estimator: of as many outputs as its last axis has; (effects, outputs).
     """
@@ -118,13 +120,13 @@ def alone(estimator: Callable[[Array], Any], y: Array, seed: int) -> Array:
 
 
 def told(is_told: NDArray[np.bool_], count: int) -> Told:
-    """As it is with so many seeds."""
+    """Returns whether effects are told from the seeds; None of each with fewer seeds than LEAST."""
     found: Told = is_told.astype(object) if count >= LEAST else np.full(is_told.shape, None, dtype=object)
     return found
 
 
 def level(count: int) -> float:
-    """Which share of the resampled values an interval has to hold, for as many things as were resampled.
+    """Returns which share of the resampled values an interval has to hold, for as many things as were resampled.
 
     Above LEVEL: a bootstrap of few is too narrow, as a normal distribution is beside Student's, and for its variance is
     that of n, not n - 1 (the expanded percentile interval: Hesterberg, Am. Stat. 69, 2015, 371-386). 1 for one thing.
@@ -137,7 +139,9 @@ def level(count: int) -> float:
 
 
 def interval(resampled: Array, count: int) -> tuple[Array, Array]:
-    """Percentile interval of the resampled values (resamples, ...), both ends of shape (...). count: see `level`."""
+    """Returns the percentile interval of the resampled values (resamples, ...), both ends of shape (...). count: see
+    `level`.
+    """
     share = level(count)
     low, high = np.nanpercentile(resampled, [50.0 * (1.0 - share), 50.0 * (1.0 + share)], axis=0)
     return low, high

@@ -37,7 +37,7 @@ class Indices:
 
 
 def design(k: int, n: int, seed: int) -> Array:
-    """Rows A, B, AB_1 ... AB_k, shape (n, k + 2, k); AB_i is A with parameter i from B.
+    """Returns rows A, B, AB_1 ... AB_k, shape (n, k + 2, k); AB_i is A with parameter i from B.
 
     A and B are the halves of one Sobol' sequence in 2k dimensions, so that the first n of 2n rows are the same.
     """
@@ -51,7 +51,8 @@ def design(k: int, n: int, seed: int) -> Array:
 
 
 def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int = 500) -> Indices:
-    """Indices of the mean over seeds by Martinez' correlation estimators. y: (n, k + 2, seeds), as `design` has them.
+    """Returns indices of the mean over seeds by Martinez' correlation estimators. y: (n, k + 2, seeds), as `design` has
+    them.
 
     A row with a missing point drops out as a whole. Raises `Error` where more than MOST_LOST of the rows are lost and
     that is not allowed, where fewer than FEWEST rows remain, where the output does not vary, or without openturns.

@@ -36,7 +36,7 @@ class Surrogate:
     fitted: Any  #: what openturns made of them
 
     def predict(self, u: Array) -> Array:
-        """Its values at u (m, k), shape (m,)."""
+        """Returns the surrogate's values at u (m, k), shape (m,)."""
         with _needs.openturns("a surrogate") as ot:
             return np.array(self.fitted.getMetaModel()(ot.Sample(np.asarray(u, float))))[:, 0]
 
@@ -79,7 +79,7 @@ class ChaosIndices:
 
 
 def fit(u: Array, y: Array, kind: Kind = "chaos", most_degree: int = 10) -> Surrogate:
-    """A surrogate of the mean over seeds. u: (n, k), y: (n, seeds) or (n,); missing points drop out.
+    """Fits a surrogate of the mean over seeds. u: (n, k), y: (n, seeds) or (n,); missing points drop out.
 
     chaos: Legendre polynomials, sparse by least angle regression; of the degrees up to most_degree, the one with the
         least corrected leave-one-out error; three in a row without gain are the last. (Blatman, Sudret, J.
@@ -141,7 +141,7 @@ def validate(surrogate: Surrogate, u: Array, y: Array) -> Validation:
 
 
 def indices(surrogate: Surrogate, validation: Validation, seed: int = 0, resamples: int = 500) -> ChaosIndices:
-    """Sobol' indices from the coefficients of a chaos expansion. (Sudret, Reliab. Eng. Syst. Saf. 93, 2008.)
+    """Returns Sobol' indices from the coefficients of a chaos expansion. (Sudret, Reliab. Eng. Syst. Saf. 93, 2008.)
 
     The bootstrap keeps the polynomials and fits their coefficients anew. (Marelli, Sudret, Struct. Saf. 75, 2018.)
     Raises `Error` for Kriging and where `Validation.require` does.
@@ -169,7 +169,9 @@ def _q2(square: float, variance: float) -> float:
 
 
 def _complete(u: Array, y: Array) -> tuple[Array, Array, float, int]:
-    """Complete points, their means over seeds, the variance that seeds leave in these, and how many points are lost."""
+    """Returns the complete points, their means over seeds, the variance that seeds leave in these, and how many points
+    are lost.
+    """
     u, y = np.asarray(u, float), np.asarray(y, float)
     y = y[:, None] if y.ndim == 1 else y
     complete = np.isfinite(y).all(axis=1)
@@ -182,7 +184,7 @@ def _uniform(ot: Any, k: int) -> Any:
 
 
 def _terms(ot: Any, k: int) -> Any:
-    """Hyperbolic order of the polynomials: high degrees of one parameter come before high interactions."""
+    """Returns the hyperbolic order of the polynomials: high degrees of one parameter come before high interactions."""
     return ot.HyperbolicAnisotropicEnumerateFunction(k, 0.75)
 
 
@@ -198,7 +200,8 @@ def _kriging(ot: Any, u: Array, y: Array, noise: float) -> Any:
 
 
 def _shares(degrees: Array, coefficients: Array) -> tuple[Array, Array]:
-    """First-order and total indices. degrees: (terms, k), of orthonormal polynomials; coefficients: (terms,)."""
+    """Returns first-order and total indices. degrees: (terms, k), of orthonormal polynomials; coefficients: (terms,).
+    """
     active = degrees > 0
     squares = coefficients**2
     variance = squares[active.any(axis=1)].sum()

@@ -50,8 +50,8 @@ def write_report(study: Study, out: Path | None = None) -> Path:
 
 
 def _clear(folder: Path) -> None:
-    """Of figures, findings and pages of runs, some of which the study may have no more, and of files that were never
-    finished.
+    """Clears the folder of figures, findings and pages of runs, some of which the study may have no more, and of files
+    that were never finished.
     """
     patterns = ("*.pdf", "*.png", "run-*.html", "*.partial", FINDINGS)
     for file in [file for pattern in patterns for file in folder.glob(pattern)]:
@@ -59,7 +59,7 @@ def _clear(folder: Path) -> None:
 
 
 def _save(sections: Sequence[Section], folder: Path) -> dict[str, bytes]:
-    """PNG by the name of the figure."""
+    """Saves figures; returns each PNG by the name of its figure."""
     pictures = {}
     for shown in (shown for section in sections for shown in section.figures):
         for ending in _FORMATS:

@@ -55,14 +55,14 @@ def sections(seen: Seen) -> list[Section]:
 
 
 def standing(found: dict[str, Any]) -> str:
-    """Whether a search is done, and why."""
+    """Returns whether a search is done, and why."""
     said = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
     doubts = found["best"]["doubts"].items()
     return " ".join([said, *(f"{output} does not count as met: {why}." for output, why in doubts)])
 
 
 def generation_size(seen: Seen) -> int:
-    """Points of a generation, as stated or as CMA-ES has it by default."""
+    """Returns the points of a generation, as stated or as CMA-ES has it by default."""
     return int(seen.setup.method.settings["population"]) or usual_population(len(seen.setup.parameters))
 
 
@@ -77,7 +77,7 @@ def _of_search(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> Sect
 
 @matplotlib.rc_context(style.STYLE)
 def misfit_figure(seen: Seen, found: dict[str, Any]) -> Figure:
-    """Misfits by generation."""
+    """Draws misfits by generation."""
     misfits, size = numbers(found["misfits"]), generation_size(seen)
     number_of = np.arange(len(misfits))
     generation = 1 + number_of // size
@@ -103,7 +103,7 @@ def misfit_figure(seen: Seen, found: dict[str, Any]) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def search_figure(seen: Seen, found: dict[str, Any]) -> Figure:
-    """Misfit over each parameter."""
+    """Draws the misfit over each parameter."""
     misfits = numbers(found["misfits"])
     figure, every = panels(len(seen.setup.parameters))
     for axes, parameter, u, best in zip(every, seen.setup.parameters, seen.u.T, found["best"]["u"]):
@@ -140,7 +140,7 @@ def _of_targets(seen: Seen, found: dict[str, Any]) -> Section:
 
 @matplotlib.rc_context(style.STYLE)
 def residuals_figure(names: Sequence[str], residuals: Array) -> Figure:
-    """What is left to each target."""
+    """Draws what is left to each target."""
     figure = style.new_figure(0.8 + BAR * len(names), 4.6)
     axes = figure.subplots()
     axes.axvspan(-2.0, 2.0, color=style.GREEN, alpha=0.15, linewidth=0.0)
@@ -201,7 +201,7 @@ def _not_told(parameters: Sequence[Parameter], told: dict[str, Any]) -> str:
 @matplotlib.rc_context(style.STYLE)
 def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Sequence[bool],
                   label: str = "best ± sd") -> Figure:
-    """A place and a spread within the range of each parameter."""
+    """Draws a place and a spread within the range of each parameter."""
     figure = style.new_figure(0.9 + 1.3 * BAR * len(parameters), 5.4)
     axes = figure.subplots()
     for at, (parameter, centre, width, is_free) in enumerate(zip(parameters, u, sd, free)):
@@ -225,7 +225,7 @@ def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Se
 
 @matplotlib.rc_context(style.STYLE)
 def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> Figure:
-    """Parts of the parameters in each direction, the best told ones first."""
+    """Draws parts of the parameters in each direction, the best told ones first."""
     directions = numbers(told["directions"])[:_MOST_DIRECTIONS]
     free = np.array(told["direction_not_determined"], bool)[:_MOST_DIRECTIONS]
     rows, k = directions.shape
@@ -252,7 +252,7 @@ def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> 
 
 
 def _ink(part: float, is_faint: bool) -> str:
-    """That is read on the colour of a part."""
+    """Returns the ink that is read on the colour of a part."""
     return style.FAINT if is_faint else "white" if abs(part) > _DARK else style.BLACK
 
 

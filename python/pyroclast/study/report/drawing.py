@@ -31,7 +31,7 @@ _LONGEST_CHOICE = 12
 
 
 def output_label(output: Output) -> str:
-    """Name and unit, where what it is taken from tells one."""
+    """Returns the name and unit, where what it is taken from tells one."""
     if output.unit == "1":
         return output.name
     name = output.name.removesuffix(f"_{output.unit.replace('/', '_')}")
@@ -39,14 +39,16 @@ def output_label(output: Output) -> str:
 
 
 def parameter_label(parameter: Parameter) -> str:
-    """Name and unit."""
+    """Returns the name and unit."""
     if parameter.unit:
         return style.plain(f"{parameter.name} [{_SHOWN_UNITS.get(parameter.unit, parameter.unit)}]")
     return f"{parameter.name} (factor)" if parameter.how == "scale" else parameter.name
 
 
 def place(parameter: Parameter, u: float) -> float:
-    """Of a number of the unit cube on an axis of the parameter's: its value, or how many choices stand before."""
+    """Returns the place of a number of the unit cube on an axis of the parameter's: its value, or how many choices
+    stand before.
+    """
     distribution = parameter.distribution
     if distribution.count is not None:
         first = 0.0 if distribution.kind == "choice" else distribution.numbers[0]
@@ -55,12 +57,12 @@ def place(parameter: Parameter, u: float) -> float:
 
 
 def places(parameter: Parameter, u: Any) -> Array:
-    """Of several."""
+    """Returns the places of several numbers."""
     return np.array([place(parameter, float(x)) for x in u])
 
 
 def value_text(parameter: Parameter, value: Value) -> str:
-    """With its unit."""
+    """Returns a value with its unit."""
     shown = f"{value:.4g}".replace("-", "−") if isinstance(value, float) else str(value)
     unit = _SHOWN_UNITS.get(parameter.unit, parameter.unit)
     return f"{shown} {unit}" if unit else shown
@@ -89,7 +91,7 @@ def along(axes: Axes, parameter: Parameter, vertical: bool = False, label: bool 
 
 
 def ends(parameter: Parameter) -> tuple[float, float]:
-    """Of an axis that shows all of the parameter's range."""
+    """Returns the ends of an axis that shows all of the parameter's range."""
     if parameter.distribution.count is not None:
         return place(parameter, 0.0), place(parameter, 1.0)
     low, high = parameter.distribution.ends()
@@ -97,7 +99,7 @@ def ends(parameter: Parameter) -> tuple[float, float]:
 
 
 def panels(count: int, columns: int = 3, height: float = 2.0) -> tuple[Figure, list[Axes]]:
-    """A figure with so many axes, in rows of at most `columns`."""
+    """Makes a figure with so many axes, in rows of at most `columns`."""
     columns = min(count, columns)
     rows = -(-count // columns)
     figure = style.new_figure(height * rows + 0.1, _WIDTHS.get(columns, style.WIDTH))
@@ -119,7 +121,7 @@ class Bar:
 
 
 def draw_bar(axes: Axes, at: float, bar: Bar, thickness: float = 0.7) -> None:
-    """Lying. One without a value says so."""
+    """Draws a lying bar. One without a value says so."""
     if not np.isfinite(bar.value):
         axes.annotate("no value", (0.0, at), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.0,
                       color=style.FAINT)
@@ -132,7 +134,7 @@ def draw_bar(axes: Axes, at: float, bar: Bar, thickness: float = 0.7) -> None:
 
 
 def name_bars(axes: Axes, names: Sequence[str], grey: Sequence[bool] = ()) -> None:
-    """From the top down; grey ones stand back."""
+    """Names the bars from the top down; grey ones stand back."""
     axes.set_yticks(range(len(names)), [style.plain(name) for name in names])
     for label, is_grey in zip(axes.get_yticklabels(), grey):
         label.set_color(style.FAINT if is_grey else style.BLACK)
@@ -142,7 +144,7 @@ def name_bars(axes: Axes, names: Sequence[str], grey: Sequence[bool] = ()) -> No
 
 
 def seed_bars(share: dict[str, Any]) -> list[tuple[str, Bar]]:
-    """The seed as an entry of its own: its share of the variance of the mean, and of single runs."""
+    """Returns the seed as an entry of its own: its share of the variance of the mean, and of single runs."""
     n = share["seeds"]
     if n < 2:
         return [("seed (only one)", Bar(np.nan, np.nan, np.nan, SEED))]
@@ -155,7 +157,7 @@ def _share_bar(share: dict[str, Any], of: str) -> Bar:
 
 
 def seed_patch(label: str = "the seed") -> Patch:
-    """For legends."""
+    """Returns the seed's handle for legends."""
     return Patch(facecolor=SEED, hatch=SEED_HATCH, edgecolor="white", linewidth=0.0, label=label)
 
 
@@ -164,20 +166,20 @@ def grey_patch(label: str = "not told from the seeds") -> Patch:
 
 
 def legend_above(figure: Figure, handles: Sequence[Any]) -> None:
-    """In one row over all axes, which make room for it."""
+    """Draws a legend in one row over all axes, which make room for it."""
     figure.legend(handles=list(handles), loc="upper left", ncol=len(handles), handlelength=1.4, columnspacing=1.4,
                   borderaxespad=0.3, borderpad=0.0)
     figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - _LEGEND / figure.get_figheight()))
 
 
 def draw_scatter(axes: Axes, x: Any, y: Any) -> None:
-    """Points that stand back behind a curve."""
+    """Draws points that stand back behind a curve."""
     axes.plot(x, y, "o", color=style.FAINT, markersize=2.2, alpha=0.7, markeredgewidth=0.0,
               rasterized=len(x) > 1000)
 
 
 def no_value_ticks(axes: Axes, x: Any) -> None:
-    """On the upper edge: points that gave no value."""
+    """Marks points that gave no value, on the upper edge."""
     if len(x):
         axes.plot(x, np.full(len(x), 0.985), "x", color=style.BLACK, markersize=3.5, markeredgewidth=0.8, clip_on=False,
                   transform=axes.get_xaxis_transform())

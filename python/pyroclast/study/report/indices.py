@@ -89,7 +89,7 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
 @matplotlib.rc_context(style.STYLE)
 def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict[str, Any],
                   share: dict[str, Any]) -> Figure:
-    """Ranked effects and the seed's share, beside effects and what they vary by."""
+    """Draws ranked effects and the seed's share, beside effects and what they vary by."""
     order = ranked(numbers(effects["mu_star"]))
     grey = are_grey(effects, order)
     seeds = seed_bars(share)
@@ -169,7 +169,7 @@ def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order
 
 @matplotlib.rc_context(style.STYLE)
 def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any]) -> Figure:
-    """Main and total index of each parameter, ranked, and the seed's share."""
+    """Draws the main and total index of each parameter, ranked, and the seed's share."""
     order = ranked(numbers(indices["total"]))
     grey = are_grey(indices, order)
     seeds = seed_bars(share)
@@ -238,7 +238,7 @@ def _depends(dependence: dict[str, Any], i: int) -> bool:
 
 @matplotlib.rc_context(style.STYLE)
 def dependence_figure(parameters: Sequence[Parameter], dependence: dict[str, Any], share: dict[str, Any]) -> Figure:
-    """R² of each parameter, ranked, and the seed's share."""
+    """Draws R² of each parameter, ranked, and the seed's share."""
     order = ranked(numbers(dependence["r2"]))
     depends = [_depends(dependence, i) for i in order]
     seeds = seed_bars(share)

@@ -25,7 +25,7 @@ _PIXELS = 133  # of a page, for an inch of a figure
 
 def page_of(seen: Seen, sections: Sequence[Section], pictures: dict[str, bytes],
             runs: Sequence[RunPageLink]) -> str:
-    """All of the page. pictures: PNG files by the names of figures. runs: pages beside this one."""
+    """Returns the whole page. pictures: PNG files by the names of figures. runs: pages beside this one."""
     body = together(_warnings(seen), _in_short(sections), _contents(sections),
                     _heading("Findings", "found") if sections else Markup(),
                     *(_section(section, pictures, _place(i)) for i, section in enumerate(sections)),
@@ -45,7 +45,7 @@ def _place(section: int) -> str:
 
 
 def _in_short(sections: Sequence[Section]) -> Markup:
-    """How each section begins that tells a finding."""
+    """Returns how each section begins that tells a finding."""
     found = [(i, section) for i, section in enumerate(sections)
              if section.texts and section.title != HOW_TO_READ]
     if not found:
@@ -56,7 +56,7 @@ def _in_short(sections: Sequence[Section]) -> Markup:
 
 
 def _beginning(text: str) -> str:
-    """Its first two sentences."""
+    """Returns the finding's first two sentences."""
     return ". ".join(text.split(". ")[:2]).rstrip(".") + "."
 
 

@@ -79,7 +79,7 @@ def _surrogates(seen: Seen, found: dict[str, Any]) -> PageTable:
 
 @matplotlib.rc_context(style.STYLE)
 def pairs_figure(parameters: Sequence[Parameter], chain: Array, free: Sequence[bool], chosen: Sequence[int]) -> Figure:
-    """Marginals on the diagonal, pairs below it."""
+    """Draws marginals on the diagonal, pairs below it."""
     k = len(chosen)
     side = min(style.WIDTH, 1.3 + 1.25 * k) if k > 1 else 3.6
     figure = style.new_figure(side if k > 1 else 2.4, side)
@@ -126,7 +126,7 @@ def _draw_marginal(axes: Axes, parameter: Parameter, values: Array, is_free: boo
 
 @matplotlib.rc_context(style.STYLE)
 def spread_figure(parameters: Sequence[Parameter], posterior: dict[str, Any]) -> Figure:
-    """How much narrower than its range each parameter has become."""
+    """Draws how much narrower than its range each parameter has become."""
     order = ranked(-numbers(posterior["sd_ratio"]))[::-1]
     free = [bool(posterior["not_determined"][i]) for i in order]
     figure = style.new_figure(0.9 + BAR * len(order), 4.6)
@@ -153,7 +153,7 @@ def _of_check(names: Sequence[str], check: dict[str, Any]) -> Section:
 
 @matplotlib.rc_context(style.STYLE)
 def check_figure(names: Sequence[str], standardised: Array) -> Figure:
-    """Differences of each true run. standardised: (runs, targets)."""
+    """Draws differences of each true run. standardised: (runs, targets)."""
     figure = style.new_figure(0.8 + BAR * len(names), 4.6)
     axes = figure.subplots()
     axes.axvspan(-2.0, 2.0, color=style.GREEN, alpha=0.15, linewidth=0.0)

@@ -68,25 +68,27 @@ def _sentence(parameters: Sequence[Parameter], effects: dict[str, Any]) -> str:
 
 
 def told_sentence(names: Sequence[str], share: dict[str, Any]) -> str:
-    """Which parameters' effects are told from the seeds."""
+    """Returns which parameters' effects are told from the seeds."""
     if share["seeds"] < LEAST:
         return f"With fewer than {LEAST} seeds it is not known which effects are told from the seeds."
     return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
 
 
 def are_grey(effects: dict[str, Any], order: Sequence[int]) -> list[bool]:
-    """Of parameters in an order, whose effects are not told from the seeds; none where nothing is known of that."""
+    """Returns which of the parameters have effects that are not told from the seeds; none where nothing is known of
+    that.
+    """
     told = effects.get("told_from_seeds")
     return [told is not None and told[i] is False for i in order]
 
 
 def told_cell(is_told: bool | None) -> str:
-    """Of a table."""
+    """Returns the cell of a table that says whether an effect is told."""
     return "unknown" if is_told is None else "yes" if is_told else "no"
 
 
 def seed_sentence(share: dict[str, Any]) -> str:
-    """The seed's share of the variance; empty where it is not known."""
+    """Returns the seed's share of the variance; empty where it is not known."""
     if share["mean"] is None:
         return ""
     return (f"The seed's share of the variance is {percent(share['mean'])} in the means over {share['seeds']} seeds, "
@@ -94,7 +96,7 @@ def seed_sentence(share: dict[str, Any]) -> str:
 
 
 def ranked(values: Array) -> list[int]:
-    """Places from the largest absolute value to the least; those without one last."""
+    """Returns places from the largest absolute value to the least; those without one last."""
     return [int(i) for i in np.argsort(-np.nan_to_num(np.abs(values), nan=-1.0), kind="stable")]
 
 
@@ -114,7 +116,7 @@ def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> PageTabl
 
 @matplotlib.rc_context(style.STYLE)
 def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Figure:
-    """Coefficient and correlation of each parameter, ranked, and the seed's."""
+    """Draws the coefficient and correlation of each parameter, ranked, and the seed's."""
     order = ranked(numbers(effects["coefficient"]))
     seeds = [(name, _root(bar)) for name, bar in seed_bars(effects["seed_share"])]
     figure = style.new_figure(1.0 + BAR * (len(order) + len(seeds)), 5.0)
@@ -158,7 +160,7 @@ class ResponseCurve:
 
 
 def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[ResponseCurve]:
-    """Means by classes of each parameter, of some points or all."""
+    """Returns means by classes of each parameter, of some points or all."""
     means = seen.means(output.name)[points]
     found = [main_effects.curve(u, means, count=p.distribution.count)
              for u, p in zip(seen.asked[points].T, seen.setup.parameters)]
@@ -167,7 +169,7 @@ def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[Respo
 
 @matplotlib.rc_context(style.STYLE)
 def curves_figure(seen: Seen, output: Output, curves: Sequence[ResponseCurve], is_smooth: bool = False) -> Figure:
-    """A panel for each parameter, all with the same ordinate. is_smooth: lines alone, of a surrogate."""
+    """Draws a panel for each parameter, all with the same ordinate. is_smooth: lines alone, of a surrogate."""
     figure, every = panels(len(curves))
     means = seen.means(output.name)
     for axes, parameter, curve, u in zip(every, seen.setup.parameters, curves, seen.u.T):
@@ -200,7 +202,7 @@ def _share_ordinate(every: Sequence[Axes], output: Output) -> None:
 
 @matplotlib.rc_context(style.STYLE)
 def contours_figure(seen: Seen, output: Output) -> Figure:
-    """Over the plane of two parameters."""
+    """Draws contours over the plane of two parameters."""
     figure = style.new_figure(3.0, 4.2)
     axes = figure.subplots()
     first, second = seen.setup.parameters

@@ -58,7 +58,7 @@ def _by_first_output(seen: Seen, done: list[dict[str, Any]]) -> list[tuple[str, 
 
 
 def _by_targets(seen: Seen, done: list[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
-    """The nearest to the targets, at the best point where the method has one, and the farthest."""
+    """Returns the runs nearest to the targets, at the best point where the method has one, and the farthest."""
     targets = seen.setup.targets
     rows = [row for row in done if all(row[target.output] is not None for target in targets)]
     if len(rows) < 2:

@@ -46,7 +46,7 @@ def sections(seen: Seen) -> list[Section]:
 
 @matplotlib.rc_context(style.STYLE)
 def rounds_figure(seen: Seen, found: dict[str, Any]) -> Figure:
-    """Each target's output by round."""
+    """Draws each target's output by round."""
     targets, y = found["targets"], np.array([numbers(row) for row in found["rounds"]["y"]])
     labels = {o.name: output_label(o) for o in seen.setup.outputs}
     figure, every = panels(len(targets["names"]))

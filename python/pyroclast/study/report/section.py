@@ -42,10 +42,10 @@ class Section:
 
 
 def nothing(title: str, why: str) -> Section:
-    """In the place of what could not be found."""
+    """Makes a section in the place of what could not be found."""
     return Section(title, [f"Nothing is said of this yet: {why}."])
 
 
 def how_to_read(meaning: str) -> Section:
-    """What the numbers of a method mean, once for all outputs."""
+    """Returns what the numbers of a method mean, once for all outputs."""
     return Section(HOW_TO_READ, [meaning])

@@ -45,7 +45,7 @@ class Seen:
         return self.setup.method.kind
 
     def of_outputs(self) -> dict[str, dict[str, Any]]:
-        """Findings by output; some may be no more than {"none_because": text}."""
+        """Returns findings by output; some may be no more than {"none_because": text}."""
         found = (self.findings or {}).get("outputs", {})
         return {output.name: found[output.name] for output in self.setup.outputs if output.name in found}
 
@@ -60,20 +60,21 @@ class Seen:
 
     @cached_property
     def _rows(self) -> dict[tuple[Any, ...], list[dict[str, Any]]]:
-        """By the values of the parameters."""
+        """Rows by the values of the parameters."""
         found: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
         for row in self.rows:
             found.setdefault(tuple(row[p.column] for p in self.setup.parameters), []).append(row)
         return found
 
     def means(self, output: str) -> Array:
-        """Of an output over the seeds, (points,); NaN where one of them has no value."""
+        """Returns means of an output over the seeds, (points,); NaN where one of them has no value."""
         values = [tuple(p.distribution.at(float(x)) for p, x in zip(self.setup.parameters, u)) for u in self.u]
         return np.array([numbers(row[output] for row in self._rows.get(v, [{output: None}])).mean() for v in values])
 
 
 def seen(study: Study) -> Seen:
-    """Of one reading of the store, so that all of it belongs together while another process adds runs."""
+    """Returns what one reading of the store shows, so that all of it belongs together while another process adds runs.
+    """
     driver = study._driver()
     findings, none_because = _findings(driver.findings)
     asked = driver.plan.propose(driver._answers).points
@@ -89,31 +90,31 @@ def _findings(find: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any] | None
 
 
 def numbers(found: Any) -> Array:
-    """Of findings, which hold None for what is not finite."""
+    """Returns the numbers of findings, which hold None for what is not finite."""
     return np.array([np.nan if value is None else value for value in found], float)
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """For a reader; a dash where there is none."""
+    """Returns a number for a reader; a dash where there is none."""
     if value is None or not np.isfinite(value):
         return "–"
     return f"{value:.{digits}g}".replace("-", "−")
 
 
 def between(low: float | None, high: float | None, digits: int = 4) -> str:
-    """An interval, for a reader."""
+    """Returns an interval, for a reader."""
     unknown = low is None or high is None or not np.isfinite([low, high]).all()
     return "–" if unknown else f"{number(low, digits)} to {number(high, digits)}"
 
 
 def percent(share: float | None) -> str:
-    """A share of 1, for a reader."""
+    """Returns a share of 1, for a reader."""
     if share is None or not np.isfinite(share):
         return "–"
     return f"{100.0 * share:.{0 if abs(share) >= 0.0995 else 1}f} %".replace("-", "−")
 
 
 def listed(words: ArrayLike) -> str:
-    """"a", "a and b", "a, b and c"."""
+    """Joins words: "a", "a and b", "a, b and c"."""
     named = [str(word) for word in np.atleast_1d(words)]
     return " and ".join(filter(None, [", ".join(named[:-1]), *named[-1:]]))
