@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 _SECTIONS = {"Results": "draw_last_frame", "Run": "draw_body"}
-"""By the name of a class: the function of `draw.notebook` that draws its specimen."""
+"""Functions of `draw.notebook` that draw a specimen, by the name of the class whose it is."""
 
 
 def give_pictures(of: type) -> None:

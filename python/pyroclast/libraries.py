@@ -11,7 +11,7 @@ from typing import Any
 from .errors import Error
 
 MATPLOTLIB_TOLD = "PYROCLAST_MATPLOTLIB_TOLD"
-"""In the environment of a process: one before it has told that Matplotlib has no folder."""
+"""A variable of the environment: a process before this one has told that Matplotlib has no folder."""
 
 
 def library(name: str, purpose: str) -> Any:

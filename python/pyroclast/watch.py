@@ -64,7 +64,7 @@ from .texts import seen_on_a_line
 from .writing import shell_path
 
 PICTURE = Path("figures") / "watch.png"
-"""Within the run's folder."""
+"""The picture, within the run's folder."""
 
 _NAME = "pyroclast watch"
 _SIZE, _DPI = (9.0, 5.0), 110  # inches; dots per inch

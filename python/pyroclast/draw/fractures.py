@@ -43,7 +43,7 @@ _NARROWEST, _LEAST_WIDTH = 1.55, 0.85  # inches, of a panel in a column: as it s
 _EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; factor on line widths
 _BOLD_LETTER = 0.07  # inches, mean width in a title of a panel
 _SYMBOL = re.compile(r"^\$\\\w+\$ = |(?<=^\$)\\varepsilon_\{\\mathrm\{tot\}\} = ", re.MULTILINE)
-"""Before a number of a caption, whose unit tells what it is."""
+"""Symbol before a number of a caption, whose unit tells what it is."""
 _THINNEST = 0.4  # width of a crack that has just opened over that of the widest
 _WIDE = 0.65  # height over width, below which panels are stacked
 _BODY_SHARE = 0.66  # of the page, where an enlargement stands beside a wide body

@@ -29,8 +29,8 @@ _AT_PEAK = 0.95
 
 
 _ALIKE, _ALIKE_ROWS = 0.01, 0.95
-"""Of its largest value, by which a curve may leave another that is drawn in its place, and the share of rows in which it
-must not leave it farther: where a contact gives way, reactions differ for a row.
+"""Share of its largest value by which a curve may leave another that is drawn in its place, and share of rows in which
+it must not leave it farther: where a contact gives way, reactions differ for a row.
 """
 
 

@@ -18,7 +18,7 @@ from .crack_styles import material_legend
 from .solid_sections import draw_cut_open, flat
 
 MARGIN = np.full((2, 2), 0.08)
-"""Around what is drawn, of its width: below (x, y) and above."""
+"""Margin around what is drawn, over its width: below (x, y) and above."""
 
 
 def panel_box(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> tuple[np.ndarray, np.ndarray]:

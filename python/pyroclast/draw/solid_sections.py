@@ -24,11 +24,11 @@ _DARKEST = 0.62  # of a colour on a face that is seen from the side
 _GHOST = 0.035  # opacity of the body around its cracks
 _TENTHS = 10
 _IN_PLANE = {"x": (2, 1), "y": (0, 2), "z": (0, 1)}
-"""By the axis across a plane: the axes to the right and upwards in its picture."""
+"""Axes to the right and upwards in the picture of a plane, by the axis across it."""
 _NEAR = 3e-7  # of the size of a body: a point so near to a side lies on it
 _EDGE = 1e-3  # of the size of a body: a cut so narrow is an edge
 _WITHIN = 1e-6
-"""Of the size of a body: planes stand so far within its ends, where they cut its blocks and not those of a bearing."""
+"""Share of the size of a body by which planes stand within its ends, where they cut its blocks and not a bearing."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class View:
 
 
 VIEW = View(np.array([0.60, 0.42, 0.68]) / np.linalg.norm([0.60, 0.42, 0.68]))
-"""From the right, above and behind: x goes to the right, y upwards, and z towards the eye."""
+"""The view from the right, above and behind: x goes to the right, y upwards, and z towards the eye."""
 
 
 def flat(points: np.ndarray) -> np.ndarray:

@@ -55,7 +55,7 @@ class Stage:
     kind: ClassVar[str] = ""
     meaning: ClassVar[str] = "a stage written in Python"
     columns: ClassVar[dict[str, str]] = {}
-    """Of its own in the history, with their units; the unit is the end of a name too, where there is one."""
+    """Columns of its own in the history, with their units; the unit is the end of a name too, where there is one."""
 
     def begin(self, body: Body) -> None:
         """Prepares what acts on the body; moves nothing."""

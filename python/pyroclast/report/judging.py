@@ -50,7 +50,7 @@ _MINOR = ("steps", "unbalanced_ratio", "exchanges", "cycles")
 _UNITS = {"_K_s": ("K/s", 1.0), "_N_m": ("N/m", 1.0), "_J_m2": ("J/m²", 1.0), "_GPa": ("GPa", 1.0),
           "_MPa": ("MPa", 1.0), "_Pa": ("MPa", 1e-6), "_N": ("kN", 1e-3), "_J": ("J", 1.0), "_m2": ("cm²", 1e4),
           "_m": ("mm", 1e3), "_s": ("s", 1.0), "_degC": ("°C", 1.0), "_K": ("K", 1.0)}
-"""By the ends of names, longer ones first: how results that a deck asks for are shown, and the factor to that."""
+"""Units in which results that a deck asks for are shown, and factors to these, by ends of names, longer ones first."""
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,9 @@ from .mesh import Mesh
 
 _NAME = re.compile(r"(.+) \[(.+)\]")  # of an array in a file
 _COMPONENTS = {3: ("component", ["x", "y", "z"]), 6: ("tensor", ["xx", "yy", "zz", "xy", "yz", "xz"])}
-"""By the length of an array's rows: a dimension and its labels."""
+"""A dimension and its labels, by the length of an array's rows."""
 _ENDS = {2: ["corner", "middle"], 4: ["corner", "edge_after", "middle", "edge_before"]}
-"""By the number of corners of a contact's cell: what they are."""
+"""Names of the corners of a contact's cell, by their number."""
 _OF_CONTACTS = "contact_"  # before the names of contacts' fields that blocks have too
 _PA = 1e6  # from MPa
 

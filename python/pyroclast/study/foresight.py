@@ -13,7 +13,7 @@ from .driver import StudyForecast
 from .study import Study
 
 _DISK = {"summary": (20e3, "summary"), "history": (700e3, "history too"), "all": (30e6, "whole folder")}
-"""By `keep`: bytes of a run, of the order of those that 5,000 blocks leave, and their name."""
+"""Bytes of a run, of the order of those that 5,000 blocks leave, and their name, by `keep`."""
 
 
 def foresee(study: Study, say: Callable[[str], None]) -> None:

@@ -11,7 +11,7 @@ from ..errors import Error
 from ..live.decks import toml
 
 Value = Union[float, int, str, bool]
-"""Of a parameter: a number in its unit, or one of its choices."""
+"""A value of a parameter: a number in its unit, or one of its choices."""
 
 _DIGITS = 10  # of a value: a table gives it back exactly, and no mathematics library changes it
 _CURVE = ("value", "table", "csv", "builtin", "expression", "from")  # keys, one of which each curve of a deck has

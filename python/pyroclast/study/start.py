@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterable
 
 FOLDER = "\0"
-"""In a word of a command, where the folder of the run is put in: a character that no word can hold."""
+"""The place in a word of a command where the folder of the run is put in: a character that no word can hold."""
 
 
 def python(module: str, *words: str) -> list[str]:

@@ -39,7 +39,7 @@ _REASON_LINES = 3  # of what a process wrote last: an error, and what it says of
 _libc = ctypes.CDLL(None)  # before a fork: a child may not import
 
 _STATES = {"not_settled": NOT_SETTLED, "unstable": CRASHED}
-"""Of runs that came to their end and give no value, by `outcome_id` of the run or of one of its stages."""
+"""States of runs that came to their end and give no value, by `outcome_id` of the run or of one of its stages."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 Told = NDArray[np.object_]
 """Whether an effect is told from the seeds: True, False, or None where too few seeds are known to say."""
 LEVEL = 0.95
-"""Of all intervals."""
+"""Level of all intervals."""
 LEAST = 3
 """Seeds without which nothing is told from them: two leave one difference, whose own spread is not known."""
 _DRAWS = 1000

@@ -18,7 +18,7 @@ _PATIENCE = 3
 LEAST_HELD = 30
 """Points kept apart on which a surrogate is judged, at the least."""
 LEAST_Q2 = 0.9
-"""Below this no index and no posterior comes from a surrogate: of `Validation.own_q2`."""
+"""The least `Validation.own_q2`: below it no index and no posterior comes from a surrogate."""
 LEAST_TOLD = 0.5
 """The least `Validation.q2`: below it most of what runs differ by is the seeds' scatter, or is not told at all."""
 

@@ -20,7 +20,7 @@ from .seen import numbers
 
 Array = NDArray[np.float64]
 NOT_TOLD = "#cfcfcf"
-"""Of effects that are not told from the seeds."""
+"""The colour of effects that are not told from the seeds."""
 SEED = style.ORANGE
 SEED_HATCH = "////"
 BAR = 0.26  # inches, of a figure's height
