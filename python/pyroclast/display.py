@@ -7,8 +7,7 @@ _SECTIONS = {"Results": "draw_last_frame", "Run": "draw_body"}
 
 
 def give_pictures(of: type) -> None:
-    """Gives `Results` or `Run` the methods by which a notebook shows an object; Matplotlib is loaded when one is called.
-    """
+    """Gives `Results` or `Run` the methods by which a notebook shows an object; they load Matplotlib when called."""
     section = _SECTIONS[of.__name__]
 
     def png(self: object) -> bytes:

@@ -126,8 +126,7 @@ class Watch:
     """
 
     def __init__(self, folder: str | Path, picture: str | Path | None = None):
-        """Watches a run. picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder.
-        """
+        """Watches a run. picture: the file that `save` writes, its format by its ending; None: PICTURE there."""
         self.run = GrowingResults(folder)
         self.picture = Path(picture) if picture is not None else None
         self._lock = Lock(self.run.folder)
@@ -433,8 +432,7 @@ _SCREENS = {"terminal": _Terminal, "lines": _Lines, "nothing": _Nothing}
 
 
 def _screen(asked: str | None, has_page: bool | None, watch: Watch) -> _Nothing:
-    """Returns the screen. asked: one of _SCREENS; without it, what there is. has_page: None: where there is a display.
-    """
+    """Chooses a screen. asked: one of _SCREENS; or what there is. has_page: None: where there is a display."""
     has_terminal = sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
     if asked is None or asked == "terminal" and not has_terminal:
         asked = "terminal" if has_terminal else "lines"

@@ -57,9 +57,7 @@ def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
 
 
 def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Counts cracked contact points that a figure of fracture draws, by mode (of `Results.crack_modes`) and whether
-    broken.
-    """
+    """Counts the cracked contact points of a figure, by mode (of `Results.crack_modes`) and whether broken."""
     return {(crack.mode, crack.broken): int(cracked(run, frame, crack).sum()) for crack in cracks_of(run)}
 
 
@@ -79,9 +77,7 @@ def crack_legend(run: Results) -> list[Artist]:
 
 
 def material_legend(blocks: BlockMesh, zones: np.ndarray | None = None, bearing: str = "platen") -> list[Artist]:
-    """Returns a handle for each material of some zones; None: of all. bearing: what bearings are called that have no
-    name.
-    """
+    """Returns a handle for each material of some zones; None: of all. bearing: the name of bearings without one."""
     shown = blocks.material if zones is None else blocks.material[zones]
     colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
     names = [bearing if kind in blocks.bearing_materials and name == "platen" else name

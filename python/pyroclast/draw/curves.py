@@ -59,9 +59,7 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
 
 
 def _axes_and_table() -> tuple[Figure, Axes, Axes | None, Axes | None]:
-    """Makes a figure with axes for the curve, for a legend (None where it stands in the first), and for the table, if
-    any.
-    """
+    """Makes a figure with axes for a curve, for a legend (None: in the first), and for a table, if any."""
     if not style.page().has_table:
         figure, (axes,), below = style.panels(4.8, below=0.3)
         return figure, axes, below, None
@@ -103,9 +101,7 @@ def _draw_run(axes: Axes, run: Results) -> None:
 
 
 def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> None:
-    """Draws Anderberg and Thelandersson's law and the peaks of the paper's Table 3. wrapped: labels for a narrow
-    legend.
-    """
+    """Draws Anderberg and Thelandersson's law and the peaks of the paper's Table 3. wrapped: for a narrow legend."""
     strain = np.linspace(0.0, min(last_strain, reference.AT_LAST_STRAIN), 300)
     axes.plot(style.PER_MILLE * strain, reference.at_stress(strain), color=style.VERMILLION,
               linestyle=(0, (5, 2)), linewidth=1.2,

@@ -314,8 +314,7 @@ def _note(drawn: Rows, look: _Look) -> str:
 
 
 def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
-    """Draws the deformed specimen with its cracks, alone in its axes; returns the magnification of its displacements.
-    """
+    """Draws the deformed specimen with its cracks, alone in its axes; returns how far displacements are magnified."""
     magnification = _visible_magnification(run, frame)
     panel = Panel(run, frame, "", "")
     margin = _margin([(run.mesh.blocks, _moved(panel, magnification))])
@@ -378,9 +377,7 @@ def _jumps(run: Results, frame: Frame) -> np.ndarray:
 
 
 def _full_width(panels: Sequence[Panel]) -> float:
-    """Returns the size [m] of the jump from which on a broken crack is drawn in full width: the median of the broken,
-    to two digits.
-    """
+    """Returns the jump [m] from which a broken crack has full width: the median of the broken, to two digits."""
     sizes = [_jumps(panel.run, panel.frame)[cracked(panel.run, panel.frame, crack)] for panel in panels
              for crack in cracks_of(panel.run) if crack.broken]
     sizes = np.concatenate([np.zeros(0), *sizes])
@@ -388,9 +385,7 @@ def _full_width(panels: Sequence[Panel]) -> float:
 
 
 def _crack_box(lasts: Sequence[Panel], magnification: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Returns the corners [m] of the box that holds the cracks of the last panels; None without cracks, or where they
-    are all over.
-    """
+    """Returns the corners [m] of a box around cracks of the last panels; None without, or where they are all over."""
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for panel in lasts:
         blocks, contacts = panel.run.mesh.blocks, panel.run.mesh.contacts

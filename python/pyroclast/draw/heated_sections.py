@@ -148,8 +148,7 @@ def _panel(run: Results, frame: Frame) -> Panel:
 
 @style.in_style
 def temperature_field(run: Results) -> Figure:
-    """Draws the temperature of the specimen at up to four times while heated, one colour scale for all, with isotherms.
-    """
+    """Draws temperatures of the specimen at up to four times while heated, one scale for all, with isotherms."""
     blocks, page = run.mesh.blocks, style.page()
     frames = page.chosen(_spread(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
@@ -190,9 +189,7 @@ def _is_timed(frame: Frame) -> bool:
 
 
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
-    """Draws the temperature of the specimen, alone in its axes, coloured up to its hottest; returns what has the
-    colours.
-    """
+    """Draws the specimen's temperature, alone in its axes, coloured up to its hottest; returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]

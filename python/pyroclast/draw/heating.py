@@ -159,9 +159,7 @@ def _before_failing(run: Results) -> np.ndarray:
 
 
 def strain_limits(runs: Sequence[Results], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Returns limits [10^-3] that show bands, tables and total strains to failure, but not how far a failing specimen
-    went.
-    """
+    """Returns limits [10^-3] that show bands, tables and total strains to failure, but not how far a specimen falls."""
     tables = [values for run in runs for own in run.references.tables if own.of == "total_strain"
               for values in (own.low, own.high)]
     strains = [_before_failing(run) for run in runs]
@@ -186,9 +184,7 @@ def _mark_unconverged(axes: Axes, run: Results, over: np.ndarray, values: np.nda
 
 
 def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
-    """Marks where the specimen failed. over: of the rows of the heating, temperatures or minutes; the last is that of
-    the failure.
-    """
+    """Marks the failure. over: temperatures or minutes of the rows of the heating; the last is that of the failure."""
     hot = Heated(run)
     if hot.critical_temperature is None or not np.isfinite(over[-1]):
         return

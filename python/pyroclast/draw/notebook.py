@@ -115,9 +115,7 @@ def draw_body(axes: Axes, run: LiveRun) -> None:
 
 
 def draw_last_frame(axes: Axes, results: Results) -> None:
-    """Draws the specimen at the last frame, with its cracks, or its temperatures where nothing moves; nothing without
-    one.
-    """
+    """Draws the specimen at the last frame, if any, with its cracks, or where nothing moves its temperatures."""
     if not results.frames:
         axes.axis("off")
     elif results.moves:

@@ -117,17 +117,14 @@ def extent_of_cracks(run: Results) -> tuple[str, str, str]:
 
 
 def crack_extent(course: Course, mode: str, is_broken: bool) -> np.ndarray:
-    """Returns the (n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage.
-    """
+    """Returns (n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage."""
     ending = ("broken_" if is_broken else "") + extent_of_cracks(course.run)[2]
     interfaces = course.run.crack_modes.get(mode, [])
     return sum((course[f"{mode}_{name}_{ending}"] for name in interfaces), np.zeros(len(course.over)))
 
 
 def _draw_extents(axes: Axes, course: Course) -> None:
-    """Draws extents on a logarithmic axis, on which a tenth of all cracks can be seen: broken as lines, damaged as
-    light areas.
-    """
+    """Draws extents on a logarithmic axis, which shows a tenth of all: broken as lines, damaged as light areas."""
     what, unit, _ = extent_of_cracks(course.run)
     drawn = [(mode, is_broken, crack_extent(course, mode, is_broken)) for is_broken in (False, True)
              for mode in course.run.crack_modes]
@@ -211,9 +208,7 @@ def energy(course: Course) -> Figure:
 
 
 def energies_out(run: Results) -> list[tuple[str, str, str, str | None]]:
-    """Returns the columns of energies that the run has, with name, colour and hatch: a law may lose others than the
-    paper's.
-    """
+    """Returns columns of the run's energies, with name, colour and hatch: a law may lose others than the paper's."""
     known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
     others = [name for name in run.history.names
               if name.startswith("dissipated_") and name not in {column for column, *_ in ENERGY_OUT}]

@@ -87,9 +87,7 @@ def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]
 
 
 def leading(records: list[Record]) -> Record | None:
-    """Returns what a test is about: the first force, else the first stress, else the first that others are not drawn
-    over.
-    """
+    """Returns what a test is about: the first force, else the first stress, else the first not drawn over."""
     over = _first(records, ("opening", "displacement"))
     return _first(records, ("force", "stress")) or next((record for record in records if record is not over), over)
 
@@ -125,9 +123,7 @@ class _Panel:
 
 
 def _panels(run: Results) -> list[_Panel]:
-    """Returns a panel for each kind of record, over what all are drawn over; more where a reference asks for something
-    else.
-    """
+    """Returns a panel for each kind of record, over what all are drawn over; more where a reference asks for others."""
     found = records_of(run)
     by_name = {record.name: record for record in found}
     common, over, label = abscissa(run, found)

@@ -29,9 +29,7 @@ def panel_box(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> tuple[np.ndarra
 
 
 def block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the lower left and upper right corner in the picture of all blocks, bearings too, where they were at
-    first, m.
-    """
+    """Returns lower left and upper right of the picture of all blocks, bearings too, as they were at first, m."""
     points = flat(blocks.points)
     return points.min(axis=0), points.max(axis=0)
 
@@ -143,9 +141,7 @@ def _draw_grains(axes: Axes, specimen: SpecimenFolder) -> None:
 
 
 def _shares(specimen: SpecimenFolder) -> str:
-    """Returns the shares of the aggregates, where there are circles; else those of the materials, where there are
-    several.
-    """
+    """Returns shares of the aggregates, where there are circles; else of the materials, where there are several."""
     if specimen.aggregates.rows:
         return (f", {specimen.aggregates.rows} aggregates; aggregate fraction\n"
                 f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "

@@ -63,9 +63,7 @@ def flat(points: np.ndarray) -> np.ndarray:
 
 
 def middle_planes(blocks: BlockMesh, at: tuple[float, float] = (0.5, 0.5)) -> tuple[Plane, Plane]:
-    """Returns planes across x and across z, through the middle of the specimen or at other shares of its width and
-    depth.
-    """
+    """Returns planes across x and across z, through the specimen's middle or at other shares of its width and depth."""
     low, high = specimen_box(blocks)
     place = low + np.array([at[0], 0.0, at[1]]) * (high - low)
     return Plane(np.array([1.0, 0.0, 0.0]), float(place[0])), Plane(np.array([0.0, 0.0, 1.0]), float(place[2]))
@@ -217,9 +215,7 @@ class CrackFaces:
         return np.degrees(np.arcsin(np.clip(np.abs(self.normal[:, 1]), 0.0, 1.0)))
 
     def upright_share(self, within: float = 30.0) -> float:
-        """Returns the share of the area whose normals are within an angle of the horizontal, degrees; NaN without
-        cracks.
-        """
+        """Returns the share of area with normals within an angle [degrees] of the horizontal; NaN without cracks."""
         return self._share(self.inclination <= within)
 
     def facing_share(self, axis: int, within: float = 30.0) -> float:

@@ -179,18 +179,14 @@ MILLI = 1e3  # metres to millimetres
 
 
 def phase_colours(names: Sequence[str], bearings: Container[int]) -> list[str]:
-    """Returns a fill for each material of a mesh: aggregate and mortar as ever, bearings (by their places) dark, others
-    in turn.
-    """
+    """Returns a fill for each material: aggregate and mortar as ever, bearings (by place) dark, others in turn."""
     known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
     more = cycle(_MORE_PHASE_COLOURS)
     return [PLATEN_COLOUR if i in bearings else known.get(name) or next(more) for i, name in enumerate(names)]
 
 
 def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> Figure:
-    """Makes an empty figure for the page; inches, dots per inch (DPI where it is not stated). width: the most that it
-    takes.
-    """
+    """Makes an empty figure for the page; inches, dots per inch (else DPI). width: the most that it takes."""
     figure = Figure(figsize=(page().width if width == WIDTH else min(width, page().width), min(height, page().highest)),
                     dpi=dpi or DPI)
     figure.of_page = page()  # type: ignore[attr-defined]

@@ -147,8 +147,7 @@ class Deck:
     @classmethod
     def from_text(cls, text: str, name: str = "deck", folder: str | Path = "", *,
                   stages_in_python: Sequence[type[Stage]] = (), laws: Sequence[str | Path] = ()) -> Deck:
-        """Makes a deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from.
-        """
+        """Makes a deck from TOML. name: takes the file's place in messages. folder: where its file names begin."""
         deck = cls(stages_in_python=stages_in_python, laws=laws)
         deck._text, deck._name, deck._folder, deck._is_own = text, name, str(folder), False
         deck._written()
@@ -414,9 +413,7 @@ class Deck:
         return numbers
 
     def _resolved(self, place: functions.Scratch) -> _core.DeckText:
-        """Returns the deck with tables, which are written into a folder, in place of the functions; blocks in a file
-        there too.
-        """
+        """Returns the deck with tables, written into a folder, in place of functions; blocks in a file there too."""
         tables = [(path, _csv(table)) for path, table in self._tables(Path(place.folder))]
         if self._specimen:
             self._specimen[0].save(Path(place.folder) / _CELLS)

@@ -50,9 +50,7 @@ TIME = Axis("time", "s")
 
 
 def axis_of(key: str) -> Axis:
-    """Returns what a key's curve goes over: what happens at boundaries, and drives, over the time, all else over the
-    temperature.
-    """
+    """Returns what a key's curve goes over: what happens at boundaries, and drives, time, all else over temperature."""
     return TIME if key.startswith("heat.boundaries") or is_of_drive(key) else TEMPERATURE
 
 

@@ -599,8 +599,7 @@ class Run:
 
     @property
     def results(self) -> dict[str, Any]:
-        """Results of all stages so far, in the units of their names ("f_c_MPa"); where two have one, that of the later.
-        """
+        """Results of stages so far, in the units of their names ("f_c_MPa"); where two have one, that of the later."""
         return {name: value for stage in self.stages for name, value in stage["results"].items()}
 
     @property

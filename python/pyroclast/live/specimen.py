@@ -49,8 +49,7 @@ class _Blocks(Generic[_Core]):
 
     @property
     def block_size(self) -> NDArray[np.float64] | None:
-        """Size (blocks,) that each block was to have, m, which its contact stiffness follows; None where all are alike.
-        """
+        """Size (blocks,) that each block was to have, m, as its contact stiffness follows; None where all are alike."""
         return np.array(self._core.block_size) if self._core.block_size else None
 
     @property

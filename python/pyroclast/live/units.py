@@ -21,9 +21,7 @@ class Quantity:
         return " ".join(name if n == 1 else f"{name}{n}" for name, n in self.powers.items()) or "1"
 
     def to(self, unit: str) -> float:
-        """Returns the value in another unit of the same dimension; a temperature in "degC". Raises Error for another
-        one.
-        """
+        """Returns the value in another unit of its dimension; a temperature in "degC". Raises Error for another."""
         return _core.convert(str(self), unit)
 
     def __str__(self) -> str:

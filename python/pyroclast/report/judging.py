@@ -142,9 +142,7 @@ def cards(run: Results) -> list[Card]:
     asked = _asked(run)
 
     def rank(card: Card) -> tuple[int, int]:
-        """Returns the rank of a card: known ones stand first, then the deck's own, of which the last follow from the
-        others, then peaks of records.
-        """
+        """Returns a card's rank: known ones first, then the deck's own, its last following from others, then peaks."""
         if card.label in order:
             return 0, order[card.label]
         if card.label in asked:

@@ -76,18 +76,14 @@ def _peak_row(run: Results, largest: int) -> int:
 
 
 def _is_peak(run: Results, leading: np.ndarray, row: int) -> bool:
-    """Returns whether the curve falls behind the row of its largest value: of a compression, whether the program has an
-    f_c.
-    """
+    """Returns whether the curve falls behind the row of its largest value: of a compression, whether it has an f_c."""
     if run.has_platens and not Heated(run).is_last:
         return Compressed(run).has_peak
     return row < int(np.flatnonzero(np.isfinite(leading))[-1])
 
 
 def _least_extent(run: Results) -> tuple[float, str] | None:
-    """Returns the length [m], of a solid area [m²], of damaged contacts that is marked, and how; None where it is not
-    known.
-    """
+    """Returns the length [m], of a solid area [m²], of damaged contacts that is marked, and how; None: not known."""
     if extent_of_cracks(run)[0] == "Length":
         return _CRACK_LENGTH, "1 m of contacts damaged"
     if not run.has_fields:

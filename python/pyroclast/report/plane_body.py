@@ -146,9 +146,7 @@ def body_of(run: Results, frames: Sequence[Frame], rigid: bool = False) -> Packe
 
 def read_finite(read: Callable[[Frame], dict[str, np.ndarray]],
                 frames: Sequence[Frame]) -> tuple[list[Frame], dict[str, np.ndarray], list[str]]:
-    """Returns frames that are whole, with numbers that are all finite; these (frames, ...) by name; notes of other
-    frames.
-    """
+    """Returns frames that are whole, with all numbers finite; these (frames, ...) by name; notes of other frames."""
     taken: list[Frame] = []
     found: list[dict[str, np.ndarray]] = []
     notes = []
@@ -215,9 +213,7 @@ def _block_size(corner: np.ndarray, outline: Outline) -> float:
 
 
 def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns (frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians, by least squares over
-    corners.
-    """
+    """Returns (frames, blocks, 2) mean displacements, m, and (frames, blocks) turns, radians, by least squares."""
     first, count = outline.first[:-1], np.diff(outline.first)
     middle = np.add.reduceat(corner, first) / count[:, None]
     arm = corner - middle[outline.owner]

@@ -126,9 +126,7 @@ def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: n
 
 
 def _cell_points(cells: np.ndarray, point: np.ndarray, of_point: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """Returns (K, 3) gridpoints of a block that lie at a contact's point, at the next one of the face and at the one
-    before.
-    """
+    """Returns (K, 3) gridpoints of a block at a contact's point, at the next one of the face and at the one before."""
     ends = np.stack([cells[:, 0], 2.0 * cells[:, 1] - cells[:, 0], 2.0 * cells[:, 3] - cells[:, 0]], axis=1)
     place = meeting(np.concatenate([point, ends.reshape(-1, 3)]), _near(point))
     count = int(of_point.max()) + 1

@@ -17,9 +17,7 @@ _FINER = 2  # it is drawn so many times as large
 
 
 def thumbnail(run: Results) -> bytes:
-    """Draws a PNG: blocks by material and broken contacts, where they were made; empty of a run without frames, or of a
-    solid.
-    """
+    """Draws a PNG: blocks by material and broken contacts, empty without frames, or of a solid."""
     if not run.has_fields or not run.frames or run.mesh.blocks.dimension == 3:
         return b""
     blocks, contacts = run.mesh.blocks, run.mesh.contacts

@@ -48,9 +48,7 @@ class ColumnNames:
                    _IN_SI.__getitem__)
 
     def place(self, name: str) -> tuple[int, float]:
-        """Returns the number of a column, and by what its values are to be multiplied. Raises KeyError where there is
-        none.
-        """
+        """Returns the number of a column, and the factor of its values. Raises KeyError where there is none."""
         return self._places[name]
 
     def __contains__(self, name: object) -> bool:
@@ -106,8 +104,7 @@ class Columns(Mapping[str, Array]):
         return dict(self._names.units)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Returns the table as a DataFrame, the columns by the program's names; its `attrs["units"]` has their units.
-        """
+        """Returns a DataFrame, its columns by the program's names; its `attrs["units"]` has their units."""
         table: pandas.DataFrame = library("pandas", "to_pandas").DataFrame(dict(self))
         table.attrs["units"] = self.units
         return table

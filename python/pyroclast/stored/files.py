@@ -387,8 +387,7 @@ def names_in(path: Path, group: str) -> list[str]:
 
 
 def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
-    """Reads all of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape.
-    """
+    """Reads all of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and for another shape."""
     with open_hdf(path) as file:
         values = dataset(file, name)
     if values.shape != shape:
@@ -420,9 +419,7 @@ def _read_json(path: Path) -> Any:
 
 
 def _read_rows(lines: bytes, columns: int) -> np.ndarray | None:
-    """Reads (columns, rows) of whole lines of finite numbers, NaN where a cell is empty; None where they are something
-    else.
-    """
+    """Reads (columns, rows) of whole lines of finite numbers, NaN where a cell is empty; None: something else."""
     global _core
     if _core is None and len(lines) > _FEW:
         try:

@@ -83,9 +83,7 @@ class Heated:
 
     @property
     def rows(self) -> NDArray[np.bool_]:
-        """Rows (rows,): `exchanged` and the row before, from which heating started; none of a body that was never
-        heated.
-        """
+        """Rows (rows,): `exchanged` and the row before, from which heating started; none without heating."""
         rows = self.exchanged
         if rows.any():
             rows[max(int(rows.argmax()) - 1, 0)] = True
@@ -130,9 +128,7 @@ class Heated:
         return -self.column("specimen_strain")
 
     def standing_strain(self, temperatures: ArrayLike) -> Array:
-        """Returns the axial strain at temperatures [°C] while the specimen stood, as `total_strain`; nan above what it
-        reached.
-        """
+        """Returns axial strain at temperatures [°C] while the specimen stood, as `total_strain`; nan above."""
         reached, strain = (self.run.history[name][self.standing] for name in ("temperature_degC", "specimen_strain"))
         asked = np.asarray(temperatures, dtype=float)
         if not len(reached):

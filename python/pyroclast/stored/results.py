@@ -270,8 +270,7 @@ class Results:
         return self._field("contacts", frame, "PointData/displacement [m]", (len(points), 3))[:, :points.shape[1]]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
-        """Returns a field (C,) of contacts, by its name with unit, for instance "tension_damage [1]" or "opening [m]".
-        """
+        """Returns a field (C,) of contacts, by its name with unit, such as "tension_damage [1]" or "opening [m]"."""
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.cells),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:

@@ -32,9 +32,7 @@ _FAR = 30.0  # distance of an output from its target, over the smaller of both, 
 
 
 def main(words: list[str]) -> int:
-    """Runs the program; returns the exit code: 0 done, 2 runs are missing, 3 code has to be allowed first, 1 another
-    error.
-    """
+    """Runs the program; returns the exit code: 0 done, 2 runs are missing, 3 code must be allowed, 1 another error."""
     return run_program(lambda: _do(words))
 
 

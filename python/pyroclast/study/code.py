@@ -104,8 +104,7 @@ class _Command:
                                                    self._files.items()}, "; ".join(dict.fromkeys(self._unknown)))
 
     def _forms(self, words: Sequence[str]) -> Iterator[list[str]]:
-        """Yields the command by the values of its parameters that are choices or whole numbers: these may name files.
-        """
+        """Yields the command by values of its parameters that are choices or whole numbers: these may name files."""
         used = {name for word in words for name in _fields(word)}
         countable = [p for p in self._study.parameters if p.name in used and p.distribution.count is not None]
         count = 1

@@ -106,8 +106,7 @@ def variants_of(deck: Mapping[str, Any]) -> list[Variant]:
 
 
 def _blocks_of_size(deck: Mapping[str, Any], factor: float) -> tuple[str, ...]:
-    """Returns the change that makes blocks so many times as large; none where they were made elsewhere or are too few.
-    """
+    """Returns what makes blocks so many times as large; none where they were made elsewhere or are too few."""
     if found := _found(deck, ["blocks.size"]):
         return _scaled(deck, found, factor)
     count = deck.get("blocks", {}).get("count", 0) / factor ** _dimension(deck)
@@ -144,9 +143,7 @@ class Effect:
 
 
 def effect(result: str, variant: Variant, before: NDArray[np.float64], after: NDArray[np.float64]) -> Effect:
-    """Returns the effect of a change from values by seed. Seeds are paired where they make the same specimens; else
-    Welch's interval.
-    """
+    """Returns an effect from values by seed. Seeds of the same specimens are paired; else Welch's interval."""
     from scipy.stats import t
 
     mean = float(np.nanmean(before))

@@ -202,9 +202,7 @@ class Driver:
         return sum(self.store.get(run) is None for run in self.store.begun())
 
     def rows(self) -> list[dict[str, Any]]:
-        """Returns a line for each run that the method asked for: what it was, what came of it, and how to make it
-        again.
-        """
+        """Returns a line for each run that the method asked for: what it was, what came of it, how to make it again."""
         rows = []
         for wanted in self._wanted(self.plan.propose(self._answers)):
             result = self._result(wanted)
@@ -306,9 +304,7 @@ class Driver:
         return Answers(y, is_known, is_feasible, doubts)
 
     def _result(self, wanted: Wanted) -> RunResult | None:
-        """Returns what is known of a run, with outputs that the study has only now; None where it has to be made for
-        them.
-        """
+        """Returns what is known of a run with outputs that the study has only now; None: it must be made for them."""
         result = self.store.get(*wanted.ids)
         if result is None or result.state not in (DONE, NO_VALUE):
             return result

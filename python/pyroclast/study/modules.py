@@ -91,9 +91,7 @@ def modules_of_script(file: Path | None, folder: Path, code: bytes = b"") -> lis
 
 
 def imported(sources: Mapping[str, SourceFile]) -> ModuleType:
-    """Imports the module of the file that a study names. It and all that it imports beside it run from the texts in
-    memory.
-    """
+    """Imports the module of the file that a study names. It and what it imports beside it run from texts in memory."""
     finder = _Beside(sources)
     sys.meta_path.append(finder)  # last: what Python has comes first
     spec = finder.find_spec(OWN)

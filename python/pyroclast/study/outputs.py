@@ -147,9 +147,7 @@ def _unknown(what: str, name: str, known: Sequence[str]) -> str:
 
 
 def unit_of_name(name: str) -> str:
-    """Returns the unit that the name of a result or of a column ends on: of "rate_K_s" "K/s"; "1" where it ends on
-    none.
-    """
+    """Returns the unit on which the name of a result or column ends: of "rate_K_s" "K/s"; "1" where it ends on none."""
     found = _UNIT_IN_NAME.search(name)
     return found[1].replace("_", "/") if found else "1"
 
@@ -183,9 +181,7 @@ def number_in(value: Any, unit: str) -> float:
 
 
 def with_plain_numbers(what: str) -> str:
-    """Returns an output whose "at COLUMN = QUANTITY" is a number in the unit of that column. Raises Error as number_in
-    does.
-    """
+    """Returns an output whose "at COLUMN = QUANTITY" is a number in that column's unit. Raises as number_in."""
     found = re.fullmatch(r"(history:.* at (\S+) = )(\S.*)", " ".join(what.split()))
     if not found:
         return what

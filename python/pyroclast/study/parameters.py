@@ -52,8 +52,7 @@ class Distribution:
         return float(self._normal().ppf(min(max(u, 1e-9), 1.0 - 1e-9)))
 
     def to_unit(self, value: Value) -> float:
-        """Returns the number of [0, 1] of a value, the middle of its share where values are countable; may lie outside.
-        """
+        """Returns the number of [0, 1] of a value, of countable ones the middle of its share; may lie outside."""
         if self.kind == "choice":
             return (self.choices.index(value) + 0.5) / len(self.choices)
         number, low, high = float(value), self.numbers[0], self.numbers[1]
@@ -74,9 +73,7 @@ class Distribution:
         return stats.truncnorm((bounds[0] - mean) / sd, (bounds[1] - mean) / sd, mean, sd)
 
     def ends(self) -> list[Value]:
-        """Returns the least and largest values that are drawn, of a normal distribution all but one of 1,000; all
-        choices.
-        """
+        """Returns the least and largest values drawn, of a normal distribution all but one of 1,000; all choices."""
         if self.kind == "choice":
             return list(self.choices)
         tail = 1e-3 if self.kind == "normal" else 0.0
@@ -107,9 +104,7 @@ class Parameter:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def changes(self, value: Value, deck: Mapping[str, Any]) -> list[tuple[str, str]]:
-        """Returns keys and what is written there, as TOML. deck: as it stands. Raises Error for what must not be
-        replaced.
-        """
+        """Returns keys with what is written there, as TOML. deck: as it stands. Raises Error for what must stay."""
         return [(self._key(path, deck), self._text(path, factor, value, deck)) for path, factor in self.keys]
 
     def _key(self, path: str, deck: Mapping[str, Any]) -> str:

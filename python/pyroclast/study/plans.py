@@ -104,8 +104,7 @@ class _Plan:
         return found
 
     def _grown(self, first: int, enough: Callable[[int], bool | None]) -> tuple[int, bool]:
-        """Returns the number of samples, doubled until it is enough (None: not known yet), and whether it is complete.
-        """
+        """Returns how many samples, doubled until it is enough (None: not known yet), and whether it is complete."""
         n, most = first, max(int(self.settings.get("most", first)), first)
         while self.study.method.until is not None and n < most:
             is_enough = enough(n)
@@ -324,9 +323,7 @@ class _ToTargets(_Plan):
         return self._of_targets(answers)[0] if answers.has_all() else None
 
     def _doubts(self, ask: Ask, u: Array) -> dict[str, str]:
-        """Returns, by target that is not counted as met at a point (k,): how many seeds are in doubt, and why the first
-        is.
-        """
+        """Returns by target not counted as met at a point (k,) how many seeds are in doubt, and why the first is."""
         answers = ask(u[None, :], self.study.seeds)
         doubts = {t.output: list(answers.doubts[t.output].values()) for t in self.study.targets}
         return {output: f"{len(texts)} of {len(self.study.seeds)} seeds {'is' if len(texts) == 1 else 'are'} in doubt: "

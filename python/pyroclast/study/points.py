@@ -79,9 +79,7 @@ class Points:
         return Point(values, [functools.partial(run_id, tables, files, version=v) for v in versions])
 
     def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Diagnostic]]:
-        """Resolves the deck of a point; returns it, hashes of its files, and warnings. Raises Error, as DeckError for a
-        deck in error.
-        """
+        """Resolves the deck of a point; returns it, hashes of its files, and warnings. Raises Error or DeckError."""
         return _core.resolve(self._deck_text(values))
 
     def text(self, values: Sequence[Value]) -> str:
@@ -188,9 +186,7 @@ class Points:
         return _core.seconds_of_run(self._deck_text(self.middle), seed if self.has_seed else None)
 
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
-        """Returns which of these no run has, by a run of the middle point that is not begun. Of decks, not of
-        functions.
-        """
+        """Returns which of these no run has, by a run of the middle that is not begun. Of decks, not of functions."""
         outputs = [o for o in outputs if not o.is_function]
         if not outputs or self._study.runner.kind != "pyroclast":
             return []
@@ -231,9 +227,7 @@ class Points:
 
 
 def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, version: int) -> str:
-    """Returns the identity of a run: the hash of its deck with all that the deck names, its seed and the physics
-    version.
-    """
+    """Returns the identity of a run: the hash of its deck with all that it names, its seed and the physics version."""
     specimen = {**tables.get("specimen", {}), "seed": seed}
     output = {key: value for key, value in tables.get("output", {}).items() if key not in _NO_RESULT}
     deck = {key: value for key, value in tables.items() if key != "title"}

@@ -88,9 +88,7 @@ def result_names(deck: _core.DeckText) -> list[str]:
 
 def study_of_seeds(deck: Path, folder: Path, title: str, changes: Sequence[str], names: Sequence[str],
                    options: argparse.Namespace, **keys: str) -> Study:
-    """Makes an ensemble of a deck in a folder. changes: as --set takes them; names: of its outputs; keys: further ones
-    of [study].
-    """
+    """Makes an ensemble of a deck in a folder. changes: as --set takes them; names: outputs; keys: more of [study]."""
     stated = dict(map(_change, changes))
     headline = next((name for name in _HEADLINE if name in names), "")
     return Study(folder / "study.toml", program=options.program, title=title,

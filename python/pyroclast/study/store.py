@@ -93,16 +93,12 @@ def result_file(runs: Path, run: str) -> Path:
 
 
 def begun_file(runs: Path, run: str) -> Path:
-    """Returns the file beside the folder of a run that was begun, with its attempts so far. It goes last, when nothing
-    is left to do.
-    """
+    """Returns the file beside a run's folder with its attempts so far. It goes last."""
     return runs / f"{run}.begun"
 
 
 def read_result(file: Path) -> RunResult | None:
-    """Reads a result; None where there is none. A damaged one counts as none, which is said once: its run is made
-    again.
-    """
+    """Reads a result; None where there is none. A damaged one is none, which is said once: its run is made again."""
     try:
         named: dict[str, Any] = json.loads(file.read_bytes())
         outputs = {what: (None if value is None else float(value), str(why))
@@ -124,9 +120,7 @@ def read_result(file: Path) -> RunResult | None:
 
 
 def write_result(file: Path, result: RunResult) -> None:
-    """Writes a result in the place of an earlier one, which stays whole if this is broken off; not where it is there
-    already.
-    """
+    """Writes a result in the place of an earlier one, which stays whole until then; not where it is there already."""
     if read_result(file) != result:
         write_text(file, json.dumps(asdict(result)))
 

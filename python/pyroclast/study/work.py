@@ -139,8 +139,7 @@ class Attempt:
         return time.monotonic() - self._clock
 
     def look_after(self, stopped: bool) -> None:
-        """Asks the process to keep its state and end where all is to stop, or at its wall limit; kills one that does
-        not."""
+        """Asks the process to keep its state and end where all stops, or at its wall limit; kills one that does not."""
         late = self.time_left <= 0.0
         if (stopped or late) and self._asked is None:
             self._asked, self.is_late = time.monotonic(), late and not stopped

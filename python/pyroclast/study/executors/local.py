@@ -110,9 +110,7 @@ class _Server:
             pass  # the end of its answers tells
 
     def hear(self) -> tuple[RunResult | None, bool]:
-        """Returns its answer, where it is whole, and whether the process has ended. Called when there is something to
-        read.
-        """
+        """Returns its answer, if whole, and whether the process has ended. Called when there is something to read."""
         piece = os.read(self.descriptor, 65536)
         self._said += piece
         result = None

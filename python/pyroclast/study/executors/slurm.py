@@ -372,9 +372,7 @@ class _Queue:
 
 
 def runs_per_task(settings: SlurmSettings, jobs: int, expected: float) -> int:
-    """Returns how many runs a task takes: as the study file says, else by the time that a run will probably take, s; 0:
-    not known.
-    """
+    """Returns how many runs a task takes: as the study file says, else by the time a run may take, s; 0: not known."""
     if settings.points_per_task:
         return settings.points_per_task
     if not expected > 0.0:

@@ -275,9 +275,7 @@ def _why_finished(settings: Settings, misfits: Sequence[Array], sigma: Array) ->
 
 
 def _covariance_of(answers: Sequence[Answer], targets: Targets) -> Array:
-    """Adds up all covariances that are known; without any values the measurements' part alone, which then judges
-    nothing.
-    """
+    """Adds up all covariances that are known; without any values the measurements' part alone, which judges nothing."""
     known = [entry for entry in answers if isinstance(entry, np.ndarray) and np.isfinite(entry).all()]
     return misfit_covariance(known, targets) if known else np.diag(targets.sd**2)
 
@@ -317,9 +315,7 @@ class _LocalForm:
 
 
 def _local_form(best: Array, u: Array, y: Array, neighbours: int) -> _LocalForm:
-    """Returns the weighted least squares around the best point. (Cleveland, J. Am. Stat. Assoc. 74, 1979, for the
-    weights.)
-    """
+    """Returns weighted least squares around the best point. (Cleveland, J. Am. Stat. Assoc. 74, 1979, weights.)"""
     k = len(best)
     distance = np.linalg.norm(u - best, axis=1)
     nearest = np.argsort(distance, kind="stable")[:neighbours]

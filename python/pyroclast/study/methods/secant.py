@@ -98,9 +98,7 @@ def _step(jacobian: Array, left: Array, u: Array) -> tuple[Array, NDArray[np.boo
 
 
 def _learned(jacobian: Array, step: Array, change: Array, slopes: Sequence[float] | Array) -> Array:
-    """Returns the slopes with what a step told of them; as they were where it told less than scatter, or nothing
-    sensible.
-    """
+    """Returns the slopes with what a step told of them; unchanged where it told less than scatter, or no sense."""
     if np.abs(jacobian @ step).max() < _LEAST_LEARNED:
         return jacobian
     told = jacobian + np.outer(change - jacobian @ step, step) / (step @ step)

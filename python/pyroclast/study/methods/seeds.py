@@ -139,7 +139,7 @@ def level(count: int) -> float:
 
 
 def interval(resampled: Array, count: int) -> tuple[Array, Array]:
-    """Returns the percentile interval of the resampled values (resamples, ...), both ends of shape (...). count: see
+    """Returns the percentile interval of the resampled values (resamples, ...), ends of shape (...). count: see
     `level`.
     """
     share = level(count)

@@ -169,9 +169,7 @@ def _q2(square: float, variance: float) -> float:
 
 
 def _complete(u: Array, y: Array) -> tuple[Array, Array, float, int]:
-    """Returns the complete points, their means over seeds, the variance that seeds leave in these, and how many points
-    are lost.
-    """
+    """Returns complete points, their means over seeds, the variance that seeds leave in these, and the number lost."""
     u, y = np.asarray(u, float), np.asarray(y, float)
     y = y[:, None] if y.ndim == 1 else y
     complete = np.isfinite(y).all(axis=1)
@@ -200,8 +198,7 @@ def _kriging(ot: Any, u: Array, y: Array, noise: float) -> Any:
 
 
 def _shares(degrees: Array, coefficients: Array) -> tuple[Array, Array]:
-    """Returns first-order and total indices. degrees: (terms, k), of orthonormal polynomials; coefficients: (terms,).
-    """
+    """Returns first and total indices. degrees: (terms, k), of orthonormal polynomials; coefficients: (terms,)."""
     active = degrees > 0
     squares = coefficients**2
     variance = squares[active.any(axis=1)].sum()

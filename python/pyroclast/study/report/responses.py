@@ -75,9 +75,7 @@ def told_sentence(names: Sequence[str], share: dict[str, Any]) -> str:
 
 
 def are_grey(effects: dict[str, Any], order: Sequence[int]) -> list[bool]:
-    """Returns which of the parameters have effects that are not told from the seeds; none where nothing is known of
-    that.
-    """
+    """Returns which parameters have effects that are not told from the seeds; none where nothing is known of that."""
     told = effects.get("told_from_seeds")
     return [told is not None and told[i] is False for i in order]
 

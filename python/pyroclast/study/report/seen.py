@@ -73,8 +73,7 @@ class Seen:
 
 
 def seen(study: Study) -> Seen:
-    """Returns what one reading of the store shows, so that all of it belongs together while another process adds runs.
-    """
+    """Takes what one reading of the store shows, so that all of it belongs together while another process adds runs."""
     driver = study._driver()
     findings, none_because = _findings(driver.findings)
     asked = driver.plan.propose(driver._answers).points
