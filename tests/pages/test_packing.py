@@ -8,7 +8,6 @@ import numpy as np
 
 from pyroclast.report.bodies import chosen_frames
 from pyroclast.report.packing import packed_floats, packed_steps, packed_whole, unpacked
-from pyroclast.report.shell import page
 from pyroclast.stored.frames import Frame
 
 
@@ -78,20 +77,6 @@ class Frames(unittest.TestCase):
         self.assertEqual(len(chosen), 8)
         self.assertTrue({0, 41, 43, 99} <= set(chosen))
         self.assertEqual(chosen, sorted(chosen))
-
-
-class Shell(unittest.TestCase):
-    def test_texts_are_escaped_and_unseen_characters_written_out(self):
-        made = page("index.html", title="<b>\x1b[31m</b>", entries=[])
-        self.assertIn("&lt;b&gt;\\x1b[31m&lt;/b&gt;", made)
-        self.assertNotIn("\x1b", made)
-
-    def test_data_end_no_script_and_gaps_are_null(self):
-        made = page("run.html", ("packing.js",), {"a": "</script><script>", "b": float("nan")}, title="t", outcome="",
-                    facts=[], level="good", cards=[], reasons=[], notes=[], stages=[], has_body=False, steps=[],
-                    specimen=[], gradation=[], deck="", changes=[], made=[], can_crack=False,
-                    has_properties=False, is_solid=False)
-        self.assertIn('{"a":"\\u003c/script>\\u003cscript>","b":null}', made)
 
 
 if __name__ == "__main__":

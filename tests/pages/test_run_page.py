@@ -45,11 +45,11 @@ class EveryCase(PageOfRun):
                 results = pyroclast.read(run)
                 self.assertEqual(browser.run("return document.querySelector('h1').textContent"), results.title)
                 if results.has_fields and results.mesh.blocks.dimension == 2:
-                    self.assertEqual(browser.run("return pyroclast.frames.length"), len(results.frames))
+                    self.assertEqual(browser.run("return pyroclast.scene.frames.length"), len(results.frames))
                     self.assertIn(f"frame {len(results.frames) - 1} of",
                                   browser.run("return document.getElementById('now').textContent"))
                 if run.name in ("compression", "cyclic"):  # the first is brushed across, the other goes back
-                    self.assertEqual(browser.run("return pyroclast.curve.goesOneWay"), run.name == "compression")
+                    self.assertEqual(browser.run("return pyroclast.curve.chart.goesOneWay"), run.name == "compression")
                 self.assert_silent()
 
 
@@ -146,7 +146,7 @@ class OneRun(PageOfRun):
         self.assertLessEqual(np.abs(kept - corner.ravel()).max(), 0.5001 * self.step("corner"))
 
     def test_pixels_know_their_blocks(self):
-        frame = browser.run("return pyroclast.frame")
+        frame = browser.run("return pyroclast.scene.frame")
         outline = outline_of(self.run_.mesh)
         magnification = browser.run("return pyroclast.specimen.magnification")
         moves = self.run_.gridpoint_displacement(self.run_.frames[frame])[outline.gridpoint]
@@ -154,7 +154,7 @@ class OneRun(PageOfRun):
         shown = browser.run("const s = pyroclast.specimen, b = s.body, {x0, x1, y0, y1} = b.box; "
                             "return [s.W, s.H, b.scale, x0, x1, y0, y1]")
         W, H, scale, x0, x1, y0, y1 = shown
-        ids = browser.run("return Array.from(pyroclast.body.ids)")
+        ids = browser.run("return Array.from(pyroclast.scene.body.ids)")
         tried = 0
         for share_x, share_y in ((0.5, 0.5), (0.3, 0.25), (0.7, 0.3), (0.35, 0.8), (0.62, 0.66), (0.5, 0.04)):
             px, py = int(share_x * W), int(share_y * H)
@@ -177,7 +177,7 @@ class OneRun(PageOfRun):
         browser.run("const at = document.getElementById('at'); at.value = at.max; at.dispatchEvent(new Event('input'))")
         self.assertEqual(self.picture(), last)
         browser.run("document.querySelector('#marks [data-mark=peak]').click()")
-        frame = browser.run("return pyroclast.frame")
+        frame = browser.run("return pyroclast.scene.frame")
         self.assertGreaterEqual(self.run_.frames[frame].strain, pyroclast.Compressed(self.run_).peak[0] - 1e-9)
         self.assertLess(self.run_.frames[frame - 1].strain, pyroclast.Compressed(self.run_).peak[0])
         gap = 1e3 * (self.run_.frames[frame].strain - pyroclast.Compressed(self.run_).peak[0])
@@ -205,11 +205,12 @@ class OneRun(PageOfRun):
 
     def test_the_first_broken_contact_is_ringed_and_damaged_ones_are_drawn(self):
         run = self.run_
-        plain = [browser.run("pyroclast.show(arguments[0]); return document.getElementById('body').toDataURL()", k)
-                 for k in browser.run("return ['first', 'extent'].map((id) => pyroclast.frameAt("
-                                      "pyroclast.course.about.marks.find((m) => m.id === id).rows[0]))")]
+        plain = [browser.run("pyroclast.scene.show(arguments[0]); "
+                             "return document.getElementById('body').toDataURL()", k)
+                 for k in browser.run("const {scene} = pyroclast; return ['first', 'extent'].map((id) => "
+                                      "scene.frameAt(scene.course.about.marks.find((m) => m.id === id).rows[0]))")]
         browser.run("document.querySelector('#marks [data-mark=first]').click()")
-        frame, ringed, now = browser.run("return [pyroclast.frame, [...pyroclast.specimen.ringed], "
+        frame, ringed, now = browser.run("return [pyroclast.scene.frame, [...pyroclast.specimen.ringed], "
                                          "document.getElementById('now').textContent]")
         row = int((sum(run.history[name] for name in run.history.names if name.endswith("_broken")) > 0).argmax())
         kinds = {(mode, name) for mode, interfaces in run.crack_modes.items() for name in interfaces
@@ -228,7 +229,7 @@ class OneRun(PageOfRun):
         self.assertIn(f"({x:.3g}, {y:.3g}) mm", now)
         self.assertNotEqual(self.picture(), plain[0])
         browser.run("document.querySelector('#marks [data-mark=extent]').click()")
-        frame, now = browser.run("return [pyroclast.frame, document.getElementById('now').textContent]")
+        frame, now = browser.run("return [pyroclast.scene.frame, document.getElementById('now').textContent]")
         most = np.max([run.contact_field(run.frames[frame], f"{mode}_damage [1]") for mode in run.crack_modes], axis=0)
         told = int(now.split("; ")[-1].split()[0])
         self.assertTrue((most > 0.0041).sum() <= told <= (most > 0.0038).sum(), told)  # half a step of damage
@@ -250,13 +251,13 @@ class OneRun(PageOfRun):
             browser.run("const m = document.getElementById('magnification'); m.value = arguments[0]; m.onchange()",
                         magnification)
             browser.press("l")
-            x = browser.run("return pyroclast.along.drawing.x")
+            x = browser.run("return pyroclast.probes.along.drawing.x")
             browser.press("l")
             self.assertTrue(0.93 * width < x[-1] <= 1.0001 * width, (magnification, x[-1], width))
 
     def test_a_mark_lights_the_contacts_that_are_new_in_its_frame(self):
         browser.run("document.querySelector('#marks [data-mark=peak]').click()")
-        frame, lit = browser.run("return [pyroclast.frame, [...pyroclast.specimen.lit]]")
+        frame, lit = browser.run("return [pyroclast.scene.frame, [...pyroclast.specimen.lit]]")
 
         def beyond(k):
             return np.max([self.run_.contact_field(self.run_.frames[k], f"{mode}_damage [1]")
@@ -272,11 +273,11 @@ class OneRun(PageOfRun):
         browser.mouse("mousePressed", box["x"] + 0.5 * box["width"], y)
         browser.mouse("mouseMoved", box["x"] + 0.6 * box["width"], y)
         browser.mouse("mouseReleased", box["x"] + 0.8 * box["width"], y)
-        a, b = browser.run("return pyroclast.piece")
+        a, b = browser.run("return pyroclast.scene.piece")
         self.assertLess(a, b)
-        steps = browser.run("const s = pyroclast.course.column('step'); return Array.from(arguments, (i) => s[i])",
-                            a, b)
-        shown = browser.run("const c = pyroclast.curve; return arguments[0].map((i) => c.X(c.drawing.x[i]))",
+        steps = browser.run("const s = pyroclast.scene.course.column('step'); "
+                            "return Array.from(arguments, (i) => s[i])", a, b)
+        shown = browser.run("const c = pyroclast.curve.chart; return arguments[0].map((i) => c.X(c.drawing.x[i]))",
                             [a - 1, a, b, b + 1])
         low, high = 0.5 * box["width"], 0.8 * box["width"]
         self.assertTrue(shown[0] < low <= shown[1] < shown[2] <= high < shown[3], (shown, low, high))
@@ -301,7 +302,7 @@ class OneRun(PageOfRun):
         return browser.run("return document.getElementById('piece').innerText")
 
     def test_a_piece_that_has_begun_keeps_its_start_and_an_empty_one_is_told(self):
-        rows = {mark["id"]: mark["rows"] for mark in browser.run("return pyroclast.course.about.marks")}
+        rows = {mark["id"]: mark["rows"] for mark in browser.run("return pyroclast.scene.course.about.marks")}
         browser.run("document.querySelector('#marks [data-mark=peak]').click()")
         browser.press("[")
         self.assertIn("A piece of the curve begins at axial strain", self.said_of_piece())
@@ -309,20 +310,21 @@ class OneRun(PageOfRun):
         self.assertIn("This piece is empty", self.said_of_piece())
         browser.run("document.querySelector('#marks [data-mark=steepest]').click()")
         browser.press("]")
-        self.assertEqual(browser.run("return pyroclast.piece"), [rows["peak"][0], rows["steepest"][1]])
+        self.assertEqual(browser.run("return pyroclast.scene.piece"), [rows["peak"][0], rows["steepest"][1]])
         self.assertIn("broke", self.said_of_piece())
         browser.run("document.querySelector('#marks [data-mark=extent]').click()")
-        self.assertIsNone(browser.run("return pyroclast.piece"))
+        self.assertIsNone(browser.run("return pyroclast.scene.piece"))
         browser.press("]")
         browser.press("Home")
         browser.press("[")
-        self.assertEqual(browser.run("return pyroclast.piece"), [browser.run("return pyroclast.frames[0].row"),
-                                                                 rows["extent"][0]])
+        first = browser.run("return pyroclast.scene.frames[0].row")
+        self.assertEqual(browser.run("return pyroclast.scene.piece"), [first, rows["extent"][0]])
         self.assert_silent()
 
     def test_the_fall_after_the_peak_says_why(self):
         browser.run("document.querySelector('#marks [data-mark=behind]').click()")
-        ends = browser.run("const s = pyroclast.course.column('step'); return pyroclast.piece.map((i) => s[i])")
+        ends = browser.run("const {course, piece} = pyroclast.scene, s = course.column('step'); "
+                           "return piece.map((i) => s[i])")
         history = self.run_.history
         change = {name: np.diff(history[name][np.searchsorted(history["step"], ends)])[0] for name in history.names
                   if name.endswith(("_broken", "_J"))}
@@ -351,7 +353,7 @@ class OneRun(PageOfRun):
         browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", "x": x, "y": y})
         told = browser.run("return document.getElementById('tip').textContent")
         block = browser.run("const {W, H} = pyroclast.specimen; "
-                            "return pyroclast.body.at(W / 2, H / 2, W, H, 0, 0).block")
+                            "return pyroclast.scene.body.at(W / 2, H / 2, W, H, 0, 0).block")
         self.assertTrue(told.startswith(f"block {block}, "), told)
         browser.mouse("mousePressed", x, y)
         browser.mouse("mouseReleased", x, y)
@@ -373,7 +375,7 @@ class OneRun(PageOfRun):
         self.assertFalse(browser.run("return document.getElementById('along').hidden"))
         browser.press("Home")
         browser.press(" ")
-        browser.wait("return pyroclast.frame > 0")
+        browser.wait("return pyroclast.scene.frame > 0")
         browser.press(" ")
         self.assert_silent()
 
@@ -479,7 +481,7 @@ class OtherRuns(PageOfRun):
                 run.kill()
         browser.open(page)
         self.assertIn("the run still goes on", browser.run("return document.querySelector('.reasons').textContent"))
-        self.assertGreaterEqual(browser.run("return pyroclast.frames.length"), 3)
+        self.assertGreaterEqual(browser.run("return pyroclast.scene.frames.length"), 3)
         self.assert_silent()
 
     def test_a_run_that_broke_off_says_so(self):
@@ -498,8 +500,9 @@ class OtherRuns(PageOfRun):
             browser.run("document.getElementById('view').value = arguments[0]; "
                         "const p = document.getElementById('place'); p.value = arguments[1]; p.oninput()",
                         f"{axis} 0", 100 * share)
-            cut = set(browser.run("return [...pyroclast.body.owner]"))
-            height = blocks.points[blocks.zones][..., "xyz".index(axis)] - browser.run("return pyroclast.body.offset")
+            cut = set(browser.run("return [...pyroclast.scene.body.owner]"))
+            offset = browser.run("return pyroclast.scene.body.offset")
+            height = blocks.points[blocks.zones][..., "xyz".index(axis)] - offset
             crossed = (height.max(axis=1) > 1e-6) & (height.min(axis=1) < -1e-6)
             self.assertEqual(cut ^ set(number[crossed].tolist()), set())
             pictures.add(self.picture())
@@ -509,13 +512,13 @@ class OtherRuns(PageOfRun):
         for view, width in (("x 0", size[2]), ("z 1", size[0])):
             self.look(view)
             browser.press("l")
-            length = browser.run("return pyroclast.along.drawing.x.at(-1)")
+            length = browser.run("return pyroclast.probes.along.drawing.x.at(-1)")
             browser.press("l")
             self.assertTrue(0.85 * width < length <= 1.001 * width, (view, length, width))
         moves = run.gridpoint_displacement(run.frames[-1])
         block = int(number[~blocks.of_bearing][0])
         mean = moves[np.unique(blocks.sides[0][number[blocks.sides[1]] == block])].mean(axis=0)
-        kept = browser.run("return pyroclast.body.displacement(pyroclast.frame, arguments[0])", block)
+        kept = browser.run("return pyroclast.scene.body.displacement(pyroclast.scene.frame, arguments[0])", block)
         step = browser.run("return pyroclast.arrays.shift_x.step")
         self.assertLessEqual(np.abs(np.array(kept) - mean).max(), step)
         self.assert_silent()
@@ -537,12 +540,12 @@ class OtherRuns(PageOfRun):
                            ("z 1", (1, 2, 3)), ("z -1", (-1, 2, -3))):
             self.look(view)
             pictures.add(self.picture())
-            self.assertIsNone(browser.run("return pyroclast.body.raster"))  # WebGL is by the processor here
+            self.assertIsNone(browser.run("return pyroclast.scene.body.raster"))  # WebGL is by the processor here
             seen = np.stack([np.sign(k) * (at - 0.5 * np.ptp(blocks.points, axis=0)
                                            - blocks.points.min(axis=0))[..., abs(k) - 1] for k in axes], axis=-1)
             shares = ((0.5, 0.5), (0.45, 0.6), (0.6, 0.45), (0.42, 0.42), (0.55, 0.7))
             told = browser.run(
-                "const {W, H} = pyroclast.specimen, b = pyroclast.body; return arguments[0].map(([x, y]) => {"
+                "const {W, H} = pyroclast.specimen, b = pyroclast.scene.body; return arguments[0].map(([x, y]) => {"
                 "const i = Math.floor(x * W), j = Math.floor(y * H);"
                 "return [b.ids[j * W + i], ...b.fromPixels(i + 0.5, j + 0.5, W, H)]; })", shares)
             for block, x, y in told:
@@ -564,7 +567,7 @@ class OtherRuns(PageOfRun):
         browser.mouse("mouseMoved", x + 40, y + 20)
         browser.mouse("mouseReleased", x + 40, y + 20)
         pictures.append(self.picture())
-        self.assertEqual(browser.run("return pyroclast.pins.length"), 0)
+        self.assertEqual(browser.run("return pyroclast.probes.pins.length"), 0)
         for key in "aw+":
             browser.press(key)
             pictures.append(self.picture())
@@ -572,14 +575,14 @@ class OtherRuns(PageOfRun):
         browser.press("ArrowLeft")
         pictures.append(self.picture())
         browser.press("End")
-        browser.run("pyroclast.point(pyroclast.specimen.W / 2, pyroclast.specimen.H / 2)")
+        browser.run("const {W, H} = pyroclast.specimen; pyroclast.scene.tell('probe', [W / 2, H / 2])")
         self.assertRegex(browser.run("return document.getElementById('tip').textContent"), "block|crack")
-        lines = browser.run("const b = pyroclast.body; return b.cracks(pyroclast.frame).map((c) => b.line(c))")
+        lines = browser.run("const {body, frame} = pyroclast.scene; return body.cracks(frame).map((c) => body.line(c))")
         self.assertGreater(len(lines), 10)
         self.assertTrue(np.isfinite(lines).all())
         browser.run("const a = document.getElementById('alone'); a.checked = true; a.onchange()")
         pictures.append(self.picture())
-        shown = browser.run("const b = pyroclast.body; return [...new Set(b.ids)].filter((k) => k >= 0)"
+        shown = browser.run("const b = pyroclast.scene.body; return [...new Set(b.ids)].filter((k) => k >= 0)"
                             ".map((k) => k < b.blocks ? NaN : b.crackStep[k - b.blocks])")
         self.assertGreater(len(shown), 20)
         self.assertTrue(all(step is not None and step >= 0 for step in shown))
@@ -587,8 +590,8 @@ class OtherRuns(PageOfRun):
         self.assert_silent()
         differing, error = browser.run(
             "WebGL2RenderingContext.prototype.getExtension = () => null;"  # so that it is not known to be slow
-            "const b = pyroclast.body; b.alone = false; pyroclast.redraw();"
-            "const painted = b.ids.slice(); b.raster = undefined; pyroclast.redraw();"
+            "const b = pyroclast.scene.body; b.alone = false; pyroclast.scene.tell('frame');"
+            "const painted = b.ids.slice(); b.raster = undefined; pyroclast.scene.tell('frame');"
             "let n = 0; painted.forEach((id, k) => { if (id !== b.ids[k]) n++; });"
             "return [n / painted.filter((id) => id >= 0).length, b.raster.gl.getError()]")
         self.assertEqual(error, 0)
@@ -640,17 +643,18 @@ class OtherRuns(PageOfRun):
         self.assertTrue(all(field.min() < level < field.max() for level in levels))
         x = run.mesh.blocks.points[:, 0] - run.mesh.blocks.points[:, 0].min()
         order = np.argsort(-field)  # the wall is heated on the left, and its temperatures fall to the right
-        side, depths = browser.run("const d = pyroclast.body.depths(pyroclast.frame, arguments[0]); "
+        side, depths = browser.run("const d = pyroclast.scene.body.depths(pyroclast.scene.frame, arguments[0]); "
                                    "return [d.side, d.depths]", levels)
         self.assertEqual((side, [level for level, _ in depths]), ("left side", levels))
         for level, depth in depths:
             self.assertAlmostEqual(depth, np.interp(-level, -field[order], x[order]), delta=0.03 * x.max())
         self.assertIn(" mm", browser.run("return document.getElementById('depths').textContent"))
         hottest = max(run.gridpoint_temperature(frame).max() for frame in run.frames)
-        self.assertAlmostEqual(browser.run("return pyroclast.body.range('temperature').high"), hottest, delta=0.26)
+        told = browser.run("return pyroclast.scene.body.range('temperature').high")
+        self.assertAlmostEqual(told, hottest, delta=0.26)
         for width in (500, 110):  # where lines leave little room
             near = browser.run(
-                "const s = pyroclast.specimen, f = pyroclast.frame; "
+                "const s = pyroclast.specimen, f = pyroclast.scene.frame; "
                 "s.size(arguments[0], 800); s.draw(); "
                 "return s.named.map(([x, y]) => s.levels.map((level) => Math.min(...s.body.isotherms(f, level).map("
                 "(l) => Math.hypot((l[0] + l[2]) / 2 - x, (l[1] + l[3]) / 2 - y)))))", width)
@@ -660,7 +664,7 @@ class OtherRuns(PageOfRun):
                 self.assertTrue(all(d > 8.0 for d in others), others)
         browser.press("l")
         values = browser.run("const s = pyroclast.specimen; "
-                             "return s.valuesAt(s.samples(), 'temperature', pyroclast.frame)")
+                             "return s.valuesAt(s.samples(), 'temperature', pyroclast.scene.frame)")
         self.assertGreater(len(values), 50)
         falls = [later <= before + 0.5 for before, later in zip(values, values[1:])]
         self.assertTrue(all(falls), "from the hot face")

@@ -20,7 +20,6 @@ from .judging import Card, cards, verdict, worst
 from .run_page import MOST_TEXT, run_data
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "specimen.js", "common.js", "compare.js")
 _MOST_BODIES = 6
 """Specimens that a page shows; of further runs it shows the curves."""
 
@@ -40,7 +39,7 @@ def compare_page(runs: Sequence[Results]) -> str:
             "seeds": len(runs) > 2 and [one.key for one in differences] == ["seed"],
             "same": [list(pair) for pair in combinations(range(min(len(runs), _MOST_BODIES)), 2)
                      if all(whole[k].data["body"] for k in pair) and _is_same_specimen(*(runs[k] for k in pair))]}
-    return page("compare.html", _SCRIPTS, data, title=f"{len(runs)} runs compared", names=names,
+    return page("compare.html", "compare.js", data, title=f"{len(runs)} runs compared", names=names,
                 levels=levels, titles=[run.title for run in runs],
                 warnings=[", ".join(warnings_of(run)) for run in runs],
                 results=_results(runs), differences=differences, entangled=_entangled(differences), notes=notes,

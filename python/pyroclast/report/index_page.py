@@ -15,7 +15,6 @@ from .markup import Markup, picture
 from .shell import page
 from .thumbnail import thumbnail
 
-_SCRIPTS = ("index.js",)
 _ID_LENGTH = 8  # characters of the name of a study's run that tell it
 
 
@@ -36,7 +35,7 @@ def index_page(folder: Path, page_name: str, relative: Callable[[Path], str]) ->
     relative: the path from the index to a file.
     """
     entries = [_entry(run, name, page_name, relative) for run, name in _named(folder)]
-    return page("index.html", _SCRIPTS, title=f"Runs in {folder.resolve().name}", entries=entries)
+    return page("index.html", "index.js", title=f"Runs in {folder.resolve().name}", entries=entries)
 
 
 def _named(folder: Path) -> list[tuple[Path, str]]:

@@ -19,8 +19,6 @@ from .course import course_of, rows_of_frames
 from .judging import Card, cards, stage_verdict, verdict, worst
 from .shell import page
 
-_SCRIPTS = ("packing.js", "curves.js", "body.js", "solid.js", "outside.js", "specimen.js", "downloads.js",
-            "common.js", "run_curve.js", "run_piece.js", "run_specimen.js", "run_probes.js", "run_tabs.js", "run.js")
 MOST_TEXT = 9_500_000  # characters of packed numbers on a page
 _MOST_FACTS = 40
 _SAME_TEMPERATURE = 0.5  # K
@@ -72,7 +70,7 @@ def run_page(run: Results, reload_every: float | None = None) -> str:
     facts = [*map(_without_formulas, style.facts_of(run)), *_temperature(run), _tested(run)]
     body = data["body"]
     data["properties"] = _properties(run)
-    return page("run.html", _SCRIPTS, data, reload_every=reload_every, title=run.title, outcome=run.outcome,
+    return page("run.html", "run.js", data, reload_every=reload_every, title=run.title, outcome=run.outcome,
                 facts=facts, level=worst(reasons), cards=_cards(run, data), reasons=reasons, notes=notes,
                 stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),

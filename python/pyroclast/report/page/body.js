@@ -4,7 +4,7 @@
 const ON_SIDE = 1e-4; // of a side: how near to it corners count as on it
 const ONCE_ALONG = 0.15; // of a side: how much longer or shorter a line along it may be
 
-class Body {
+export class Body {
   constructor(about, arrays, frames) {
     Object.assign(this, {about, arrays, frames, ranges: {}, kept: {}, owner: null});
     this.prepare();
@@ -278,7 +278,7 @@ class Body {
   paint(pixels, W, H, colour) {
     if (!this.ids || this.ids.length !== W * H) this.ids = new Int32Array(W * H);
     const ids = this.ids.fill(-1),
-      {px, py, first} = this;
+      {py, first} = this;
     pixels.fill(0);
     const from = new Float64Array(H),
       to = new Float64Array(H);
@@ -479,34 +479,9 @@ class Body {
 }
 
 // Makes a box hold a point.
-function takeIn(box, x, y) {
+export function takeIn(box, x, y) {
   box.x0 = Math.min(box.x0, x);
   box.x1 = Math.max(box.x1, x);
   box.y0 = Math.min(box.y0, y);
   box.y1 = Math.max(box.y1, y);
 }
-
-// Colours: stops from low to high, dark and light themes alike.
-const TWO_SIDED = [
-  [5, 68, 120],
-  [120, 180, 220],
-  [238, 238, 234],
-  [240, 160, 90],
-  [150, 55, 0],
-];
-const ONE_SIDED = [
-  [255, 246, 214],
-  [253, 186, 107],
-  [226, 80, 50],
-  [140, 15, 50],
-  [50, 0, 40],
-];
-
-function colourAt(stops, share) {
-  const at = Math.max(0, Math.min(0.99999, share)) * (stops.length - 1),
-    k = Math.floor(at);
-  return stops[k].map((v, i) => Math.round(v + (stops[k + 1][i] - v) * (at - k)));
-}
-
-const ink = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
-const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;

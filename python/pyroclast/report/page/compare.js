@@ -1,7 +1,16 @@
 // The page of several runs: curves together, specimens where they have the same strain or temperature.
 
+import {Course, axesMenus} from "./course.js";
+import {Chart, DASHES} from "./curves.js";
+import {$, entry, made, menu, nearest, number, onSight, pageData, player, unitOf, withUnit} from "./elements.js";
+import {unpackedAll} from "./packing.js";
+import {bodyOf} from "./solid.js";
+import {MAGNIFICATIONS, Specimen, tellModes, tellScale} from "./specimen.js";
+
+const page = pageData();
 const SHARES = 200; // of the slider
 const SIGNS = {good: "✓", doubt: "!", bad: "✗"};
+const RUN_COLOURS = ["var(--one)", "var(--other)", "var(--warn-line)", "var(--faint)"]; // none is that of a mode
 
 // The mean of curves over a common x and their least and greatest values, as far as all go that have two points; null
 // where fewer than two have, or have no x in common.
@@ -49,14 +58,10 @@ class ComparePage {
     const common = this.runs[0].course.about.quantities.filter((q) =>
       this.runs.every((r) => r.course.quantity(q.id)),
     );
-    for (const id of ["over", "of"]) {
-      for (const q of common) $(id).append(new Option(q.label, q.id, false, q.id === this.axes[id]));
-      $(id).onchange = () => {
-        this.axes[id] = $(id).value;
-        this.drawCurves();
-        this.scrub();
-      };
-    }
+    axesMenus(this.axes, common, () => {
+      this.drawCurves();
+      this.scrub();
+    });
     this.shown = this.runs.filter((r) => r.body);
     if (this.shown.length) this.makeWall();
     this.drawCurves();
@@ -93,8 +98,7 @@ class ComparePage {
         {name: "their mean, as far as all go", x: b.x, y: b.mean, colour: "var(--curve)", width: 2.2},
       );
     this.curve.draw({
-      x: curves[0].x,
-      label: first.quantity(over).label,
+      ...first.over(over),
       yLabel: first.quantity(of).label,
       series,
       from0: true,
@@ -111,11 +115,9 @@ class ComparePage {
     const fields = this.shown[0].body.fields.filter(([id]) =>
       this.shown.every((r) => r.body.fields.some((f) => f[0] === id)),
     );
-    for (const [id, label] of fields) $("colour").append(new Option(label, id));
-    for (const m of [1, 2, 5, 10, 20, 50, 100]) $("magnification").append(new Option(m, m));
-    $("colour").onchange = $("magnification").onchange = () => this.redraw();
-    $("at").oninput = () => this.scrub();
-    $("play").onclick = () => this.play();
+    menu("colour", fields, fields[0][0], () => this.redraw());
+    menu("magnification", MAGNIFICATIONS.map((m) => [m, m]), 1, () => this.redraw());
+    player(2, () => this.scrub());
     addEventListener("keydown", (e) => {
       const step = {ArrowRight: 4, ArrowLeft: -4, Home: -SHARES, End: SHARES}[e.key];
       if (!step || e.target.matches("select, input")) return;
@@ -123,9 +125,8 @@ class ComparePage {
       $("at").value = +$("at").value + step;
       this.scrub();
     });
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
-    new ResizeObserver(() => this.fit()).observe(wall);
-    this.fit();
+    onSight(this.specimens[0].canvas.parentElement, (width) => this.fit(width), () => this.redraw());
+    this.fit(this.specimens[0].canvas.parentElement.clientWidth);
   }
 
   addSpecimen(wall, run, name, isOfBoth = false) {
@@ -145,10 +146,7 @@ class ComparePage {
     return [...this.shown.map((r) => r.specimen), ...(this.both ? [this.both.specimen] : [])];
   }
 
-  fit() {
-    const width = this.specimens[0].canvas.parentElement.clientWidth;
-    if (!width || width === this.width) return;
-    this.width = width;
+  fit(width) {
     for (const s of this.specimens) s.size(width, Math.max(300, 0.7 * innerHeight));
     this.redraw();
   }
@@ -171,17 +169,13 @@ class ComparePage {
       place = low + ((high - low) * $("at").value) / SHARES,
       q = this.runs[0].course.quantity(this.axes.over);
     for (const run of this.shown) {
-      const x = run.course.of(this.axes.over);
-      let best = 0;
-      run.frames.forEach((f, k) => {
-        const of_best = x[run.frames[best].row];
-        if (!isFinite(of_best) || Math.abs(x[f.row] - place) < Math.abs(of_best - place)) best = k;
-      });
-      run.frame = best;
-      run.specimen.frame = best;
-      const cracks = run.body.modes.length ? `, ${run.body.cracks(best).length} cracks` : "";
-      run.specimen.told.textContent =
-        `frame ${run.frames[best].number}: ${withUnit(number(x[run.frames[best].row], 4), unitOf(q.label))}${cracks}`;
+      const x = run.course.of(this.axes.over),
+        places = run.frames.map((f) => x[f.row]),
+        best = nearest(places, place),
+        cracks = run.body.modes.length ? `, ${run.body.cracks(best).length} cracks` : "",
+        at = withUnit(number(places[best], 4), unitOf(q.label));
+      run.frame = run.specimen.frame = best;
+      run.specimen.told.textContent = `frame ${run.frames[best].number}: ${at}${cracks}`;
     }
     $("now").textContent = `${q.label}: ${number(place, 4)}`;
     this.redraw();
@@ -229,8 +223,7 @@ class ComparePage {
     ];
     sets.forEach((set, k) => specimen.stroke(colours[k], 2.2 * ratio, set.map(line)));
     const [ofFirst, ofSecond, ofBoth] = sets.map((set) => set.length);
-    specimen.told.textContent =
-      `only in ${a.name}: ${ofFirst}; only in ${b.name}: ${ofSecond}; in both: ${ofBoth}`;
+    specimen.told.textContent = `only in ${a.name}: ${ofFirst}; only in ${b.name}: ${ofSecond}; in both: ${ofBoth}`;
     this.counts = sets.map((s) => s.length);
   }
 
@@ -249,22 +242,7 @@ class ComparePage {
     if (!this.both) return;
     const [a, b] = this.both.pair.map((k) => this.runs[k].name),
       names = [`only in ${a}`, `only in ${b}`, "in both"];
-    this.both.specimen.key.replaceChildren(
-      ...names.map((name, k) => entry({name, colour: this.bothColours[k]})),
-    );
-  }
-
-  play() {
-    const isOn = $("play").textContent === "pause";
-    $("play").textContent = isOn ? "play" : "pause";
-    clearInterval(this.timer);
-    if (isOn) return;
-    if (+$("at").value >= SHARES) $("at").value = 0;
-    this.timer = setInterval(() => {
-      if (+$("at").value >= SHARES) return this.play();
-      $("at").value = +$("at").value + 2;
-      this.scrub();
-    }, 80);
+    this.both.specimen.key.replaceChildren(...names.map((name, k) => entry({name, colour: this.bothColours[k]})));
   }
 }
 

@@ -1,8 +1,11 @@
 // Curves as SVG: axes, lines, areas, marks, a cursor that other charts follow, and a piece that is brushed out.
 
-const SVG = "http://www.w3.org/2000/svg";
+import {entry} from "./elements.js";
 
-function svg(name, attributes, parent, text) {
+const SVG = "http://www.w3.org/2000/svg";
+export const DASHES = ["", "7 3", "2 2", "7 3 2 3"];
+
+export function svg(name, attributes, parent, text) {
   const made = document.createElementNS(SVG, name);
   for (const key in attributes) made.setAttribute(key, attributes[key]);
   if (text !== undefined) made.textContent = text;
@@ -11,7 +14,7 @@ function svg(name, attributes, parent, text) {
 }
 
 // Ticks at round numbers, about so many.
-function ticks(low, high, about) {
+export function ticks(low, high, about) {
   const span = (high - low) / about;
   if (!(span > 0) || !isFinite(span)) return [low];
   const power = 10 ** Math.floor(Math.log10(span));
@@ -21,7 +24,7 @@ function ticks(low, high, about) {
   return found;
 }
 
-const shown = (v) =>
+export const shown = (v) =>
   (v === 0
     ? "0"
     : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3
@@ -33,7 +36,7 @@ const ONE_WAY = 0.02; // of the way on: so much may a curve go back that is brus
 
 // A chart of series over rows. `drawing`: {x, label, yLabel, series: [{name, y, base, colour, width, dash, fill, of}],
 // log, marks: [{id, label, rows}], stages: [{first, last, kind}], dots: [row], from0, legend}. `of` has own x values.
-class Chart {
+export class Chart {
   constructor(host, {height = 280, name = "", pick, hover, brush} = {}) {
     this.host = host;
     this.height = height;
@@ -320,13 +323,28 @@ class Chart {
   }
 }
 
-// A line of a legend.
-function entry(s) {
-  const one = document.createElement("span"),
-    sign = document.createElement("i");
-  sign.style.background = s.colour;
-  if (s.dash) sign.style.background = `repeating-linear-gradient(90deg, ${s.colour} 0 .4em, transparent .4em .6em)`;
-  if (s.base) sign.style.height = ".7em";
-  one.append(sign, s.name);
-  return one;
+// The charts of a run: their cursors and pieces follow the scene, and one another.
+export class Charts {
+  constructor(scene) {
+    Object.assign(this, {scene, all: []});
+    scene.on("frame", () => this.hover(null));
+    scene.on("piece", () => this.all.forEach((chart) => chart.setPiece(scene.brushed)));
+  }
+
+  // Makes a chart. picks: its rows are those of the history, and a click shows a frame; brushes: a drag takes a piece.
+  add(host, {picks = true, brushes = false, ...options}) {
+    const {scene} = this,
+      hover = (row) => this.hover(row),
+      pick = (row) => (scene.body ? scene.showRow(row) : this.hover(row)),
+      brush = brushes ? (piece, isOver) => scene.drag(piece, isOver) : undefined,
+      chart = new Chart(host, {...options, ...(picks ? {hover, pick, brush} : {})});
+    this.all.push(chart);
+    chart.setCursor(scene.row);
+    return chart;
+  }
+
+  // Puts all cursors at a row; null: where the curve is looked at.
+  hover(row) {
+    for (const chart of this.all) chart.setCursor(row === null ? this.scene.row : row);
+  }
 }

@@ -1,6 +1,8 @@
 // Files that a page makes of what it holds.
 
-function save(name, blob) {
+import {css} from "./colours.js";
+
+export function save(name, blob) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;
@@ -8,7 +10,7 @@ function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-const saveText = (name, text, type = "text/csv") => save(name, new Blob([text], {type}));
+export const saveText = (name, text, type = "text/csv") => save(name, new Blob([text], {type}));
 
 const cell = (v) =>
   typeof v === "number"
@@ -21,12 +23,18 @@ const cell = (v) =>
         ? `"${String(v).replaceAll('"', '""')}"`
         : String(v);
 
-const csv = (head, rows) => [head, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
+export const csv = (head, rows) => [head, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
 
 const escaped = (text) => text.replace(/[&<>]/g, (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;"})[c]);
 
-// A frame of a body as SVG: polygons in their colours, cracks as lines, and texts.
-function frameAsSvg(body, W, H, colour, strokes, title, {texts, ink, ground, size}) {
+// The picture of a specimen as SVG: polygons in their colours, cracks as lines, and texts.
+export function frameAsSvg(specimen, title) {
+  const {body, W, H, ratio} = specimen,
+    theme = specimen.theme(),
+    colour = specimen.painter(theme),
+    {texts, bar} = specimen.labels(),
+    [ink, ground, size] = [theme.value("--ink"), theme.value("--ground"), 12 * ratio],
+    strokes = [...specimen.strokes(theme), {colour: ink, width: 1.6 * ratio, lines: bar}];
   body.polygons();
   const parts = [
     `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${W} ${H}" width="${W}" height="${H}">`,
@@ -56,7 +64,7 @@ function frameAsSvg(body, W, H, colour, strokes, title, {texts, ink, ground, siz
 }
 
 // Records a canvas while `step(k)` draws frame k of `count`.
-async function film(canvas, count, step, perSecond = 12) {
+export async function film(canvas, count, step, perSecond = 12) {
   const stream = canvas.captureStream(0),
     track = stream.getVideoTracks()[0];
   const recorder = new MediaRecorder(stream, {mimeType: "video/webm"}),

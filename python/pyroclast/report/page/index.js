@@ -1,11 +1,11 @@
 // An index of runs: finds by words, shows by verdict, sorts by name or by a result.
 
-const $ = (id) => document.getElementById(id);
+import {$, menu} from "./elements.js";
+
 const runs = [...document.querySelectorAll(".run")];
 const results = [
   ...new Set(runs.flatMap((run) => [...run.querySelectorAll("[data-result]")].map((cell) => cell.dataset.result))),
 ];
-for (const name of results) $("sort").append(new Option(name, name));
 
 function valueOf(run, name) {
   const cell = [...run.querySelectorAll("[data-result]")].find((c) => c.dataset.result === name);
@@ -28,4 +28,5 @@ function show() {
   $("runs").append(...[...runs].sort(order));
 }
 
-$("find").oninput = $("level").onchange = $("sort").onchange = show;
+menu("sort", results.map((name) => [name, name]), "name", show);
+$("find").oninput = $("level").onchange = show;

@@ -2,6 +2,8 @@
 // finds the nearest triangle of each pixel by WebGL. Without one the painter of plane bodies paints them from the
 // farthest to the nearest: it is faster than WebGL by the processor.
 
+import {SolidBody} from "./solid.js";
+
 const DARKEST = 0.62; // of a colour on a face that is seen from the side, as in figures
 const [BEGIN_AZIMUTH, BEGIN_HEIGHT] = [0.72, 0.43]; // radians, of a view from the right, above and before
 const MOST_ZOOM = 12;
@@ -16,7 +18,7 @@ const shaded = (value, share) =>
   0;
 const brightness = (light) => DARKEST + (1 - DARKEST) * light;
 
-class OutsideBody extends SolidBody {
+export class OutsideBody extends SolidBody {
   prepare() {
     super.prepare();
     const {outer, face, face_triangle: of, triangle_face: faces} = this.arrays;
@@ -131,9 +133,7 @@ class OutsideBody extends SolidBody {
         const found = worst.get(this.faces.on[k]);
         if (!found) return;
         shown.push(t);
-        shows.push(
-          this.crackColoured ? this.blocks + found[0] : this.blockOf[this.arrays.triangle.values[3 * t]],
-        );
+        shows.push(this.crackColoured ? this.blocks + found[0] : this.blockOf[this.arrays.triangle.values[3 * t]]);
       });
     }
     Object.assign(this, {shown, shows});

@@ -39,7 +39,7 @@ async function unpacked(array) {
   return numbers;
 }
 
-async function unpackedAll(arrays) {
+export async function unpackedAll(arrays) {
   const names = Object.keys(arrays);
   const all = await Promise.all(names.map((name) => unpacked(arrays[name])));
   return Object.fromEntries(names.map((name, i) => [name, all[i]]));

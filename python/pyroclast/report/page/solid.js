@@ -1,10 +1,12 @@
 // A solid, shown as a plane through it by the painter of plane bodies. A plane cuts each polyhedron, which is convex,
 // in a convex polygon; it goes with the body, so that displacements along it alone are seen.
 
+import {Body, takeIn} from "./body.js";
+
 const IN_PLANE = {x: [2, 1], y: [0, 2], z: [0, 1]}; // axes that a view across x, y, z has to the right and up
 
 // What all views of a solid have.
-class SolidBody extends Body {
+export class SolidBody extends Body {
   // Overrides what the constructor of a plane body asks for.
   prepare() {
     const a = this.arrays;
@@ -29,8 +31,7 @@ class SolidBody extends Body {
         }
     }
     this.blockOf = new Int32Array(this.points);
-    for (let b = 0; b < this.blocks; b++)
-      this.blockOf.fill(b, a.point_first.values[b], a.point_first.values[b + 1]);
+    for (let b = 0; b < this.blocks; b++) this.blockOf.fill(b, a.point_first.values[b], a.point_first.values[b + 1]);
     if (this.contacts) this.prepareContacts();
   }
 
@@ -61,11 +62,7 @@ class SolidBody extends Body {
     const u = this.displacement(frame, b),
       w = ["x", "y", "z"].map((axis) => this.arrays[`turn_${axis}`].at(frame, b)),
       [dx, dy, dz] = [x - this.middles[3 * b], y - this.middles[3 * b + 1], z - this.middles[3 * b + 2]];
-    return [
-      u[0] + w[1] * dz - w[2] * dy,
-      u[1] + w[2] * dx - w[0] * dz,
-      u[2] + w[0] * dy - w[1] * dx,
-    ];
+    return [u[0] + w[1] * dz - w[2] * dy, u[1] + w[2] * dx - w[0] * dz, u[2] + w[0] * dy - w[1] * dx];
   }
 
   // Where a place of a contact is in a frame: between its two blocks.
@@ -98,7 +95,7 @@ class SolidBody extends Body {
 }
 
 // A plane through a solid, across one of its axes.
-class CutBody extends SolidBody {
+export class CutBody extends SolidBody {
   prepare() {
     super.prepare();
     const {triangle} = this.arrays;
@@ -247,3 +244,6 @@ class CutBody extends SolidBody {
     });
   }
 }
+
+// A body of the plane, or a plane through a solid.
+export const bodyOf = (about, arrays, frames) => new (about.solid ? CutBody : Body)(about, arrays, frames);

@@ -1,5 +1,10 @@
 // A canvas with a body: blocks in the colours of a field, cracks, isotherms, a line across, and what is lit.
 
+import {ONE_SIDED, TWO_SIDED, colourAt, css, ink, mixed, phaseColours} from "./colours.js";
+import {shown, ticks} from "./curves.js";
+import {entry, made, number, unitOf} from "./elements.js";
+
+export const MAGNIFICATIONS = [1, 2, 5, 10, 20, 50, 100]; // of displacements, to choose from
 const BEHIND = 0.75; // share of the ground in faces that have no halo where others do
 const MOST_PLACES = 16; // that are tried for the name of an isotherm
 const STEEP = 1.2; // radians
@@ -36,9 +41,7 @@ function slope(points) {
   return turn > STEEP ? turn - Math.PI : turn; // upright names all read upwards
 }
 
-const mixed = (one, other, share) => one.map((v, k) => Math.round(v + share * (other[k] - v)));
-
-class Specimen {
+export class Specimen {
   constructor(canvas, body) {
     Object.assign(this, {canvas, body, frame: 0, colour: "material", cracks: "mode", magnification: 1});
     this.lit = null; // contacts with a halo, a Set
@@ -273,7 +276,7 @@ class Specimen {
   }
 
   drawIsotherms(theme) {
-    const {body, frame, context, ratio, H} = this,
+    const {body, frame, context, ratio} = this,
       values = body.values("temperature", frame);
     let low = Infinity,
       high = -Infinity;
@@ -381,8 +384,7 @@ class Specimen {
     const [from, to] = [found[0].rest, found[found.length - 1].rest],
       way = [to[0] - from[0], to[1] - from[1]],
       length = Math.hypot(...way) || 1;
-    for (const one of found)
-      one.at = ((one.rest[0] - from[0]) * way[0] + (one.rest[1] - from[1]) * way[1]) / length;
+    for (const one of found) one.at = ((one.rest[0] - from[0]) * way[0] + (one.rest[1] - from[1]) * way[1]) / length;
     return found;
   }
 
@@ -396,14 +398,22 @@ class Specimen {
   }
 }
 
-// Of each material a colour: the named ones as in the figures, bearings dark, others in turn.
-function phaseColours(materials, numbers) {
-  let more = 0;
-  return materials.map(({name, bearing}) =>
-    bearing
-      ? numbers("--bearing")
-      : ["aggregate", "mortar"].includes(name)
-        ? numbers(`--${name}`)
-        : numbers(`--phase-${more++ % 4}`),
-  );
+// Into a key: the scale of a field that blocks are coloured by.
+export function tellScale(key, body, field) {
+  const {low, high, isTwoSided} = body.range(field),
+    stops = isTwoSided ? TWO_SIDED : ONE_SIDED,
+    scale = made("span", null, key, "scale");
+  scale.append(number(low));
+  made("i", null, scale).style.background = `linear-gradient(90deg, ${stops.map(css).join(", ")})`;
+  scale.append(`${number(high)} ${unitOf(body.fields.find((f) => f[0] === field)[1])}`);
+  if (field.startsWith("stress")) key.append("tension positive");
+}
+
+// Into a key: cracks by their mode.
+export function tellModes(key, body) {
+  for (const mode of body.modes)
+    key.append(
+      entry({name: `${mode}, broken`, colour: `var(--${mode})`}),
+      entry({name: `${mode}, damaged by more than half`, colour: `var(--${mode}-tint)`}),
+    );
 }

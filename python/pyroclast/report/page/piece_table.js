@@ -1,106 +1,77 @@
 // A piece of the curve: what broke in it, and where the energy went.
 
+import {$, made, number, table} from "./elements.js";
+
 const STORED = ["energy_zones_J", "energy_contacts_J", "energy_kinetic_J"]; // and not lost
 
-class RunPiece extends RunCurve {
-  // A piece that is dragged out takes the place of one that had begun.
-  drag(piece, isOver) {
-    this.begun = null;
-    this.brush(piece, isOver);
-  }
-
-  brush(piece, isOver) {
-    this.piece = piece;
-    for (const chart of this.charts) chart.setPiece(piece);
-    if (!isOver) return;
-    const [from, to] = piece;
-    if (from === to) return this.tellEmpty(from);
-    if (this.body) {
-      const steps = piece.map((row) => this.course.column("step")[row]);
-      this.show(this.frameAt(to), this.body.crackedBetween(...steps), {row: to, name: "the end of the piece"});
-    }
-    this.tellPiece();
-  }
-
-  frameBefore(row) {
-    let found = 0;
-    this.frames.forEach((f, k) => {
-      if (f.row <= row) found = k;
-    });
-    return found;
-  }
-
-  clearPiece() {
-    this.piece = this.begun = null;
-    for (const chart of this.charts) chart.setPiece(null);
-    $("piece").hidden = true;
-  }
-
-  // Where rows lie on the curve, such as "axial strain 2.77 to 2.86·10⁻³".
-  placeOf(...rows) {
-    const {label} = this.course.quantity(page.course.over),
-      values = rows.map((row) => this.course.of(page.course.over)[row]);
-    return `${label.split(/,| \[/)[0]} ${withUnit(this.toldSpan(values), unitOf(label))}`;
+export class PieceTable {
+  constructor(scene) {
+    Object.assign(this, {scene, course: scene.course});
+    const tell = {
+      begun: (row) => this.tellBegun(row),
+      empty: (row) => this.tellEmpty(row),
+      whole: () => this.tellPiece(),
+      dropped: () => ($("piece").hidden = true),
+      dragged: () => {},
+    };
+    scene.on("piece", (how, row) => tell[how](row));
   }
 
   // Says something in the place of what is told of a piece.
-  sayOfPiece(...texts) {
+  say(...texts) {
     const host = $("piece");
     host.replaceChildren();
     host.hidden = false;
     for (const text of texts) made("p", text, host, "note");
+    return host;
   }
 
-  tellBegun() {
-    const {row, which} = this.begun;
-    for (const chart of this.charts) chart.setPiece([row, row]);
-    this.sayOfPiece(
-      `A piece of the curve ${which ? "ends" : "begins"} at ${this.placeOf(row)}. ` +
+  tellBegun(row) {
+    const {which} = this.scene.begun;
+    this.say(
+      `A piece of the curve ${which ? "ends" : "begins"} at ${this.scene.placeOf(row)}. ` +
         `Go to its other end, by a mark too, and press ${which ? "[" : "]"}. Esc drops it.`,
     );
   }
 
   tellEmpty(row) {
-    this.piece = null;
-    for (const chart of this.charts) chart.setPiece(this.begun ? [row, row] : null);
-    this.sayOfPiece(
-      `This piece is empty: it begins and ends at ${this.placeOf(row)}.`,
-      this.begun
-        ? `Go to another place and press ${this.begun.which ? "[" : "]"} there. Esc drops it.`
+    const {begun} = this.scene;
+    this.say(
+      `This piece is empty: it begins and ends at ${this.scene.placeOf(row)}.`,
+      begun
+        ? `Go to another place and press ${begun.which ? "[" : "]"} there. Esc drops it.`
         : "Drag farther across the curve.",
     );
   }
 
   tellPiece() {
-    const {course, piece} = this,
-      host = $("piece"),
-      {of} = this.axes;
-    host.replaceChildren();
-    host.hidden = false;
-    const y = course.of(of),
-      {label} = course.quantity(of);
-    made("h3", `This piece of the curve: ${this.placeOf(...piece)}`, host);
-    if (page.moves) made("p", this.why(), host, "why");
-    const change = number(y[piece[1]] - y[piece[0]], 3);
-    made("p", `${label}: ${number(y[piece[0]], 4)} to ${number(y[piece[1]], 4)}, a change of ${change}.`, host);
+    const {scene, course} = this,
+      [first, last] = scene.piece,
+      {of} = scene.axes,
+      host = this.say(),
+      y = course.of(of),
+      [from, to, change] = [number(y[first], 4), number(y[last], 4), number(y[last] - y[first])];
+    made("h3", `This piece of the curve: ${scene.placeOf(first, last)}`, host);
+    if (scene.moves) made("p", this.why(), host, "why");
+    made("p", `${course.quantity(of).label}: ${from} to ${to}, a change of ${change}.`, host);
     this.tellBroken(host);
     this.tellEnergies(host);
     this.tellLosses(host);
     const close = made("button", "drop this piece (Esc)", host);
     close.type = "button";
     close.onclick = () => {
-      this.clearPiece();
-      if (this.body) this.show(this.frame);
+      scene.dropPiece();
+      if (scene.body) scene.show(scene.frame);
     };
   }
 
   // How many contacts were damaged and broke in the piece, by mode and interface.
   get counts() {
     const rows = [],
-      {modes, extent} = page.course;
+      {modes, extent} = this.course.about;
     for (const mode in modes)
       for (const name of modes[mode]) {
-        const of = (what) => this.course.change(`${mode}_${name}_${what}`, this.piece);
+        const of = (what) => this.course.change(`${mode}_${name}_${what}`, this.scene.piece);
         rows.push({
           mode,
           name: name.replaceAll("_", "–"),
@@ -114,13 +85,13 @@ class RunPiece extends RunCurve {
 
   // Changes of energies in the piece, J, the largest first.
   get energies() {
-    return page.course.energy_out
-      .map(({column, label}) => ({column, label, value: this.course.change(column, this.piece)}))
+    return this.course.about.energy_out
+      .map(({column, label}) => ({column, label, value: this.course.change(column, this.scene.piece)}))
       .filter((e) => Math.abs(e.value) > 1e-12)
       .sort((p, q) => Math.abs(q.value) - Math.abs(p.value));
   }
   get work() {
-    return page.course.energy_in.reduce((sum, name) => sum + this.course.change(name, this.piece), 0);
+    return this.course.about.energy_in.reduce((sum, name) => sum + this.course.change(name, this.scene.piece), 0);
   }
 
   // In a few words what broke and what took the energy.
@@ -158,10 +129,10 @@ class RunPiece extends RunCurve {
 
   tellBroken(host) {
     const rows = this.counts,
-      unit = page.course.extent === "length_m" ? "mm" : "cm²",
+      unit = this.course.about.extent === "length_m" ? "mm" : "cm²",
       factor = unit === "mm" ? 1e3 : 1e4;
     if (!rows.length) return;
-    made("h4", `Contacts, ${this.placeOf(...this.piece)}`, host);
+    made("h4", `Contacts, ${this.scene.placeOf(...this.scene.piece)}`, host);
     table(
       host,
       [
@@ -178,7 +149,7 @@ class RunPiece extends RunCurve {
   tellEnergies(host) {
     const rows = this.energies;
     if (!rows.length) return;
-    made("h4", `Energy, ${this.placeOf(...this.piece)}`, host);
+    made("h4", `Energy, ${this.scene.placeOf(...this.scene.piece)}`, host);
     made("p", `Put in: ${number(this.work)} J. It went to (negative: it came from):`, host);
     table(
       host,
@@ -189,26 +160,24 @@ class RunPiece extends RunCurve {
 
   // Energy that contacts lost between the frames around the piece, by interface.
   tellLosses(host) {
-    const losses = this.body ? Object.keys(this.body.arrays).filter((name) => name.startsWith("lost_")) : [];
+    const {scene} = this,
+      {body, frames, piece} = scene,
+      losses = body ? Object.keys(body.arrays).filter((name) => name.startsWith("lost_")) : [];
     if (!losses.length) return;
-    const [from, to] = [this.frameBefore(this.piece[0]), this.frameAt(this.piece[1])],
-      {interfaces} = this.body.about;
-    const lit = this.specimen.lit || new Set(),
-      kinds = this.body.arrays.interface.values;
-    const sums = [...interfaces, "of the lit ones"].map(() => losses.map(() => 0));
-    for (let c = 0; c < this.body.contacts; c++)
+    const [from, to] = [scene.frameBefore(piece[0]), scene.frameAt(piece[1])],
+      {interfaces} = body.about,
+      lit = scene.lit || new Set(),
+      kinds = body.arrays.interface.values,
+      sums = [...interfaces, "of the lit ones"].map(() => losses.map(() => 0));
+    for (let c = 0; c < body.contacts; c++)
       losses.forEach((name, k) => {
-        const lost = this.body.arrays[name].at(to, c) - this.body.arrays[name].at(from, c);
+        const lost = body.arrays[name].at(to, c) - body.arrays[name].at(from, c);
         sums[kinds[c]][k] += lost;
         if (lit.has(c)) sums[interfaces.length][k] += lost;
       });
-    const ends = [from, to].map((k) => this.frames[k]);
-    made(
-      "h4",
-      `Energy that contacts lost [J], rounded to frames ${ends[0].number} to ${ends[1].number}: ` +
-        this.placeOf(...ends.map((f) => f.row)),
-      host,
-    );
+    const [one, other] = [frames[from], frames[to]],
+      span = `frames ${one.number} to ${other.number}: ${scene.placeOf(one.row, other.row)}`;
+    made("h4", `Energy that contacts lost [J], rounded to ${span}`, host);
     table(
       host,
       ["interface", ...losses.map((name) => this.nameOfLoss(name))],
@@ -220,10 +189,10 @@ class RunPiece extends RunCurve {
     if (lit.size) made("p", halo, host, "note");
   }
 
-  // As the energies of the history are called.
+  // A loss of contacts as the energies of the history are called.
   nameOfLoss(name) {
-    const column = `dissipated_${name.replace("lost_", "")}_J`,
-      found = page.course.energy_out.find((e) => e.column === column);
-    return found ? found.label : name.replace("lost_", "");
+    const loss = name.replace("lost_", ""),
+      found = this.course.about.energy_out.find((e) => e.column === `dissipated_${loss}_J`);
+    return found ? found.label : loss;
   }
 }

@@ -1,12 +1,20 @@
 // The tabs below specimen and curve.
 
-class RunTabs extends RunProbes {
-  tabs() {
+import {DASHES, svg} from "./curves.js";
+import {$, made, number} from "./elements.js";
+
+const ENERGY_COLOURS = {"#000000": "var(--ink)", "#10245e": "var(--shear)", "#d55e00": "var(--tension)"};
+const COLOURS = ["curve", "tension", "good", "mixed", "warn-line", "faint"].map((name) => `var(--${name})`);
+
+export class Tabs {
+  // properties: panels of lines over the temperature.
+  constructor(scene, charts, properties) {
+    Object.assign(this, {scene, charts, properties, course: scene.course});
     const tabs = [...document.querySelectorAll(".tab")],
       bar = $("tabs");
     const isEmpty = {
       heat: !this.drawsHeat(),
-      energies: !page.course.energy_out.length,
+      energies: !this.course.about.energy_out.length,
       convergence: !this.course.has("unbalanced_ratio"),
     };
     const draw = {
@@ -53,27 +61,21 @@ class RunTabs extends RunProbes {
     if (shownTabs.length) open(shownTabs[0].dataset.tab);
   }
 
-  base(series, more) {
-    const over = page.course.over,
-      x = this.course.quantity(over);
-    return {x: this.course.of(over), label: x ? x.label : "", series, stages: page.course.stages, ...more};
+  // Draws series over rows; drawing: what the chart has beside them.
+  draw(id, name, options, drawing) {
+    const {over, stages} = this.course.about;
+    this.charts.add($(id), {name, ...options}).draw({...this.course.over(over), stages, ...drawing});
   }
 
   drawEnergies() {
-    const chart = this.chart("energies", {
-      height: 320,
-      name: "energies",
-      pick: (row) => this.showRow(row),
-      brush: (p, o) => this.drag(p, o),
-    });
     let base = new Float64Array(this.course.rows);
     const series = [];
     const put = new Float64Array(this.course.rows);
-    for (const name of page.course.energy_in)
+    for (const name of this.course.about.energy_in)
       this.course.column(name).forEach((v, i) => {
         put[i] += v || 0;
       });
-    for (const {column, label, colour} of page.course.energy_out) {
+    for (const {column, label, colour} of this.course.about.energy_out) {
       const values = this.course.column(column),
         above = base.map((v, i) => v + (values[i] || 0));
       if (values.some((v) => Math.abs(v) > 5e-4 * Math.max(...put.map(Math.abs))))
@@ -81,18 +83,13 @@ class RunTabs extends RunProbes {
       base = above;
     }
     series.push({name: "put in", y: put, colour: "var(--ink)", width: 1.4, dash: "5 3"});
-    chart.draw(this.base(series.reverse(), {yLabel: "energy [J]", from0: true}));
-    chart.setCursor(this.row);
+    series.reverse();
+    this.draw("energies", "energies", {height: 320, brushes: true}, {series, yLabel: "energy [J]", from0: true});
   }
 
   drawCracks() {
-    const {modes, extent} = page.course,
-      label = extent === "length_m" ? "length of damaged contacts [m]" : "area of damaged contacts [m²]";
-    const chart = this.chart("crack_lengths", {
-      name: label,
-      pick: (row) => this.showRow(row),
-      brush: (p, o) => this.drag(p, o),
-    });
+    const {modes, extent} = this.course.about,
+      yLabel = extent === "length_m" ? "length of damaged contacts [m]" : "area of damaged contacts [m²]";
     const series = [];
     for (const mode in modes)
       modes[mode].forEach((name, k) =>
@@ -104,9 +101,8 @@ class RunTabs extends RunProbes {
           width: 1.6,
         }),
       );
-    chart.draw(this.base(series, {yLabel: label, from0: true}));
-    chart.setCursor(this.row);
-    if (this.body && !this.body.about.solid) {
+    this.draw("crack_lengths", yLabel, {brushes: true}, {series, yLabel, from0: true});
+    if (this.scene.body && !this.scene.body.about.solid) {
       this.drawRose();
       this.drawOpenings();
     }
@@ -115,12 +111,11 @@ class RunTabs extends RunProbes {
   // Length of cracks, damaged by more than a half, at the end by the steepness of their lines.
   drawRose() {
     const host = $("rose"),
-      last = this.frames.length - 1,
-      bins = new Float64Array(18),
-      {arrays} = this.body;
-    for (const c of this.body.cracks(last)) {
-      const turn = this.body.steepness(c);
-      bins[Math.floor(((turn / Math.PI + 1) % 1) * 18) % 18] += arrays.extent.at(c, 0);
+      {body, frames} = this.scene,
+      bins = new Float64Array(18);
+    for (const c of body.cracks(frames.length - 1)) {
+      const turn = body.steepness(c);
+      bins[Math.floor(((turn / Math.PI + 1) % 1) * 18) % 18] += body.arrays.extent.at(c, 0);
     }
     made("h3", "Steepness of cracks, by length, at the end", host);
     const size = 220,
@@ -144,12 +139,13 @@ class RunTabs extends RunProbes {
 
   drawOpenings() {
     const host = $("openings"),
-      last = this.frames.length - 1,
+      {body, frames} = this.scene,
+      last = frames.length - 1,
       bins = new Float64Array(12),
       edges = Array.from({length: 13}, (_, k) => 2 ** k / 4);
-    for (const c of this.body.cracks(last)) {
-      const um = 1e6 * this.body.arrays.opening.at(last, c);
-      if (um > 0) bins[Math.max(0, Math.min(11, Math.floor(Math.log2(4 * um))))] += this.body.arrays.extent.at(c, 0);
+    for (const c of body.cracks(last)) {
+      const um = 1e6 * body.arrays.opening.at(last, c);
+      if (um > 0) bins[Math.max(0, Math.min(11, Math.floor(Math.log2(4 * um))))] += body.arrays.extent.at(c, 0);
     }
     made("h3", "Openings of cracks at the end, by length", host);
     const rows = Array.from(bins, (length, k) => [
@@ -179,71 +175,44 @@ class RunTabs extends RunProbes {
   }
 
   drawHeat() {
-    const chart = this.chart("heat", {name: "temperatures", pick: (row) => this.showRow(row)});
-    const ids = [
-      "temperature",
-      "temperature_min",
-      "temperature_max",
-      "gas",
-      ...page.course.quantities.map((q) => q.id).filter((id) => id.startsWith("probe_")),
-    ];
-    const colours = ["var(--ink)", ...COLOURS];
-    const series = ids
-      .filter((id) => this.course.quantity(id))
+    const {course} = this,
+      colours = ["var(--ink)", ...COLOURS],
+      probes = course.about.quantities.map((q) => q.id).filter((id) => id.startsWith("probe_"));
+    const series = ["temperature", "temperature_min", "temperature_max", "gas", ...probes]
+      .filter((id) => course.quantity(id))
       .map((id, k) => ({
-        name: this.course.quantity(id).label,
-        y: this.course.of(id),
+        name: course.quantity(id).label,
+        y: course.of(id),
         colour: id === "gas" ? "var(--faint)" : colours[k % 6],
         dash: id === "gas" ? DASHES[1] : DASHES[Math.floor(k / 6) % 4],
       }));
-    chart.draw({
-      x: this.course.of("minutes"),
-      label: this.course.quantity("minutes").label,
-      yLabel: "temperature [°C]",
-      series,
-      stages: page.course.stages,
-    });
-    chart.setCursor(this.row);
+    this.draw("heat", "temperatures", {}, {...course.over("minutes"), yLabel: "temperature [°C]", series});
   }
 
   // Panels whose cursor is the greatest temperature of the row.
   drawProperties() {
-    for (const panel of page.properties) {
+    for (const {title, label, from0, lines} of this.properties) {
       const host = made("div", null, $("properties"));
-      made("h3", panel.title, host);
-      const chart = new Chart(host, {height: 240, name: panel.title});
-      this.charts.push(chart);
-      chart.draw({
+      made("h3", title, host);
+      this.charts.add(host, {height: 240, name: title, picks: false}).draw({
         x: this.course.column("temperature_max_degC"),
         label: "temperature [°C]",
-        yLabel: panel.label,
-        from0: panel.from0,
-        series: panel.lines.map((line, k) => ({
-          ...line,
-          colour: COLOURS[k % COLOURS.length],
-          dash: DASHES[k % 4],
-        })),
+        yLabel: label,
+        from0,
+        series: lines.map((line, k) => ({...line, colour: COLOURS[k % COLOURS.length], dash: DASHES[k % 4]})),
       });
-      chart.setCursor(this.row);
     }
   }
 
   drawConvergence() {
-    const chart = this.chart("convergence", {name: "unbalanced ratio", pick: (row) => this.showRow(row)});
+    const {course} = this;
     const series = [
       ["unbalanced", "var(--curve)"],
       ["kinetic", "var(--tension)"],
     ]
-      .filter(([id]) => this.course.quantity(id))
-      .map(([id, colour]) => ({name: this.course.quantity(id).label, y: this.course.of(id), colour, width: 1.2}));
-    chart.draw({
-      x: this.course.of("step"),
-      label: "step",
-      yLabel: "ratio [–]",
-      series,
-      log: true,
-      stages: page.course.stages,
-    });
-    chart.setCursor(this.row);
+      .filter(([id]) => course.quantity(id))
+      .map(([id, colour]) => ({name: course.quantity(id).label, y: course.of(id), colour, width: 1.2}));
+    const drawing = {...course.over("step"), yLabel: "ratio [–]", series, log: true};
+    this.draw("convergence", "unbalanced ratio", {}, drawing);
   }
 }
