@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -172,6 +173,17 @@ int check(const RunOptions& options) {
              name(opened.instructions), peak_memory() * 1e-6);
   print_results(cost, has_fields);
   return 0;
+}
+
+Command add_check(CLI::App& cli) {
+  const auto options = std::make_shared<RunOptions>();
+  auto* command = cli.add_subcommand("check", "Check a deck and forecast its run, without running it");
+  add_deck(command, options->deck);
+  add_own_laws(command, options->laws);
+  add_seed(command, options->seed);
+  add_changes(command, *options);
+  add_processor(command, *options);
+  return {command, [options](const auto&) { return check(*options); }};
 }
 
 }  // namespace pyroclast::app

@@ -1,6 +1,7 @@
 #include "pyroclast/app/command_names.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -72,6 +73,26 @@ nlohmann::ordered_json described(const CLI::App& command) {
   return {{"name", command.get_name()}, {"meaning", command.get_description()}, {"options", options}};
 }
 
+/// Prints as JSON all that may stand on the command line: commands, options, keys of decks, cases; and the
+/// exit codes. The package for Python writes the manual page and the completions from it, and adds its own
+/// commands.
+int print_commands(const CLI::App& cli) {
+  const std::string description = cli.get_description();
+  nlohmann::ordered_json exit_codes, listed = nlohmann::json::array(), cases = listed;
+  for (const auto& [code, meaning] : kExitCodes) exit_codes[std::to_string(code)] = meaning;
+  for (const CLI::App* command : commands(cli)) listed.push_back(described(*command));
+  for (const CaseDeck& deck : kCases) cases.push_back(deck.name);
+  const nlohmann::ordered_json all = {{"version", kVersion},
+                                      {"meaning", description.substr(description.find(": ") + 2)},
+                                      {"commands", listed},
+                                      {"exit_codes", exit_codes},
+                                      {"deck_keys", key_paths(true)},
+                                      {"lists", names_of_lists()},
+                                      {"cases", cases}};
+  fmt::print("{}\n", all.dump(1));
+  return 0;
+}
+
 }  // namespace
 
 std::string what_is_wrong(const CLI::App& cli, const CLI::ParseError& error,
@@ -101,30 +122,25 @@ std::string what_is_wrong(const CLI::App& cli, const CLI::ParseError& error,
                      command->get_name());
 }
 
-int print_commands(const CLI::App& cli) {
-  const std::string description = cli.get_description();
-  nlohmann::ordered_json exit_codes, listed = nlohmann::json::array(), cases = listed;
-  for (const auto& [code, meaning] : kExitCodes) exit_codes[std::to_string(code)] = meaning;
-  for (const CLI::App* command : commands(cli)) listed.push_back(described(*command));
-  for (const CaseDeck& deck : kCases) cases.push_back(deck.name);
-  const nlohmann::ordered_json all = {{"version", kVersion},
-                                      {"meaning", description.substr(description.find(": ") + 2)},
-                                      {"commands", listed},
-                                      {"exit_codes", exit_codes},
-                                      {"deck_keys", key_paths(true)},
-                                      {"lists", names_of_lists()},
-                                      {"cases", cases}};
-  fmt::print("{}\n", all.dump(1));
-  return 0;
+Command add_manual(CLI::App& cli) {
+  auto* command = cli.add_subcommand("manual", "Print the manual page, for man");
+  return {command, [](const auto&) -> int { become_package("pyroclast.manual", {own_program(), "manual"}); }};
 }
 
-int manual() {
-  become_package("pyroclast.manual", {own_program(), "manual"});
+Command add_completion(CLI::App& cli) {
+  const auto shell = std::make_shared<std::string>("bash");
+  auto* completion = cli.add_subcommand("completion", "Print the completion of a shell for this program");
+  completion->add_option("SHELL", *shell, "bash or zsh")->capture_default_str();
+  return {completion, [shell](const auto&) -> int {
+            if (*shell != "bash" && *shell != "zsh")
+              throw Error(fmt::format("completion {}: shells: bash, zsh", *shell));
+            become_package("pyroclast.manual", {own_program(), *shell});
+          }};
 }
 
-int completion(const std::string& shell) {
-  if (shell != "bash" && shell != "zsh") throw Error(fmt::format("completion {}: shells: bash, zsh", shell));
-  become_package("pyroclast.manual", {own_program(), shell});
+Command add_commands(CLI::App& cli) {
+  auto* command = cli.add_subcommand("commands", "Print all commands as JSON")->group("");
+  return {command, [&cli](const auto&) { return print_commands(cli); }};
 }
 
 }  // namespace pyroclast::app

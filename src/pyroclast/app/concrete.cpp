@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -586,8 +587,8 @@ by = "strength"
       0.01 * a.strength * 1e-6, in_toml(folder_of_calibration(o)));
 }
 
-}  // namespace
-
+/// Writes the deck of a concrete with first guesses, a study that calibrates it, and a deck of a hot
+/// test or of a fire.
 int write_concrete(const ConcreteOptions& options) {
   ConcreteOptions o = options;
   if (o.out.extension() != ".toml") o.out += ".toml";
@@ -658,6 +659,77 @@ int write_concrete(const ConcreteOptions& options) {
     fmt::print("and then {} again, by this command with `--from {}` and another -o\n", heated.string(),
                shell_path(o.out.parent_path() / folder_of_calibration(o) / "best.toml"));
   return 0;
+}
+
+}  // namespace
+
+Command add_concrete(CLI::App& cli) {
+  const auto options = std::make_shared<ConcreteOptions>();
+  auto* concrete = cli.add_subcommand(
+      "concrete",
+      "Write a deck for your concrete from its strength and stiffness, and a study that calibrates the deck");
+  concrete->add_option("--f_c", options->strength, "Mean compressive strength: --f_c '45 MPa'")->required();
+  concrete->add_option("--E", options->modulus, "Young's modulus: --E '32 GPa'")->required();
+  concrete->add_option("--aggregate", options->rock, "Rock of the aggregate, see `pyroclast list rocks`")
+      ->required();
+  concrete->add_option("--fraction", options->fraction,
+                       "Area of coarse aggregate over the area of a section");
+  concrete->add_option("--stones", options->stones,
+                       "Mass of coarse aggregate in the mix, in the place of --fraction: '1100 kg/m3'; with "
+                       "--passing, of all aggregate");
+  concrete->add_option("--d_max", options->d_max, "Largest aggregate, graded by Fuller's curve");
+  concrete
+      ->add_option("--passing", options->passing,
+                   "Share that passes each sieve, by mass, in the place of --d_max: --passing '4 mm=38 %' '8 "
+                   "mm=55 %' '20 mm=100 %', or a file with two columns: --passing sieves.csv")
+      ->take_all();
+  concrete
+      ->add_option("--d_min", options->d_min,
+                   "Smallest coarse aggregate; smaller grains belong to the mortar")
+      ->capture_default_str();
+  concrete->add_option(
+      "--width", options->width,
+      "Width of the specimen (default: 150 mm), diameter of a cylinder (default: 4 times its "
+      "largest aggregate); with --from: as in its deck");
+  concrete->add_option("--height", options->height,
+                       "Height of the specimen (default: 300 mm, of a cylinder twice its diameter); with "
+                       "--from: as in its deck");
+  concrete->add_flag(
+      "--cylinder", options->cylinder,
+      "Make a body in space: stones of three blocks across and more; smaller ones belong to the "
+      "mortar");
+  concrete
+      ->add_option("--blocks", options->blocks,
+                   "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 "
+                   "blocks; 10000 of a cylinder)")
+      ->check(whole_number(100, 1000000));
+  concrete->add_option("--hot", options->hot,
+                       "Also write a deck of a test at this temperature: --hot '400 degC'");
+  auto* fire = concrete->add_option("--fire", options->fire,
+                                    "Also write a deck of a fire: iso834, hydrocarbon, another one of "
+                                    "`pyroclast list fires`, or the file of a furnace record");
+  concrete->add_option("--minutes", options->minutes, "Minutes of fire: --minutes 90")->needs(fire);
+  concrete->add_option("--faces", options->faces, "Sides in the fire: left, right, or both")
+      ->capture_default_str()
+      ->needs(fire);
+  concrete->add_option("--level", options->level, "Load that is held in the fire, over f_c")
+      ->capture_default_str()
+      ->needs(fire);
+  concrete
+      ->add_option("--columns", options->columns,
+                   "Columns of a furnace record with more than two: --columns time 'Furnace mean'")
+      ->expected(2)
+      ->needs(fire);
+  concrete->add_option(
+      "--from", options->from,
+      "Take mortar and contacts of the hot test or the fire from this deck, such as the calibrated "
+      "one");
+  concrete->add_option("-o,--out", options->out, "File for the deck")->required();
+  return {concrete, [options](std::vector<std::string> typed) {
+            typed[0] = "pyroclast";
+            options->command = shell_command(typed);
+            return write_concrete(*options);
+          }};
 }
 
 }  // namespace pyroclast::app

@@ -1,13 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "pyroclast/app/commands.hpp"
-
 namespace pyroclast::app {
+
+/// Options of `concrete`.
+struct ConcreteOptions {
+  // quantities as typed; empty where they are not stated
+  std::string strength, modulus, rock, fraction, stones, d_max, hot;
+  std::string d_min = "4.75 mm", width, height;
+  std::vector<std::string> passing;  ///< points of a grading, "8 mm=45 %", or a file
+  std::string fire, minutes, faces = "left,right", level = "0.3";
+  std::vector<std::string> columns;  ///< columns of a furnace record: time, temperature
+  std::int64_t blocks = 0;           ///< 0: by the largest aggregate
+  bool cylinder = false;             ///< true for a body in space
+  std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
+  std::filesystem::path out;
+  std::string command;  ///< command as typed, for the deck
+};
 
 /// Returns a text as a value of TOML. Its basic strings escape as JSON's do.
 std::string in_toml(const std::string& text);

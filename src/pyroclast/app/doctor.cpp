@@ -68,8 +68,6 @@ std::optional<std::string> version_of(const std::string& program) {
   return first;
 }
 
-}  // namespace
-
 int doctor() {
   tell("pyroclast", fmt::format("{} ({}), physics version {}", kVersion, kCommit, kPhysicsVersion));
   tell("program", own_program().string());
@@ -93,6 +91,14 @@ int doctor() {
   else
     wait_for(*child, [] { return false; });
   return 0;
+}
+
+}  // namespace
+
+Command add_doctor(CLI::App& cli) {
+  auto* command = cli.add_subcommand(
+      "doctor", "List the parts that are present and those that are missing; add this list to a bug report");
+  return {command, [](const auto&) { return doctor(); }};
 }
 
 }  // namespace pyroclast::app

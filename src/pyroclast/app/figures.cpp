@@ -33,8 +33,6 @@ std::optional<int> draw(
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-}  // namespace
-
 int figures(const std::vector<std::string>& words) {
   std::optional<FolderLock> lock;  // for a run whose own figures are drawn; others are only read
   const auto is_out = [](const std::string& word) { return word == "--out" || word.starts_with("--out="); };
@@ -48,6 +46,8 @@ int figures(const std::vector<std::string>& words) {
   return *code == 0 ? 0 : 1;
 }
 
+}  // namespace
+
 void draw_figures(const std::string& what, const std::filesystem::path& folder, Speech speech,
                   const std::function<bool()>& skip) {
   const auto code = draw(kFigures, {what, folder.string()}, speech, skip);
@@ -58,10 +58,6 @@ void draw_figures(const std::string& what, const std::filesystem::path& folder, 
                   code ? "" : ": " + no_python(), what, shell_path(folder)));
 }
 
-void report(const std::vector<std::string>& words) {
-  become_package(kReport, words);
-}
-
 void make_page(const std::filesystem::path& folder, Speech speech, const std::function<bool()>& skip) {
   const auto code = draw(kReport, {folder.string()}, speech, skip);
   if (code == 0) return;
@@ -69,6 +65,19 @@ void make_page(const std::filesystem::path& folder, Speech speech, const std::fu
       fmt::format("warning: no page was made{}; the results are complete without it.\n"
                   "To make it later: pyroclast report {}\n",
                   code ? "" : ": " + no_python(), shell_path(folder)));
+}
+
+Command add_figures(CLI::App& cli) {
+  auto* command = add_passed_on(
+      cli, "figures",
+      "Draw the figures of a run again, or several runs in one figure: figures compare RUN... --out FILE");
+  return {command, [=](const auto&) { return figures(command->remaining()); }};
+}
+
+Command add_report(CLI::App& cli) {
+  auto* command = add_passed_on(
+      cli, "report", "Make the page of a run, one HTML file for any browser: report RUN [--out FILE]");
+  return {command, [=](const auto&) -> int { become_package(kReport, command->remaining()); }};
 }
 
 }  // namespace pyroclast::app

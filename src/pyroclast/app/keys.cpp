@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -14,6 +15,12 @@
 namespace pyroclast::app {
 
 namespace {
+
+struct KeysOptions {
+  bool json = false;
+  bool schema = false;
+  bool survey = false;  ///< true to ask the readers of decks, false for what they left at the build
+};
 
 constexpr auto kKeysIntroduction = R"(# Deck reference
 
@@ -36,13 +43,6 @@ std::filesystem::path file_of_build(std::string_view name) {
   return {};
 }
 
-}  // namespace
-
-DeckSchema known_deck_schema() {
-  const auto file = file_of_build("deck_keys.json");  // to find all keys takes some 15 s
-  return file.empty() ? deck_schema() : schema_of(read_file(file));
-}
-
 int print_keys(const KeysOptions& options) {
   const DeckSchema schema = options.survey ? deck_schema() : known_deck_schema();
   if (options.schema)
@@ -52,6 +52,25 @@ int print_keys(const KeysOptions& options) {
   else
     fmt::print("{}{}", kKeysIntroduction, deck_reference(schema));
   return 0;
+}
+
+}  // namespace
+
+DeckSchema known_deck_schema() {
+  const auto file = file_of_build("deck_keys.json");  // to find all keys takes some 15 s
+  return file.empty() ? deck_schema() : schema_of(read_file(file));
+}
+
+Command add_keys(CLI::App& cli) {
+  const auto options = std::make_shared<KeysOptions>();
+  auto* keys = cli.add_subcommand("keys", "Print all keys of decks, as Markdown");
+  keys->add_flag("--json", options->json, "Print JSON");
+  keys->add_flag("--schema", options->schema,
+                 "Print a JSON Schema (draft 4), with which editors complete and check decks");
+  keys->add_flag("--survey", options->survey,
+                 "Ask the readers of decks again, not the file of the build; takes a while")
+      ->group("");
+  return {keys, [options](const auto&) { return print_keys(*options); }};
 }
 
 }  // namespace pyroclast::app

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +18,22 @@
 namespace pyroclast::app {
 
 namespace {
+
+struct LawOptions {
+  std::filesystem::path deck, path, out;
+  std::string interface;
+  std::string law;                  ///< law in place of a deck's, see find_law
+  std::vector<std::string> values;  ///< properties of the law, "key=value"
+  OwnLawOptions sources;
+  int steps = 1;  ///< number of parts into which each leg of the path is cut
+};
+
+struct VerifyOptions {
+  std::vector<std::string> laws;  ///< names of laws as find_law takes them; empty: all laws of the program
+  OwnLawOptions sources;
+  int paths = 10000;  ///< number of paths in each dimension
+  std::uint64_t seed = 1;
+};
 
 /// Returns the contacts of an interface, of the deck or of two blocks of one phase. Throws Error when there
 /// is none.
@@ -52,9 +70,7 @@ LawPoint point_of_deck(const LawOptions& options) {
       stress_free && !stress_free->is_field() ? stress_free->temperatures.front() : absolute_zero);
 }
 
-}  // namespace
-
-int law(const LawOptions& options) {
+int drive_law(const LawOptions& options) {
   if (options.law.empty() && options.deck.empty())
     throw Error("law: state a deck, or a law with --law and its properties with --set");
   LawPoint point = options.law.empty() ? point_of_deck(options) : LawPoint(material_of_command(options));
@@ -96,6 +112,54 @@ int verify_laws(const VerifyOptions& options) {
     passed = passed && report.passed();
   }
   return passed ? 0 : 1;
+}
+
+}  // namespace
+
+Command add_law(CLI::App& cli) {
+  const auto options = std::make_shared<LawOptions>();
+  const auto to_verify = std::make_shared<VerifyOptions>();
+  auto* law = cli.add_subcommand("law",
+                                 "Drive a contact law along a path of jumps and temperatures, or try laws on "
+                                 "random paths: law --verify");
+  auto* law_deck = law->add_option("DECK", options->deck, "TOML file that describes the run");
+  auto* stated =
+      law->add_option("--law", options->law,
+                      "Use this law, not a deck's: a name, a shared object (mine.so) or a header (mine.hpp), "
+                      "which is compiled");
+  stated->excludes(law_deck);
+  law->add_option("--set", options->values, "Set a property or a choice of the law: --set f_t='3 MPa'")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->needs(stated);
+  add_own_laws(law, options->sources);
+  auto* law_path =
+      law->add_option("--path", options->path,
+                      "CSV file with columns u_n, u_s and optionally T, each with its unit: u_n [um]");
+  law->add_option(
+      "--interface", options->interface,
+      "A table of [contacts], or a_a for two blocks of phase a (default: the interface of the matrix)");
+  law->add_option("--steps", options->steps, "Steps of each leg of the path")
+      ->check(whole_number(1, std::numeric_limits<int>::max()))
+      ->default_val(1);
+  law->add_option("-o,--out", options->out, "CSV file to write (default: standard output)");
+  auto* verify = law->add_option("--verify", to_verify->laws,
+                                 "Test these laws, or all, for the properties that a law must have")
+                     ->expected(0, -1)
+                     ->excludes(law_deck)
+                     ->excludes(law_path);
+  law->add_option("--paths", to_verify->paths, "Number of random paths in each dimension")
+      ->check(whole_number(1, std::numeric_limits<int>::max()))
+      ->needs(verify)
+      ->default_val(10000);
+  law->add_option("--seed", to_verify->seed, "Seed of the random paths")->needs(verify)->default_val(1);
+  law->callback([=] {
+    to_verify->sources = options->sources;
+    if (*verify) return;
+    if (!*law_deck && !*stated) throw CLI::RequiredError("DECK, or --law");
+    if (!*law_path) throw CLI::RequiredError(law_path->get_name());
+  });
+  return {law, [=](const auto&) { return *verify ? verify_laws(*to_verify) : drive_law(*options); }};
 }
 
 }  // namespace pyroclast::app

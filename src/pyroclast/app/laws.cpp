@@ -89,12 +89,17 @@ std::string page_of(const LawTable& law) {
   return text;
 }
 
-}  // namespace
-
 int print_laws() {
   fmt::print("{}", kLawsIntroduction);
   for (const LawTable* law : built_in_laws()) fmt::print("{}", page_of(*law));
   return 0;
+}
+
+}  // namespace
+
+Command add_laws(CLI::App& cli) {
+  auto* laws = cli.add_subcommand("laws", "Print the contact laws of the program, as Markdown");
+  return {laws, [](const auto&) { return print_laws(); }};
 }
 
 }  // namespace pyroclast::app

@@ -1,3 +1,4 @@
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,6 +96,18 @@ constexpr List kLists[] = {
     {"units", print_units},
 };
 
+int print_list(const std::string& what) {
+  for (const auto& [name, print] : kLists)
+    if (name == what) {
+      print();
+      return 0;
+    }
+  const std::vector<std::string> names = names_of_lists();
+  if (what.empty()) throw Error(fmt::format("list: name one of {}", quoted_list(names)));
+  throw Error(fmt::format("list {}: there is no such list{}; lists: {}", what,
+                          did_you_mean(what, names, "; "), quoted_list(names)));
+}
+
 }  // namespace
 
 std::vector<std::string> key_paths(bool of_tables) {
@@ -113,16 +126,11 @@ std::vector<std::string> names_of_lists() {
   return names;
 }
 
-int print_list(const std::string& what) {
-  for (const auto& [name, print] : kLists)
-    if (name == what) {
-      print();
-      return 0;
-    }
-  const std::vector<std::string> names = names_of_lists();
-  if (what.empty()) throw Error(fmt::format("list: name one of {}", quoted_list(names)));
-  throw Error(fmt::format("list {}: there is no such list{}; lists: {}", what,
-                          did_you_mean(what, names, "; "), quoted_list(names)));
+Command add_list(CLI::App& cli) {
+  const auto what = std::make_shared<std::string>();
+  auto* list = cli.add_subcommand("list", "List the names that a deck may use, a line each");
+  list->add_option("WHAT", *what, "cases, columns, curves, fields, fires, keys, laws, rocks or units");
+  return {list, [what](const auto&) { return print_list(*what); }};
 }
 
 }  // namespace pyroclast::app

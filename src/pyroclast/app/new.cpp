@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,8 @@
 #include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast::app {
+
+namespace {
 
 int make_deck(const std::string& name, const std::string& from) {
   const auto found = std::ranges::find(kCases, from, &CaseDeck::name);
@@ -30,6 +33,20 @@ int make_deck(const std::string& name, const std::string& from) {
   say(fmt::format("{0} is written. Next:\n  pyroclast check {1}\n  pyroclast run {1}\n", file.string(),
                   shell_path(file)));
   return 0;
+}
+
+}  // namespace
+
+Command add_new(CLI::App& cli) {
+  struct Options {
+    std::string name, from = "starter";
+  };
+  const auto options = std::make_shared<Options>();
+  auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
+  starter->add_option("NAME", options->name, "Name of the new deck: NAME.toml")->required();
+  starter->add_option("--from", options->from, "Case to copy, see `pyroclast list cases`")
+      ->capture_default_str();
+  return {starter, [options](const auto&) { return make_deck(options->name, options->from); }};
 }
 
 }  // namespace pyroclast::app

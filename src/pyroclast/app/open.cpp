@@ -9,7 +9,6 @@
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/plugin/open.hpp"
-#include "pyroclast/units/units.hpp"
 
 namespace pyroclast::app {
 
@@ -105,17 +104,6 @@ RunChoices choices_of(const RunOptions& options) {
     std::fflush(stdout);
   };
   return choices;
-}
-
-double time_option(const std::string& name, const std::string& text) {
-  double seconds = 0.0;
-  try {
-    seconds = parse_quantity(text, unit::time);
-  } catch (const QuantityError& error) {
-    throw Error(fmt::format("{}: {}", name, error.what()));
-  }
-  if (!(seconds >= 0.0)) throw Error(fmt::format("{} \"{}\": must not be negative", name, text));
-  return seconds;
 }
 
 std::filesystem::path output_folder(const RunOptions& options) {

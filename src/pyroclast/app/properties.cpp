@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
 
+#include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/open.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/results/properties_file.hpp"
@@ -11,6 +13,11 @@
 namespace pyroclast::app {
 
 namespace {
+
+struct PropertiesOptions {
+  std::filesystem::path deck;
+  std::filesystem::path out;  ///< output folder; empty: runs/<name of the deck>-properties
+};
 
 /// Returns the phases as a run has them: those of the specimen, where they follow its composition.
 std::vector<BlockMaterial> block_materials_of(const Setup& setup) {
@@ -46,8 +53,6 @@ void print(const std::vector<ReadCurve>& curves) {
                     read.unit == "1" ? "" : fmt::format("[{}]", read.unit)));
 }
 
-}  // namespace
-
 int plot_properties(const PropertiesOptions& options) {
   const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path());
@@ -62,6 +67,18 @@ int plot_properties(const PropertiesOptions& options) {
   say(fmt::format("{}\n", (out / "properties.csv").string()));
   draw_figures("properties", out);
   return 0;
+}
+
+}  // namespace
+
+Command add_properties(CLI::App& cli) {
+  const auto options = std::make_shared<PropertiesOptions>();
+  auto* properties = cli.add_subcommand("plot-properties",
+                                        "Draw and tabulate the properties of a deck over the temperature");
+  add_deck(properties, options->deck);
+  properties->add_option("-o,--out", options->out,
+                         "Folder for table and figure (default: runs/<name of the deck>-properties)");
+  return {properties, [options](const auto&) { return plot_properties(*options); }};
 }
 
 }  // namespace pyroclast::app

@@ -1,12 +1,23 @@
+#include <memory>
+
 #include <fmt/format.h>
 
 #include "pyroclast/app/run_to_end.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast::app {
 
 namespace {
+
+struct ResumeOptions {
+  std::filesystem::path run;         ///< folder of a run
+  std::filesystem::path checkpoint;  ///< checkpoint to go on from; empty: the newest
+  std::string from_stage;            ///< number or name of the last stage in common, for a fork
+  std::filesystem::path more;        ///< file with stages to append, for a fork
+  RunOptions as;                     ///< options of the run; `deck` and `seed` come from the run itself
+};
 
 void say_lost_frames(RunLog& log, const Session& session) {
   for (const std::string& line : session.lost_frames()) log.say(fmt::format("{:<16}{}", "warning", line));
@@ -39,9 +50,7 @@ int fork(const ResumeOptions& options) {
   return run_to_end(*session, log, options.as);
 }
 
-}  // namespace
-
-int resume(const ResumeOptions& options) {
+int go_on_or_fork(const ResumeOptions& options) {
   RunFolder::require(options.run);
   const bool forks = !options.from_stage.empty() || !options.more.empty();
   if (forks && options.as.out.empty()) throw Error("a fork needs a folder of its own: --out NEW");
@@ -50,6 +59,35 @@ int resume(const ResumeOptions& options) {
   if (!forks && !options.as.out.empty())
     throw Error("--out: a run goes on in its own folder; a fork needs --from-stage or --stages");
   return forks ? fork(options) : go_on(options);
+}
+
+}  // namespace
+
+Command add_resume(CLI::App& cli) {
+  const auto options = std::make_shared<ResumeOptions>();
+  auto* resume = cli.add_subcommand(
+      "resume", "Continue an interrupted run, or fork one: keep its first stages and append others");
+  resume->add_option("RUN", options->run, "Folder of a run")->required();
+  resume->add_option("--checkpoint-file", options->checkpoint,
+                     "Continue from this checkpoint, not from the newest");
+  auto* from_stage = resume->add_option("--from-stage", options->from_stage,
+                                        "Fork: the last stage in common, by its number from 0 or its name");
+  resume->add_option("--stages", options->more, "Fork: append the [[stages]] of this file")
+      ->excludes(from_stage);
+  add_changes(resume, options->as);
+  add_output(resume, options->as);
+  add_page(resume, options->as);
+  add_processor(resume, options->as);
+  add_own_laws(resume, options->as.laws);
+  add_checkpoint(resume, options->as);
+  add_speech(resume, options->as);
+  add_watching(resume, options->as);
+  return {resume,
+          [options](const std::vector<std::string>& typed) {
+            options->as.command = shell_command(typed);
+            return go_on_or_fork(*options);
+          },
+          false};
 }
 
 }  // namespace pyroclast::app

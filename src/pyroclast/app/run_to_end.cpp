@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/app/specimen_scatter.hpp"
@@ -202,7 +204,9 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   return exit_code(summary);
 }
 
-int run(const RunOptions& options) {
+namespace {
+
+int run_from_start(const RunOptions& options) {
   const std::filesystem::path folder = output_folder(options);
   const auto session =
       Session::begin(open_deck(options), RunOutput{folder, options.overwrite, options.command});
@@ -210,6 +214,42 @@ int run(const RunOptions& options) {
   RunLog log(folder / "run.log", options.speech);
   log.say(describe_start(*session));
   return run_to_end(*session, log, options);
+}
+
+}  // namespace
+
+Command add_run(CLI::App& cli) {
+  const auto options = std::make_shared<RunOptions>();
+  auto* run = cli.add_subcommand("run", "Run a deck");
+  add_deck(run, options->deck);
+  add_own_laws(run, options->laws);
+  add_seed(run, options->seed);
+  add_changes(run, *options);
+  add_output(run, *options);
+  add_page(run, *options);
+  add_processor(run, *options);
+  add_checkpoint(run, *options);
+  add_speech(run, *options);
+  add_watching(run, *options);
+  run->add_option("--seeds", options->seeds,
+                  "Run this many specimens, from seed 1 or --seed on: print each result with its mean and 95 "
+                  "% interval, "
+                  "the curves "
+                  "with their band, and the pictures of the median specimen")
+      ->check(whole_number(1, 100000));
+  run->add_flag("--dry-run", options->dry_run,
+                "Tell the time, memory and disk of the run, as `check` does, and with --seeds those of all "
+                "specimens; run nothing");
+  run->add_flag_callback(
+      "--no-fields", [options] { options->changes.emplace_back("output.fields=false"); },
+      "Write no fields, as [output] fields = false; then figures show the history only");
+  return {run,
+          [options](const std::vector<std::string>& typed) {
+            options->command = shell_command(typed);
+            if (options->seeds > 1) scatter(*options);
+            return options->dry_run ? printed(check(*options)) : run_from_start(*options);
+          },
+          false};
 }
 
 }  // namespace pyroclast::app

@@ -1,7 +1,10 @@
+#include <memory>
+
 #include <fmt/format.h>
 
 #include "pyroclast/app/open.hpp"
 #include "pyroclast/app/say_aside.hpp"
+#include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
@@ -18,8 +21,6 @@ std::vector<std::string> warnings_of(const Setup& setup, const MadeSpecimen& spe
   const auto materials = make_materials(setup.block_materials, *setup.moving, numbers_of(specimen));
   return warnings(specimen, model, materials.contacts);
 }
-
-}  // namespace
 
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
@@ -44,10 +45,27 @@ int make_specimen(const RunOptions& asked) {
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", *model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  say(fmt::format("{}{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
+  say(fmt::format("{}{}{}results         {}\n", describe_warnings(opened.warnings), app::describe(specimen),
                   describe_warnings(warned), folder.path().string()));
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
+}
+
+}  // namespace
+
+Command add_specimen(CLI::App& cli) {
+  const auto options = std::make_shared<RunOptions>();
+  auto* command = cli.add_subcommand("specimen", "Make only the specimen of a deck, with its pictures");
+  add_deck(command, options->deck);
+  add_own_laws(command, options->laws);
+  add_seed(command, options->seed);
+  add_changes(command, *options);
+  add_output(command, *options);
+  add_threads(command, options->threads);
+  return {command, [options](const std::vector<std::string>& typed) {
+            options->command = shell_command(typed);
+            return make_specimen(*options);
+          }};
 }
 
 }  // namespace pyroclast::app

@@ -8,11 +8,17 @@
 
 namespace pyroclast::app {
 
-void study(const std::vector<std::string>& words) {
+namespace {
+
+/// Goes on as the program of studies, see the Python package.
+/// \param words  as typed
+[[noreturn]] void study(const std::vector<std::string>& words) {
   std::vector<std::string> all{"--program", own_program()};
   all.insert(all.end(), words.begin(), words.end());
   become_package("pyroclast.study", all);
 }
+
+}  // namespace
 
 void scatter(const RunOptions& o) {
   if (o.watch || o.overwrite || o.checkpoint || !o.instructions.empty() || !o.laws.folders.empty() ||
@@ -32,6 +38,24 @@ void scatter(const RunOptions& o) {
   if (o.speech == Speech::quiet) add({"--quiet"});
   if (o.laws.allow_code) add({"--allow-code"});
   study(words);
+}
+
+Command add_study(CLI::App& cli) {
+  auto* command = add_passed_on(
+      cli, "study",
+      "Many runs: scatter, sensitivity, calibration: study run|check|status|table|report STUDY");
+  return {command, [=](const auto&) -> int { study(command->remaining()); }};
+}
+
+Command add_converge(CLI::App& cli) {
+  auto* command = add_passed_on(cli, "converge",
+                                "Tell how far results move with half the rate, half the exchange step, "
+                                "and half and double the block size: converge DECK");
+  return {command, [=](const auto&) -> int {
+            std::vector<std::string> words = command->remaining();
+            words.insert(words.begin(), "converge");
+            study(words);
+          }};
 }
 
 }  // namespace pyroclast::app

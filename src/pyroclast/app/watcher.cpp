@@ -24,8 +24,7 @@ constexpr double kLongestFarewell = 60.0;
 
 }  // namespace
 
-Watcher::Watcher(std::filesystem::path folder, RunLog& log)
-    : folder_(std::move(folder)), log_(log) {
+Watcher::Watcher(std::filesystem::path folder, RunLog& log) : folder_(std::move(folder)), log_(log) {
   // where every look is told on the terminal, curves can only follow one another
   const bool has_terminal = isatty(STDOUT_FILENO) != 0 && log_.speech() == Speech::usual;
   const char* on = log_.speech() == Speech::quiet ? "nothing" : has_terminal ? "terminal" : "lines";
@@ -66,8 +65,10 @@ void Watcher::tell_end(int status) {
       shell_path(folder_)));
 }
 
-void watch(const std::vector<std::string>& words) {
-  become_package(kModule, words);
+Command add_watch(CLI::App& cli) {
+  auto* command =
+      add_passed_on(cli, "watch", "Show a run while another process computes it: watch RUN [--once]");
+  return {command, [=](const auto&) -> int { become_package(kModule, command->remaining()); }};
 }
 
 }  // namespace pyroclast::app

@@ -37,8 +37,4 @@ class Watcher {
   std::optional<pid_t> process_;  ///< id of the process as long as it lives
 };
 
-/// Goes on as the watcher of a run, see the Python package.
-/// \param words  as typed
-[[noreturn]] void watch(const std::vector<std::string>& words);
-
 }  // namespace pyroclast::app
