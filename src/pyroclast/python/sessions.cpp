@@ -178,33 +178,16 @@ py::tuple stage_info(const Run& run, std::size_t i) {
                         record.rows.last);
 }
 
-}  // namespace
+/// Returns a binding of a function of the session, to be read.
+template <class Function>
+auto reading(Function f) {
+  return [f](const Held& h) { return f(h.get()); };
+}
 
-void bind_sessions(py::module_& m) {
+/// Binds what makes a run, takes it on, changes it and ends it.
+void bind_stepping(py::class_<Held>& bound) {
   using py::arg;
-  const auto read = [](auto f) { return [f](const Held& h) { return f(h.get()); }; };
-  m.def(
-      "possible_fields",
-      [] {
-        std::vector<py::tuple> all;
-        for (const FieldInfo& f : possible_fields())
-          all.push_back(py::make_tuple(f.name, product_of(f.unit), name_of(f.item), components_of(f.kind, 2),
-                                       f.meaning, f.in_files));
-        return all;
-      },
-      "Fields that runs may have: name, unit as in files, item, components, meaning, whether files hold it.");
-  m.def(
-      "seconds_of_run",
-      [](const DeckText& deck, std::optional<std::uint64_t> seed) {
-        auto chosen = choices(seed, 1, "", {}, deck.laws, deck.stages);
-        chosen.laws = law_sources(deck);
-        Opened opened(parse(deck), deck.folder, chosen);
-        const auto simulation = make_simulation(opened.setup, opened.team);
-        return rehearse(std::move(opened.setup), *simulation).seconds;
-      },
-      arg("deck"), arg("seed"),
-      "Wall time that a run of one thread will probably take, s, by its first steps.");
-  py::class_<Held>(m, "Session", "A run with its deck, its simulation and, where it has one, its folder.")
+  bound
       .def_static(
           "begin",
           [](const DeckText& deck, std::optional<std::uint64_t> seed, int threads,
@@ -252,19 +235,6 @@ void bind_sessions(py::module_& m) {
           },
           "summary.json of the rows so far, written where there is a folder.")
       .def(
-          "summary",
-          [](const Held& h) {
-            const Session& session = h.get();
-            return summary_text(session.summary(), session.run());
-          },
-          "The text of the summary, not written.")
-      .def(
-          "summary_numbers", [](const Held& h) { return h.get().summary_numbers(); },
-          "Entries that may be numbers in the summary when the run is over: results by name, others by path.")
-      .def(
-          "test_results", [](const Held& h) { return test_results(h.get().run()); },
-          "Results that a laboratory would report, by name.")
-      .def(
           "copy",
           [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
              bool overwrite) {
@@ -298,31 +268,50 @@ void bind_sessions(py::module_& m) {
           [](const Held& h, const std::string& why) {
             h.resting().depart({why, false});
           },
-          arg("why"), "Notes that the run needs more than its deck.")
-      .def_property_readonly("outcome", read([](const Session& s) { return describe(s.run().outcome()); }))
-      .def_property_readonly("is_over", read([](const Session& s) {
+          arg("why"), "Notes that the run needs more than its deck.");
+}
+
+/// Binds what a run is and where it stands: its deck, its stages, its history.
+void bind_state(py::class_<Held>& bound) {
+  using py::arg;
+  bound
+      .def(
+          "summary",
+          [](const Held& h) {
+            const Session& session = h.get();
+            return summary_text(session.summary(), session.run());
+          },
+          "The text of the summary, not written.")
+      .def(
+          "summary_numbers", [](const Held& h) { return h.get().summary_numbers(); },
+          "Entries that may be numbers in the summary when the run is over: results by name, others by path.")
+      .def(
+          "test_results", [](const Held& h) { return test_results(h.get().run()); },
+          "Results that a laboratory would report, by name.")
+      .def_property_readonly("outcome", reading([](const Session& s) { return describe(s.run().outcome()); }))
+      .def_property_readonly("is_over", reading([](const Session& s) {
                                return s.run().outcome() != Outcome::running &&
                                       s.run().outcome() != Outcome::stopped;
                              }))
-      .def_property_readonly("stage", read([](const Session& s) { return s.run().stage_number(); }))
-      .def_property_readonly("stages", read([](const Session& s) {
+      .def_property_readonly("stage", reading([](const Session& s) { return s.run().stage_number(); }))
+      .def_property_readonly("stages", reading([](const Session& s) {
                                py::list all;
                                for (std::size_t i = 0; i < s.run().stages().size(); ++i)
                                  all.append(stage_info(s.run(), i));
                                return all;
                              }),
                              "Kind, outcome, first and last row of each.")
-      .def_property_readonly("rows", read([](const Session& s) { return s.run().history().row_count(); }))
-      .def_property_readonly("columns", read([](const Session& s) {
+      .def_property_readonly("rows", reading([](const Session& s) { return s.run().history().row_count(); }))
+      .def_property_readonly("columns", reading([](const Session& s) {
                                py::list all;
                                for (const Column& c : s.run().history().columns())
                                  all.append(py::make_tuple(c.name, c.unit));
                                return all;
                              }),
                              "Name and unit of each.")
-      .def("history", read([](const Session& s) { return table(s.run().history()); }),
+      .def("history", reading([](const Session& s) { return table(s.run().history()); }),
            "(rows, columns), in the units of the columns; NaN where a cell is empty.")
-      .def("row", read([](const Session& s) {
+      .def("row", reading([](const Session& s) {
              const History& history = s.run().history();
              if (history.row_count() == 0) throw Error("the run has no sample yet");
              return row(history.row(history.row_count() - 1));
@@ -339,14 +328,22 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
       .def_property_readonly("thickness",
                              [](const Held& h) { return h.get().simulation().model().thickness; })
-      .def_property_readonly("title", read([](const Session& s) { return s.opened().setup.title; }))
-      .def_property_readonly("seed", read([](const Session& s) { return s.opened().setup.specimen.seed; }))
-      .def_property_readonly("deck_text", read([](const Session& s) { return s.opened().deck.text(); }))
-      .def_property_readonly("warnings", read([](const Session& s) { return s.opened().warnings; }))
-      .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
+      .def_property_readonly("title", reading([](const Session& s) { return s.opened().setup.title; }))
+      .def_property_readonly("seed", reading([](const Session& s) { return s.opened().setup.specimen.seed; }))
+      .def_property_readonly("deck_text", reading([](const Session& s) { return s.opened().deck.text(); }))
+      .def_property_readonly("warnings", reading([](const Session& s) { return s.opened().warnings; }))
+      .def_property_readonly("folder", reading([](const Session& s) { return s.folder().string(); }))
       .def_property(
           "threads", [](const Held& h) { return h.get().simulation().team().size(); },
           [](const Held& h, int threads) { h.resting().simulation().team().resize(usable_threads(threads)); })
+      .def_property_readonly("deck_folder",
+                             reading([](const Session& s) { return s.opened().folder.string(); }));
+}
+
+/// Binds fields and sets of the body.
+void bind_arrays(py::class_<Held>& bound) {
+  using py::arg;
+  bound
       .def_property_readonly("material_names",
                              [](const Held& h) { return h.get().simulation().model().material_names; })
       .def(
@@ -391,8 +388,39 @@ void bind_sessions(py::module_& m) {
           },
           arg("set"), arg("of_contacts"))
       .def_property_readonly("specimen", [](const Held& h) { return h.get().simulation().specimen(); })
-      .def_property_readonly("deck_folder", read([](const Session& s) { return s.opened().folder.string(); }))
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
+}
+
+}  // namespace
+
+void bind_sessions(py::module_& m) {
+  using py::arg;
+  m.def(
+      "possible_fields",
+      [] {
+        std::vector<py::tuple> all;
+        for (const FieldInfo& f : possible_fields())
+          all.push_back(py::make_tuple(f.name, product_of(f.unit), name_of(f.item), components_of(f.kind, 2),
+                                       f.meaning, f.in_files));
+        return all;
+      },
+      "Fields that runs may have: name, unit as in files, item, components, meaning, whether files hold it.");
+  m.def(
+      "seconds_of_run",
+      [](const DeckText& deck, std::optional<std::uint64_t> seed) {
+        auto chosen = choices(seed, 1, "", {}, deck.laws, deck.stages);
+        chosen.laws = law_sources(deck);
+        Opened opened(parse(deck), deck.folder, chosen);
+        const auto simulation = make_simulation(opened.setup, opened.team);
+        return rehearse(std::move(opened.setup), *simulation).seconds;
+      },
+      arg("deck"), arg("seed"),
+      "Wall time that a run of one thread will probably take, s, by its first steps.");
+  py::class_<Held> session(m, "Session",
+                           "A run with its deck, its simulation and, where it has one, its folder.");
+  bind_stepping(session);
+  bind_state(session);
+  bind_arrays(session);
 }
 
 }  // namespace pyroclast::python
