@@ -10,7 +10,7 @@
 
 #include "mechanics/bodies.hpp"
 #include "pyroclast/base/sha256.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 namespace pyroclast {
 namespace {

@@ -17,7 +17,7 @@
 #include "own_folder.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/find_law.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 #include "stages/small_runs.hpp"
 

@@ -18,7 +18,7 @@ const std::string kUnload =
     "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\nto_stress = \"1 "
     "MPa\"\n";
 
-Opened opened(const std::string& stages) {
+DeckOfRun opened(const std::string& stages) {
   RunChoices choices;
   choices.threads = 1;
   return {Deck::parse(deck(kUniform + kSettle + stages), "deck.toml"), ".", choices};
@@ -42,24 +42,24 @@ std::vector<std::string> cells(const Session& session) {
   return all;
 }
 
-TEST(Opened, TakesNoMoreThreadsThanProcessorsAreFreeAndSaysSo) {
+TEST(DeckOfRun, TakesNoMoreThreadsThanProcessorsAreFreeAndSaysSo) {
   const auto with_threads = [](int threads) {
     RunChoices choices;
     choices.threads = threads;
-    return Opened(Deck::parse(deck(kUniform + kSettle), "deck.toml"), ".", choices);
+    return DeckOfRun(Deck::parse(deck(kUniform + kSettle), "deck.toml"), ".", choices);
   };
-  const auto says_so = [](const Opened& opened) {
+  const auto says_so = [](const DeckOfRun& opened) {
     return std::ranges::count_if(opened.warnings, [](const std::string& warning) {
       return warning.find("were asked for") != std::string::npos;
     });
   };
   const int free = free_processors();
   for (const int threads : {0, 1, free}) {
-    const Opened opened = with_threads(threads);
+    const DeckOfRun opened = with_threads(threads);
     EXPECT_EQ(opened.team->size(), threads == 0 ? free : threads);
     EXPECT_EQ(says_so(opened), 0);
   }
-  const Opened more = with_threads(free + 6);
+  const DeckOfRun more = with_threads(free + 6);
   EXPECT_EQ(more.team->size(), free);
   EXPECT_EQ(says_so(more), 1);
   EXPECT_THROW(with_threads(-1), Error);

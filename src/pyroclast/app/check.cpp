@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/base/place_text.hpp"
@@ -115,7 +115,7 @@ void print_results(const Rehearsal& cost, bool has_fields) {
 }
 
 /// Tells what is known of a deck without the code that it names. Returns the exit code.
-int say_unchecked(const Opened& opened) {
+int say_unchecked(const DeckOfRun& opened) {
   fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
              shown(opened.setup.title), describe_warnings(opened.warnings));
   for (const std::string& code : opened.setup.code_not_allowed)
@@ -126,7 +126,7 @@ int say_unchecked(const Opened& opened) {
 }  // namespace
 
 int check(const RunOptions& options) {
-  Opened opened = open_deck(options, false);
+  DeckOfRun opened = open_deck(options, false);
   Setup& setup = opened.setup;
   if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
   opened.choices.before_making(opened);

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/kit.hpp"

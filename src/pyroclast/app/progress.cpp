@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 
 namespace pyroclast::app {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/commands.hpp"
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/results/properties_file.hpp"
 #include "pyroclast/results/text_file.hpp"

@@ -151,7 +151,7 @@ int exit_code(const Summary& summary) {
 
 std::string describe_start(Session& session) {
   const Simulation& simulation = session.simulation();
-  const Opened& opened = session.opened();
+  const DeckOfRun& opened = session.opened();
   std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
                      describe_own_laws() + describe(simulation.specimen()) +
                      describe_warnings(simulation.warnings_of_specimen());

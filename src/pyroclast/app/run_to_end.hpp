@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 #include "pyroclast/app/run_log.hpp"
 #include "pyroclast/session/session.hpp"
 

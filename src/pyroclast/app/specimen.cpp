@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/results/folder_lock.hpp"
@@ -25,7 +25,7 @@ std::vector<std::string> warnings_of(const Setup& setup, const MadeSpecimen& spe
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
   if (options.out.empty()) options.out = output_folder(asked).string() + "-specimen";
-  const Opened opened = open_deck(options, false);
+  const DeckOfRun opened = open_deck(options, false);
   const Setup& setup = opened.setup;
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);

@@ -14,7 +14,7 @@
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 namespace pyroclast {
 

@@ -410,7 +410,7 @@ void bind_sessions(py::module_& m) {
       [](const DeckText& deck, std::optional<std::uint64_t> seed) {
         auto chosen = choices(seed, 1, "", {}, deck.laws, deck.stages);
         chosen.laws = law_sources(deck);
-        Opened opened(parse(deck), deck.folder, chosen);
+        DeckOfRun opened(parse(deck), deck.folder, chosen);
         const auto simulation = make_simulation(opened.setup, opened.team);
         return rehearse(std::move(opened.setup), *simulation).seconds;
       },

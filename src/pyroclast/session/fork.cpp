@@ -44,8 +44,8 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
     refuse("belongs to another body: specimen or laws of this program differ from those that the run had");
 }
 
-Opened open_from(const fs::path& run, const std::vector<std::string>& changes, const Appendix& more,
-                 RunChoices choices) {
+DeckOfRun open_from(const fs::path& run, const std::vector<std::string>& changes, const Appendix& more,
+                    RunChoices choices) {
   choices.seed.reset();  // the folder's deck has the seed
   return {Deck::open(run / kDeck, changes, more), run, std::move(choices)};
 }
@@ -155,7 +155,7 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   // the parent is only read: it may still run
   RunFolder::require(of.run);
   require_deck_alone(of.run);
-  Opened parent = open_from(of.run, {}, {}, choices);
+  DeckOfRun parent = open_from(of.run, {}, {}, choices);
   const std::int64_t stage = of.from_stage.empty() ? static_cast<std::int64_t>(parent.setup.stages.size()) - 1
                                                    : stage_of(of.from_stage, parent.setup);
   for (const std::string& change : of.changes) require_later(change, stage);
@@ -164,7 +164,7 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   const CheckpointFile checkpoint = open_state(states.back(), stage, of.run, parent.setup);
 
   const Appendix more = of.more.empty() ? Appendix() : Appendix{read_file(of.more), of.more.string()};
-  Opened opened = open_from(of.run, of.changes, more, choices);
+  DeckOfRun opened = open_from(of.run, of.changes, more, choices);
   if (!of.more.empty() && opened.setup.stages.size() == parent.setup.stages.size())
     throw Error(fmt::format("{}: has no [[stages]], so that nothing follows", of.more.string()));
   std::unique_ptr<Session> session(new Session(std::move(opened), lock(output), output.folder));

@@ -17,7 +17,8 @@ namespace pyroclast {
 
 namespace {
 
-std::unique_ptr<Simulation> make_simulation_of(const Opened& opened, std::optional<MadeSpecimen> specimen) {
+std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
+                                               std::optional<MadeSpecimen> specimen) {
   if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team);
   opened.choices.before_making(opened);
   return make_simulation(opened.setup, opened.team);
@@ -75,7 +76,7 @@ auto Session::telling_where_to_go_on(Act act) {
   }
 }
 
-Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+Session::Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
                  std::optional<MadeSpecimen> specimen)
     : lock_(std::move(lock)),
       folder_(std::move(folder)),
@@ -102,7 +103,7 @@ std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
   return held;
 }
 
-std::unique_ptr<Session> Session::begin(Opened opened, const std::optional<RunOutput>& output) {
+std::unique_ptr<Session> Session::begin(DeckOfRun opened, const std::optional<RunOutput>& output) {
   auto held = output ? lock(*output) : nullptr;
   std::unique_ptr<Session> session(
       new Session(std::move(opened), std::move(held), output ? output->folder : std::filesystem::path()));
@@ -177,8 +178,8 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
                                        const std::optional<RunOutput>& output) {
   for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
   auto held = output ? lock(*output) : nullptr;
-  Opened opened(Deck::parse(opened_.deck.text(), opened_.deck.name(), changes), opened_.folder,
-                opened_.choices);
+  DeckOfRun opened(Deck::parse(opened_.deck.text(), opened_.deck.name(), changes), opened_.folder,
+                   opened_.choices);
   opened.team->resize(opened_.team->size());
   std::unique_ptr<Session> copied(new Session(std::move(opened), std::move(held),
                                               output ? output->folder : std::filesystem::path(),

@@ -13,7 +13,7 @@
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/results_writer.hpp"
 #include "pyroclast/results/run_folder.hpp"
-#include "pyroclast/session/open.hpp"
+#include "pyroclast/session/deck_of_run.hpp"
 #include "pyroclast/simulation/run.hpp"
 
 namespace pyroclast {
@@ -43,7 +43,7 @@ class Session {
  public:
   /// Makes a run from its beginning. Throws Error where it cannot be made, or its folder may not be written.
   /// \param output  empty: nothing is written
-  static std::unique_ptr<Session> begin(Opened opened, const std::optional<RunOutput>& output);
+  static std::unique_ptr<Session> begin(DeckOfRun opened, const std::optional<RunOutput>& output);
   /// Goes on with a run that was broken off, in its folder. Throws Error where the run is over, or the
   /// checkpoint is not of this program, these inputs and this body.
   /// \param checkpoint  checkpoint to go on from; empty: the newest
@@ -106,7 +106,7 @@ class Session {
   Run& run() { return run_; }
   const Run& run() const { return run_; }
   Simulation& simulation() { return *simulation_; }
-  const Opened& opened() const { return opened_; }
+  const DeckOfRun& opened() const { return opened_; }
   /// Returns the folder; empty where nothing is written.
   const std::filesystem::path& folder() const { return folder_; }
   /// Returns the files that were in the folder and that no run writes.
@@ -118,7 +118,7 @@ class Session {
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
 
  private:
-  Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+  Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
           std::optional<MadeSpecimen> specimen = std::nullopt);
 
   static std::unique_ptr<FolderLock> lock(const RunOutput& output);
@@ -133,7 +133,7 @@ class Session {
 
   std::unique_ptr<FolderLock> lock_;
   std::filesystem::path folder_;
-  Opened opened_;
+  DeckOfRun opened_;
   Inputs inputs_;
   std::unique_ptr<Simulation> simulation_;
   ResultsWriter writer_;

@@ -17,7 +17,7 @@
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/plugin/code_permission.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 namespace pyroclast {
 

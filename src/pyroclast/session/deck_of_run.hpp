@@ -13,7 +13,7 @@
 
 namespace pyroclast {
 
-struct Opened;
+struct DeckOfRun;
 
 /// Choices of a user beside a deck.
 struct RunChoices {
@@ -25,14 +25,14 @@ struct RunChoices {
   LawSources laws = LawSources::of_environment();
   bool needs_code = true;  ///< false: code that the deck names and that may not run is listed in its setup
   /// Function that is called before the specimen is made, which may take long.
-  std::function<void(const Opened&)> before_making = [](const Opened&) {};
+  std::function<void(const DeckOfRun&)> before_making = [](const DeckOfRun&) {};
 };
 
 /// Deck as it was read, with the choices applied, and the threads of its run.
-struct Opened {
+struct DeckOfRun {
   /// Reads a deck. Throws DeckError, or Error for a choice that is not allowed.
   /// \param folder  folder of the deck
-  Opened(Deck deck, std::filesystem::path folder, RunChoices choices);
+  DeckOfRun(Deck deck, std::filesystem::path folder, RunChoices choices);
 
   RunChoices choices;
   std::filesystem::path folder;

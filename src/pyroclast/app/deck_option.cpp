@@ -1,4 +1,4 @@
-#include "pyroclast/app/open.hpp"
+#include "pyroclast/app/deck_option.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/place_text.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 namespace pyroclast::app {
 
@@ -84,7 +84,7 @@ std::string describe_specimen(const solid::SolidSpecimen& s) {
 
 }  // namespace
 
-Opened open_deck(const RunOptions& options, bool needs_code) {
+DeckOfRun open_deck(const RunOptions& options, bool needs_code) {
   RunChoices choices = choices_of(options);
   choices.needs_code = needs_code;
   return {Deck::open(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
@@ -97,7 +97,7 @@ RunChoices choices_of(const RunOptions& options) {
   choices.instructions = options.instructions;
   choices.checkpoint = options.checkpoint;
   choices.laws = sources_of(options.laws);
-  choices.before_making = [speech = options.speech](const Opened& opened) {
+  choices.before_making = [speech = options.speech](const DeckOfRun& opened) {
     const int blocks = opened.setup.specimen.blocks.count;
     if (blocks < kManyBlocks || speech == Speech::quiet) return;
     fmt::print("making the specimen of {} blocks ...\n", blocks);

@@ -1,4 +1,4 @@
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 #include <cstring>
 #include <deque>
@@ -115,13 +115,13 @@ class Opener {
   const std::filesystem::path& file_;
 };
 
-struct Opened {
+struct OpenedLibraries {
   std::mutex mutex;
   std::deque<OpenedLaw> laws;  // never moved: contacts point at their tables
 };
 
-Opened& opened() {
-  static Opened all;
+OpenedLibraries& opened() {
+  static OpenedLibraries all;
   return all;
 }
 

@@ -3,13 +3,13 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/run_folder.hpp"
-#include "pyroclast/session/open.hpp"
+#include "pyroclast/session/deck_of_run.hpp"
 
 namespace pyroclast::app {
 
 /// Opens the deck of the options, with the changes of the command line applied and the threads set.
 /// \param needs_code  false: code that the deck names and that may not run is listed in its setup
-Opened open_deck(const RunOptions& options, bool needs_code = true);
+DeckOfRun open_deck(const RunOptions& options, bool needs_code = true);
 /// Returns the choices for a run. With many blocks it first says that making them takes a while.
 RunChoices choices_of(const RunOptions& options);
 

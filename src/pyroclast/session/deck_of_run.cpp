@@ -1,4 +1,4 @@
-#include "pyroclast/session/open.hpp"
+#include "pyroclast/session/deck_of_run.hpp"
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/processors.hpp"
-#include "pyroclast/plugin/open.hpp"
+#include "pyroclast/plugin/open_library.hpp"
 
 namespace pyroclast {
 
@@ -20,7 +20,7 @@ LawSources laws_for(InstructionSet set, LawSources laws) {
 
 }  // namespace
 
-Opened::Opened(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
+DeckOfRun::DeckOfRun(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
     : choices(std::move(chosen)),
       folder(std::move(folder_of_deck)),
       deck(std::move(read)),
