@@ -46,7 +46,7 @@ def main() -> None:
         version = manifest["physics_version"]
         print(f"{version},{variant},{manifest['seed']}," + ",".join(number(result[c]) for c in COLUMNS) +
               f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_turnover']:.3f}"
-              f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},"
+              f",{summary['specimen']['fraction_superposed']:.4f},{summary['steps']},"
               f"{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):

@@ -146,8 +146,8 @@ TEST_F(Results, HeatAloneHasProbesALedgerThatClosesAndNoContacts) {
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(last.begin(), last.end(), ','));
   EXPECT_EQ(lines_of(content(folder_ / "fields" / "frames.csv")).front(),
             "frame,stage,temperature_degC,heating_time_s");
-  EXPECT_FALSE(summary.energy_error);
-  EXPECT_LT(summary.heat_error.value(), 1e-12);  // conserved to rounding
+  EXPECT_FALSE(summary.soundness.energy_error);
+  EXPECT_LT(summary.soundness.heat_error.value(), 1e-12);  // conserved to rounding
   const auto& stage = summary.stages.at(0);
   ASSERT_EQ(stage.report.warnings.size(), 1U);
   EXPECT_NE(stage.report.warnings[0].find("no steady state"), std::string::npos);

@@ -13,10 +13,8 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/exchange.hpp"
 #include "pyroclast/simulation/fields.hpp"
-#include "pyroclast/simulation/gauges.hpp"
-#include "pyroclast/stages/opening_control.hpp"
+#include "pyroclast/stages/possible_columns.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast::app {
@@ -57,11 +55,8 @@ void print_fields() {
 }
 
 void print_columns() {
-  std::vector<ColumnInfo> infos{
-      {"stage", "1", "number of the stage, from 1; 0 is the body before its first stage"}};
-  for (const auto& more : {possible_gauge_columns(), Exchange::column_infos(), OpeningControl::columns()})
-    infos.insert(infos.end(), more.begin(), more.end());
-  for (const ColumnInfo& info : infos) fmt::print("{:<26} {:<8} {}\n", info.name, info.unit, info.meaning);
+  for (const Column& each : possible_columns())
+    fmt::print("{:<30} {:<8} {:<21} {}\n", each.name, each.unit, name_of(each.role), each.meaning);
 }
 
 void print_rocks() {

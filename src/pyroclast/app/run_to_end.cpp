@@ -105,10 +105,10 @@ std::string doing_line(const Run& run) {
 /// Says how far the strength of one specimen can be trusted; empty where the run measured none, or another
 /// specimen's scatter is not known.
 std::string describe_scatter(const Summary& s, const AskedSpecimen& specimen) {
-  const auto has_strength = [](const auto& stage) {
-    return stage.kind == "compress" && std::ranges::any_of(stage.report.results, [](const Result& result) {
-             return result.name == "f_c_MPa" && std::holds_alternative<double>(result.value);
-           });
+  const auto has_strength = [](const ReportedStage& stage) {
+    return std::ranges::any_of(stage.report.results, [](const Result& result) {
+      return result.name == kStrength.name && std::holds_alternative<double>(result.value);
+    });
   };
   const auto like = studied_like(specimen);
   if (!like || std::ranges::none_of(s.stages, has_strength)) return "";
@@ -123,28 +123,29 @@ std::string describe(const Summary& s, const AskedSpecimen& specimen, const std:
   std::string text =
       fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
-    const auto& [kind, outcome, report] = s.stages[i];
+    const auto& [kind, outcome, report, is_sound] = s.stages[i];
     const std::string label = fmt::format("stage {}", i + 1);
     text += fmt::format("{:<16}{}: {}\n", label, kind, describe(outcome));
     for (const auto& line : report.lines) text += fmt::format("{:<16}{}\n", "", line);
     text += describe_warnings(report.warnings);
   }
-  if (s.energy_error)
+  if (s.soundness.energy_error)
+    text += fmt::format("energy ledger   closes within {:.3f} % of the energy turned over{}\n",
+                        100.0 * std::abs(*s.soundness.energy_error),
+                        s.soundness.error_over_dissipated
+                            ? fmt::format(", {:.2g} % of the energy that contacts dissipated",
+                                          100.0 * std::abs(*s.soundness.error_over_dissipated))
+                            : "");
+  if (s.soundness.heat_error)
     text +=
-        fmt::format("energy ledger   closes within {:.3f} % of the energy turned over{}\n",
-                    100.0 * std::abs(*s.energy_error),
-                    s.error_over_dissipated ? fmt::format(", {:.2g} % of the energy that contacts dissipated",
-                                                          100.0 * std::abs(*s.error_over_dissipated))
-                                            : "");
-  if (s.heat_error)
-    text += fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.heat_error);
+        fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.soundness.heat_error);
   return text + describe_scatter(s, specimen) + describe_warnings(s.warnings) +
          fmt::format("results         {}", folder.string());
 }
 
 int exit_code(const Summary& summary) {
   if (summary.outcome == Outcome::stopped) return kInterrupted;
-  return is_good(summary.outcome) && summary.is_sound ? 0 : 2;
+  return is_good(summary.outcome) && summary.is_sound() ? 0 : 2;
 }
 
 }  // namespace

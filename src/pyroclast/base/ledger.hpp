@@ -15,6 +15,7 @@ struct LedgerEntry {
   const char* name;    ///< name in summary.json
   const char* column;  ///< column of the history
   LedgerSide side;
+  const char* label;  ///< few words for legends
   const char* meaning;
   double (*value)(const Ledger&);
 };

@@ -199,8 +199,10 @@ struct Cohesive {
     template <class F, class... L>
     static constexpr void each(F&& f, L&... l) {
       f(info::slip_path, l.slip_path...);
-      f(LossInfo{"tension", "G_f1 when torn apart", unit::fracture_energy}, l.tension...);
-      f(LossInfo{"shear", "above the residual line; G_f2 when fully softened", unit::fracture_energy},
+      f(LossInfo{"tension", "G_f1 when torn apart", unit::fracture_energy, "tension softening"},
+        l.tension...);
+      f(LossInfo{"shear", "above the residual line; G_f2 when fully softened", unit::fracture_energy,
+                 "shear softening"},
         l.shear...);
       f(LossInfo{"friction", "along the residual line", unit::fracture_energy}, l.friction...);
       f(info::lost_in_compression, l.compression...);

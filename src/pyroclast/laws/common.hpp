@@ -47,7 +47,8 @@ inline constexpr InternalInfo held_jump{
     false};
 
 inline constexpr LossInfo slip_path{"slip_path", "length of the slip's path", unit::length};
-inline constexpr LossInfo lost_in_compression{"compression", "irreversible closure", unit::fracture_energy};
+inline constexpr LossInfo lost_in_compression{"compression", "irreversible closure", unit::fracture_energy,
+                                              "crushing"};
 
 }  // namespace info
 

@@ -99,6 +99,7 @@ struct LossInfo {
   const char* name;
   const char* meaning;
   Unit unit;
+  const char* label = "";  ///< few words for legends; empty: the name
 
   /// Tells whether the loss is an energy, which the ledger counts.
   constexpr bool is_energy() const { return unit == unit::fracture_energy; }

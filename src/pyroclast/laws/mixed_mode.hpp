@@ -243,10 +243,11 @@ struct MixedMode {
     static constexpr void each(F&& f, L&... l) {
       f(LossInfo{"slip_path", "length of the slip's path, times the share that is broken", unit::length},
         l.slip_path...);
-      f(LossInfo{"tension", "of the bond by opening; G_f1 when torn apart", unit::fracture_energy},
+      f(LossInfo{"tension", "of the bond by opening; G_f1 when torn apart", unit::fracture_energy,
+                 "tension softening"},
         l.tension...);
-      f(LossInfo{"shear", "of the bond by shear above friction; G_f2 when sheared off",
-                 unit::fracture_energy},
+      f(LossInfo{"shear", "of the bond by shear above friction; G_f2 when sheared off", unit::fracture_energy,
+                 "shear softening"},
         l.shear...);
       f(LossInfo{"friction", "rubbed off, less the work that dilation gives back", unit::fracture_energy},
         l.friction...);

@@ -11,12 +11,12 @@
 
 namespace pyroclast {
 
-namespace {
-
-const char* name_of(Remembers damage) {
+const char* name_of_mode(Remembers damage) {
   if (damage == Remembers::tension_damage) return "tension";
   return damage == Remembers::shear_damage ? "shear" : "mixed";
 }
+
+namespace {
 
 /// Returns the law of an interface, by its first contact; null where no contact has the interface.
 template <int Dim>
@@ -128,7 +128,7 @@ std::vector<CrackKind> crack_kinds(const Body<Dim>& body) {
   for (const Remembers damage : kCrackModes)
     for (int i = 0; i < static_cast<int>(names.size()); ++i)
       if (laws[i] && std::ranges::count(laws[i]->internals(Dim), damage, &InternalInfo::what) > 0)
-        kinds.push_back({damage, i, fmt::format("{}_{}", name_of(damage), names[i])});
+        kinds.push_back({damage, i, fmt::format("{}_{}", name_of_mode(damage), names[i])});
   return kinds;
 }
 

@@ -24,6 +24,9 @@ struct CrackCount {
 inline constexpr Remembers kCrackModes[] = {Remembers::tension_damage, Remembers::shear_damage,
                                             Remembers::mixed_damage};
 
+/// Returns the name of a mode, "tension".
+const char* name_of_mode(Remembers damage);
+
 /// Kind of cracks that are counted apart.
 struct CrackKind {
   Remembers damage;  ///< mode: tension_damage, shear_damage or mixed_damage

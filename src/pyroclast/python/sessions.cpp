@@ -16,6 +16,7 @@
 #include "pyroclast/python/decks.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/stages/possible_columns.hpp"
 
 namespace pyroclast::python {
 
@@ -405,6 +406,17 @@ void bind_sessions(py::module_& m) {
         return all;
       },
       "Fields that runs may have: name, unit as in files, item, components, meaning, whether files hold it.");
+  m.def(
+      "possible_columns",
+      [] {
+        std::vector<py::tuple> all;
+        for (const Column& c : possible_columns())
+          all.push_back(
+              py::make_tuple(c.name, c.unit, c.label, c.meaning, name_of(c.role), c.of, c.mode, c.interface));
+        return all;
+      },
+      "Columns that histories may have: name, unit, label, meaning, role, quantity, mode and interface of "
+      "cracks.");
   m.def(
       "seconds_of_run",
       [](const DeckText& deck, std::optional<std::uint64_t> seed) {

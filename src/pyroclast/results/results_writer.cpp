@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/results/properties_file.hpp"
+#include "pyroclast/results/run_facts.hpp"
 #include "pyroclast/results/specimen_files.hpp"
 #include "pyroclast/results/text_file.hpp"
 
@@ -26,6 +27,7 @@ ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
 
 void ResultsWriter::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
+  write_run_facts(folder_ / "run.json", run);
   history_.emplace(folder_ / "history.csv", run.history());
   if (!run.simulation().field().is_uniform())
     profile_.emplace(folder_, run.simulation(), exposure_, profile_rows_);

@@ -15,7 +15,7 @@
 
 namespace pyroclast {
 
-/// Writer of a run's results into its folder as they come: `history.csv`, `fields/`, `specimen/`,
+/// Writer of a run's results into its folder as they come: `run.json`, `history.csv`, `fields/`, `specimen/`,
 /// `properties.csv`, where heat is conducted `temperature_profile.csv` and `isotherm.csv`, and at the end
 /// `summary.json`:
 ///

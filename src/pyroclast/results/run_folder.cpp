@@ -35,6 +35,7 @@ constexpr const char* kProgram = "pyroclast";
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,
+    "run.json",
     "history.csv",
     "temperature_profile.csv",
     "isotherm.csv",

@@ -99,11 +99,27 @@ void write_stones(const std::filesystem::path& folder, const std::vector<specime
   if (!stones.empty()) write_text_file(folder / "gradation.csv", gradation_csv(stones, asked));
 }
 
+std::size_t block_count(const specimen::Specimen& s) {
+  return s.tessellation.cells.size();
+}
+
+std::size_t block_count(const solid::SolidSpecimen& s) {
+  return s.complex.cells.size();
+}
+
+std::size_t stone_count(const specimen::Specimen& s) {
+  return s.aggregates.size();
+}
+
+std::size_t stone_count(const solid::SolidSpecimen& s) {
+  return s.balls.size();
+}
+
 /// Adds the numbers that specimens of the plane and of space have.
 template <class Specimen>
-void add_common(nlohmann::ordered_json& json, const Specimen& s, std::size_t blocks, std::size_t stones) {
-  json["blocks"] = blocks;
-  json["aggregates"] = stones;
+void add_common(nlohmann::ordered_json& json, const Specimen& s) {
+  json["blocks"] = block_count(s);
+  json["aggregates"] = stone_count(s);
   json["fraction_asked"] = s.fraction_asked;
   json["fraction_placed"] = s.fraction_placed;
   json["fraction_superposed"] = s.fraction_superposed;
@@ -121,7 +137,7 @@ void write_made(const std::filesystem::path& folder, const specimen::Specimen& s
   nlohmann::ordered_json json;
   json["width_m"] = s.region.box().width();
   json["height_m"] = s.region.box().height();
-  add_common(json, s, s.tessellation.cells.size(), s.aggregates.size());
+  add_common(json, s);
   json["mean_edge_m"] = s.metrics.mean_edge;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
   json["edges_removed"] = s.metrics.edges_removed;
@@ -141,7 +157,7 @@ void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen&
   json["height_m"] = size[1];
   json["depth_m"] = size[2];
   json["volume_m3"] = s.body.volume();
-  add_common(json, s, s.complex.cells.size(), s.balls.size());
+  add_common(json, s);
   json["zones_per_block"] = s.metrics.zones_per_block;
   json["most_corners_of_a_face"] = s.metrics.most_corners;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
@@ -164,6 +180,12 @@ void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen&
 }
 
 }  // namespace
+
+nlohmann::ordered_json specimen_facts(const MadeSpecimen& made) {
+  nlohmann::ordered_json json;
+  std::visit([&](const auto& s) { add_common(json, s); }, made);
+  return json;
+}
 
 void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
                           const specimen::SpecimenParameters& asked) {

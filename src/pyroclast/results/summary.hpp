@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -7,42 +8,26 @@
 #include <vector>
 
 #include "pyroclast/results/reference_distances.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/soundness.hpp"
 
 namespace pyroclast {
 
 /// Summary of a run: what a reader wants to know first.
 struct Summary {
-  struct OfStage {
-    std::string kind;
-    Outcome outcome = Outcome::not_begun;
-    StageReport report;
-  };
-
   std::string title;
   Outcome outcome = Outcome::completed;
-  std::vector<OfStage> stages;
+  std::vector<ReportedStage> stages;
   std::vector<ReferenceDistances> references;
   std::string expansion_reading;
   double wall_time = 0.0;  ///< wall time, s
-  /// Error of the energy ledger over the energy turned over; empty where nothing moves.
-  std::optional<double> energy_error;
-  /// Error of the energy ledger over the energy that contacts dissipated; empty where they dissipated
-  /// nothing.
-  std::optional<double> error_over_dissipated;
-  /// Largest stress that an exchange of computed temperatures brings at once, over the tensile strength.
-  std::optional<double> exchange_stress;
-  /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
-  std::optional<double> heat_error;
+  Soundness soundness;
   /// Side of the specimen from which depths count in `temperature_profile.csv`; empty where none is written.
   std::string heated_face;
-  bool is_sound = true;  ///< false where a stage has no results because its ledger does not close
   /// Warnings of the run as a whole; warnings of stages stand in their reports.
   std::vector<std::string> warnings;
-};
 
-/// Warns of a strength above an earlier stage's at which the specimen had failed: a failed specimen hardens.
-void warn_of_hardening(Summary& summary);
+  bool is_sound() const { return std::ranges::all_of(stages, &ReportedStage::is_sound); }
+};
 
 /// Makes the summary of the rows so far, with a warning for each thing that keeps the results from being
 /// taken at face value.

@@ -129,16 +129,11 @@ bool Exchange::is_still(const Simulation& simulation) const {
              kAsGoodAsNone * coupling_.platen_difference * simulation.area_across(block);
 }
 
-std::vector<ColumnInfo> Exchange::column_infos() {
-  return {{"exchange", "1", "number of the exchange of temperatures in the run, from 1"},
-          {"cycles", "1", "steps that the exchange took"},
-          {"converged", "1", "1 where the body came to rest, else 0"}};
-}
-
 std::vector<Column> Exchange::columns() {
-  std::vector<Column> columns;
-  for (const ColumnInfo& info : column_infos()) columns.push_back({info.name, info.unit});
-  return columns;
+  return {{"exchange", "1", "number of the exchange of temperatures in the run, from 1", ColumnRole::exchange,
+           "exchange"},
+          {"cycles", "1", "steps that the exchange took", ColumnRole::exchange, "cycles"},
+          {"converged", "1", "1 where the body came to rest, else 0", ColumnRole::exchange, "converged"}};
 }
 
 std::vector<double> Exchange::values() const {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pyroclast/simulation/column_info.hpp"
+#include "pyroclast/simulation/column.hpp"
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/stage.hpp"
 
@@ -66,7 +66,6 @@ class Exchange {
 
   bool ran_away() const { return kept_.ran_away; }
 
-  static std::vector<ColumnInfo> column_infos();
   static std::vector<Column> columns();
   std::vector<double> values() const;
   /// Returns the steps that one exchange will probably take.

@@ -1,5 +1,6 @@
 #include "pyroclast/simulation/gauges.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -12,20 +13,36 @@ namespace pyroclast {
 
 namespace {
 
-/// Column and the function that takes its value from a measurement.
+/// Column and the function that takes its value from a measurement. Words in capitals in the name stand for
+/// names of the body.
 template <class Measured>
 struct ColumnOf {
   const char* name;
   const char* unit;
+  ColumnRole role;
+  const char* of;
   const char* meaning;
   double (*value)(const Measured&);
 };
+
+/// Returns the columns of a table.
+template <class Measured, std::size_t N>
+std::vector<Column> columns_of(const std::array<ColumnOf<Measured>, N>& table) {
+  std::vector<Column> columns;
+  for (const auto& column : table)
+    columns.push_back({column.name, column.unit, column.meaning, column.role, column.of});
+  return columns;
+}
+
+void append(std::vector<Column>& to, const std::vector<Column>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
 
 /// Makes a gauge that measures once for all its columns. The table must outlive the gauge.
 template <class Measured, std::size_t N, class Measure>
 Gauge make_gauge(const std::array<ColumnOf<Measured>, N>& table, Measure measure, bool of_motion) {
   Gauge gauge;
-  for (const auto& column : table) gauge.columns.push_back({column.name, column.unit});
+  gauge.columns = columns_of(table);
   gauge.read = [&table, measure](const Simulation& simulation) {
     const Measured& measured = measure(simulation);
     std::vector<double> values;
@@ -40,39 +57,43 @@ constexpr double kMega = 1e-6;
 
 using M = Motion;
 constexpr auto kClock = std::to_array<ColumnOf<M>>({
-    {"step", "1", "steps of the mechanics since the start",
+    {"step", "1", ColumnRole::clock, "step", "steps of the mechanics since the start",
      [](const M& m) { return static_cast<double>(m.steps()); }},
-    {"time_s", "s", "time of the mechanics since the start", [](const M& m) { return m.time(); }},
+    {"time_s", "s", ColumnRole::clock, "time", "time of the mechanics since the start",
+     [](const M& m) { return m.time(); }},
 });
 
 using S = Simulation;
 constexpr auto kTemperature = std::to_array<ColumnOf<S>>({
-    {"heating_time_s", "s", "time since heating began", [](const S& s) { return s.heating_time(); }},
-    {"temperature_degC", "degC", "mean temperature over the volume of the specimen",
-     [](const S& s) { return s.field().mean(); }},
-    {"temperature_min_degC", "degC", "lowest temperature of the specimen",
+    {"heating_time_s", "s", ColumnRole::clock, "heating_time", "time since heating began",
+     [](const S& s) { return s.heating_time(); }},
+    {"temperature_degC", "degC", ColumnRole::temperature, "mean",
+     "mean temperature over the volume of the specimen", [](const S& s) { return s.field().mean(); }},
+    {"temperature_min_degC", "degC", ColumnRole::temperature, "lowest", "lowest temperature of the specimen",
      [](const S& s) { return s.field().minimum(); }},
-    {"temperature_max_degC", "degC", "highest temperature of the specimen",
-     [](const S& s) { return s.field().maximum(); }},
+    {"temperature_max_degC", "degC", ColumnRole::temperature, "highest",
+     "highest temperature of the specimen", [](const S& s) { return s.field().maximum(); }},
 });
 
 using P = Press;
 constexpr auto kPress = std::to_array<ColumnOf<P>>({
-    {"strain", "1",
+    {"strain", "1", ColumnRole::press, "strain",
      "approach of the platens' inner faces over the height, since the body came to rest; shortening counts "
      "as positive",
      [](const P& p) { return p.strain(); }},
-    {"stage_strain", "1", "the same since the stage began", [](const P& p) { return p.stage_strain(); }},
-    {"specimen_strain", "1",
+    {"stage_strain", "1", ColumnRole::press, "stage_strain", "the same since the stage began",
+     [](const P& p) { return p.stage_strain(); }},
+    {"specimen_strain", "1", ColumnRole::press, "specimen_strain",
      "approach of the specimen's own ends over its height, since the body came to rest",
      [](const P& p) { return p.specimen_strain(); }},
-    {"stress_MPa", "MPa", "mean reaction of both platens over the area; compression counts as positive",
+    {"stress_MPa", "MPa", ColumnRole::press, "stress",
+     "mean reaction of both platens over the area; compression counts as positive",
      [](const P& p) { return p.stress() * kMega; }},
-    {"stress_top_MPa", "MPa", "reaction of the upper platen over the area",
+    {"stress_top_MPa", "MPa", ColumnRole::press, "stress_top", "reaction of the upper platen over the area",
      [](const P& p) { return p.stress_top() * kMega; }},
-    {"stress_bottom_MPa", "MPa", "reaction of the lower platen over the area",
-     [](const P& p) { return p.stress_bottom() * kMega; }},
-    {"lateral_strain", "1",
+    {"stress_bottom_MPa", "MPa", ColumnRole::press, "stress_bottom",
+     "reaction of the lower platen over the area", [](const P& p) { return p.stress_bottom() * kMega; }},
+    {"lateral_strain", "1", ColumnRole::press, "lateral_strain",
      "widening over the width, since the body came to rest; of a solid the mean of both directions across "
      "the axis",
      [](const P& p) { return p.lateral_strain(); }},
@@ -90,35 +111,104 @@ MotionReading measure_motion(const Motion& motion) {
 }
 
 constexpr auto kMotion = std::to_array<ColumnOf<MotionReading>>({
-    {"unbalanced_ratio", "1",
+    {"unbalanced_ratio", "1", ColumnRole::rest, "unbalanced_ratio",
      "unbalanced forces over all forces on gridpoints; small where the body is at rest",
      [](const MotionReading& m) { return m.unbalanced_ratio; }},
-    {"kinetic_over_strain", "1", "kinetic over elastic energy",
+    {"kinetic_over_strain", "1", ColumnRole::rest, "kinetic_over_elastic", "kinetic over elastic energy",
      [](const MotionReading& m) { return m.energy.kinetic_over_elastic(); }},
-    {"largest_jump", "1",
+    {"largest_jump", "1", ColumnRole::rest, "largest_jump",
      "largest jump of a contact point over the length of its edge; of a solid over the mean block size",
      [](const MotionReading& m) { return m.largest_jump; }},
 });
 
-/// Makes a gauge of the hottest gas that heat flows from or to.
-Gauge gas_gauge() {
-  Gauge gauge;
-  gauge.columns.push_back({"gas_max_degC", "degC"});
-  gauge.read = [](const Simulation& s) {
-    return std::vector<double>{*s.field().conduction()->hottest_gas()};
-  };
-  return gauge;
+constexpr auto kTransport = std::to_array<ColumnOf<HeatSolver>>({
+    {"rate_K_s", "K/s", ColumnRole::heat_flow, "rate",
+     "root of the mean square of the temperature's rate over the volume",
+     [](const HeatSolver& h) { return h.rate(); }},
+});
+constexpr auto kGas = std::to_array<ColumnOf<HeatSolver>>({
+    {"gas_max_degC", "degC", ColumnRole::heat_flow, "hottest_gas", "hottest gas of all boundaries of heat",
+     [](const HeatSolver& h) { return *h.hottest_gas(); }},
+});
+
+/// Extent of the contacts whose sides have temperatures of their own; the first is of plane bodies, the
+/// second of bodies in space.
+constexpr auto kGaps = std::to_array<ColumnOf<S>>({
+    {"heat_gap_length_m", "m", ColumnRole::heat_flow, "gap_extent",
+     "length of the contacts whose sides have temperatures of their own, of a plane body",
+     [](const S& s) { return s.field().conduction()->gap_area() / s.model().thickness; }},
+    {"heat_gap_area_m2", "m2", ColumnRole::heat_flow, "gap_extent", "area of these contacts, of a solid",
+     [](const S& s) { return s.field().conduction()->gap_area() / s.model().thickness; }},
+});
+
+const HeatSolver& solver_of(const Simulation& simulation) {
+  return *simulation.field().conduction();
 }
 
 /// Makes a gauge of contacts whose sides have temperatures of their own.
 Gauge gap_gauge(const Model& model) {
-  Gauge gauge;
-  const Column extent = extent_column(model);
-  gauge.columns.push_back({"heat_gap_" + extent.name, extent.unit});
-  gauge.read = [](const Simulation& s) {
-    return std::vector<double>{s.field().conduction()->gap_area() / s.model().thickness};
+  const std::size_t own = model.dimension() == 2 ? 0 : 1;
+  return {{columns_of(kGaps)[own]},
+          [own](const Simulation& s) { return std::vector<double>{kGaps[own].value(s)}; }};
+}
+
+ColumnRole energy_role(LedgerSide side) {
+  switch (side) {
+    case LedgerSide::put_in:
+      return ColumnRole::energy_put_in;
+    case LedgerSide::held:
+      return ColumnRole::energy_held;
+    case LedgerSide::lost:
+      return ColumnRole::energy_lost;
+    case LedgerSide::error:
+      return ColumnRole::energy_error;
+  }
+  return ColumnRole::own;
+}
+
+ColumnRole heat_role(LedgerSide side) {
+  switch (side) {
+    case LedgerSide::put_in:
+      return ColumnRole::heat_put_in;
+    case LedgerSide::held:
+      return ColumnRole::heat_held;
+    case LedgerSide::lost:
+      return ColumnRole::heat_lost;
+    case LedgerSide::error:
+      return ColumnRole::heat_error;
+  }
+  return ColumnRole::own;
+}
+
+/// Returns the column of an entry of a ledger.
+/// \param of_what  "energy" or "heat"
+template <class Ledger>
+Column column_of_entry(const LedgerEntry<Ledger>& entry, const char* of_what, ColumnRole role) {
+  const auto side = [](LedgerSide of) {
+    switch (of) {
+      case LedgerSide::put_in:
+        return "put in, ";
+      case LedgerSide::held:
+        return "held, ";
+      case LedgerSide::lost:
+        return "lost, ";
+      case LedgerSide::error:
+        return "error, ";
+    }
+    return "";
   };
-  return gauge;
+  return {entry.column, "J",        fmt::format("{} {}{}", of_what, side(entry.side), entry.meaning),
+          role,         entry.name, entry.label};
+}
+
+/// Returns the column of an energy that contact laws or creep dissipate.
+Column dissipated_column(std::string_view name, std::string label = {}) {
+  return {fmt::format("dissipated_{}_J", name),
+          "J",
+          "energy lost by one part of the contact laws, or by creep",
+          ColumnRole::energy_lost,
+          std::string(name),
+          std::move(label)};
 }
 
 /// Calls one of two functions for each energy, in the order of the columns: `of_entry` for an entry of the
@@ -134,26 +224,49 @@ void for_each_energy(std::size_t dissipations, OfEntry of_entry, OfDissipated of
   }
 }
 
+/// Returns the columns of the energies, with those of the dissipated ones.
+std::vector<Column> energy_columns(const std::vector<Column>& dissipated) {
+  std::vector<Column> columns;
+  for_each_energy(
+      dissipated.size(),
+      [&](const auto& entry) {
+        columns.push_back(column_of_entry(entry, "energy", energy_role(entry.side)));
+      },
+      [&](std::size_t i) { columns.push_back(dissipated[i]); });
+  return columns;
+}
+
+std::vector<Column> heat_columns() {
+  std::vector<Column> columns;
+  for (const auto& entry : kHeats) columns.push_back(column_of_entry(entry, "heat", heat_role(entry.side)));
+  return columns;
+}
+
+/// Returns few words for an energy that a body dissipates, by the law that does.
+std::string label_of_loss(const Motion& motion, std::string_view name) {
+  for (const LawTable* law : motion.laws())
+    for (const LossInfo& loss : law->losses)
+      if (loss.is_energy() && loss.name == name && !std::string_view(loss.label).empty()) return loss.label;
+  std::string label(name);
+  std::ranges::replace(label, '_', ' ');
+  return label;
+}
+
 Gauge motion_gauge(const Motion& motion) {
   Gauge gauge;
-  for (const auto& column : kMotion) gauge.columns.push_back({column.name, column.unit});
-  const auto names = motion.dissipations();
-  for_each_energy(
-      names.size(),
-      [&](const auto& entry) {
-        gauge.columns.push_back({entry.column, "J"});
-      },
-      [&](std::size_t i) {
-        gauge.columns.push_back({fmt::format("dissipated_{}_J", names[i]), "J"});
-      });
+  gauge.columns = columns_of(kMotion);
+  std::vector<Column> dissipated;
+  for (const auto& name : motion.dissipations())
+    dissipated.push_back(dissipated_column(name, label_of_loss(motion, name)));
+  append(gauge.columns, energy_columns(dissipated));
   gauge.read = [](const Simulation& simulation) {
     const MotionReading measured = measure_motion(simulation.motion());
     std::vector<double> values;
     for (const auto& column : kMotion) values.push_back(column.value(measured));
-    const auto& dissipated = measured.energy.dissipated.energies;
+    const auto& lost = measured.energy.dissipated.energies;
     for_each_energy(
-        dissipated.size(), [&](const auto& entry) { values.push_back(entry.value(measured.energy)); },
-        [&](std::size_t i) { values.push_back(dissipated[i]); });
+        lost.size(), [&](const auto& entry) { values.push_back(entry.value(measured.energy)); },
+        [&](std::size_t i) { values.push_back(lost[i]); });
     return values;
   };
   gauge.of_motion = true;
@@ -163,35 +276,91 @@ Gauge motion_gauge(const Motion& motion) {
 /// Makes a gauge of rate and heat of a computed field.
 Gauge transport_gauge() {
   Gauge gauge;
-  gauge.columns.push_back({"rate_K_s", "K/s"});
-  for (const auto& entry : kHeats) gauge.columns.push_back({entry.column, "J"});
+  gauge.columns = columns_of(kTransport);
+  append(gauge.columns, heat_columns());
   gauge.read = [](const Simulation& simulation) {
-    const HeatSolver& conduction = *simulation.field().conduction();
+    const HeatSolver& conduction = solver_of(simulation);
     const HeatLedger heat = conduction.ledger();
-    std::vector<double> values{conduction.rate()};
+    std::vector<double> values;
+    for (const auto& column : kTransport) values.push_back(column.value(conduction));
     for (const auto& entry : kHeats) values.push_back(entry.value(heat));
     return values;
   };
   return gauge;
 }
 
+/// Column of the cracks by a mode at an interface.
+struct CrackColumn {
+  int dimension;  ///< dimension of the bodies that have it; 0: any
+  ColumnOf<CrackCount> of;
+};
+
+constexpr const char* kKindOfCracks = "MODE_INTERFACE";
+constexpr auto kCracks = std::to_array<CrackColumn>({
+    {0,
+     {"damaged", "1", ColumnRole::crack_damaged, "points",
+      "contact points of the interface whose damage by the mode is above 0",
+      [](const CrackCount& c) { return static_cast<double>(c.damaged); }}},
+    {0,
+     {"broken", "1", ColumnRole::crack_broken, "points",
+      "contact points of the interface whose damage by the mode is 1",
+      [](const CrackCount& c) { return static_cast<double>(c.broken); }}},
+    {2,
+     {"length_m", "m", ColumnRole::crack_damaged_extent, "extent",
+      "length that the damaged contact points stand for, of a plane body",
+      [](const CrackCount& c) { return c.extent; }}},
+    {3,
+     {"area_m2", "m2", ColumnRole::crack_damaged_extent, "extent",
+      "area that the damaged contact points stand for, of a solid",
+      [](const CrackCount& c) { return c.extent; }}},
+    {2,
+     {"broken_length_m", "m", ColumnRole::crack_broken_extent, "extent",
+      "length that the broken contact points stand for, of a plane body",
+      [](const CrackCount& c) { return c.broken_extent; }}},
+    {3,
+     {"broken_area_m2", "m2", ColumnRole::crack_broken_extent, "extent",
+      "area that the broken contact points stand for, of a solid",
+      [](const CrackCount& c) { return c.broken_extent; }}},
+});
+constexpr auto kOpening = std::to_array<ColumnOf<Cracks>>({
+    {"mean_opening_m", "m", ColumnRole::crack_opening, "mean",
+     "mean opening of contacts damaged in tension or mixed mode, by extent",
+     [](const Cracks& c) { return c.mean_opening; }},
+});
+
+/// Returns a column of the cracks of a kind, "tension_mortar_mortar", or of any kind.
+Column crack_column(const CrackColumn& column, const char* kind, const char* mode = "",
+                    const std::string& interface = {}) {
+  return {fmt::format("{}_{}", kind, column.of.name),
+          column.of.unit,
+          column.of.meaning,
+          column.of.role,
+          column.of.of,
+          {},
+          mode,
+          interface};
+}
+
 /// Makes a gauge of cracks, with columns for each mode and interface in which the laws of the body can break.
 Gauge crack_gauge(const Motion& motion) {
   Gauge gauge;
   const auto kinds = motion.crack_kinds();
-  const Column extent = extent_column(motion.model());
+  const int dimension = motion.model().dimension();
+  std::vector<double (*)(const CrackCount&)> read;
+  for (const CrackColumn& column : kCracks)
+    if (column.dimension == 0 || column.dimension == dimension) read.push_back(column.of.value);
   for (const CrackKind& kind : kinds)
-    for (const Column& column : {Column{"damaged", "1"}, Column{"broken", "1"}, extent,
-                                 Column{"broken_" + extent.name, extent.unit}})
-      gauge.columns.push_back({fmt::format("{}_{}", kind.name, column.name), column.unit});
-  gauge.columns.push_back({"mean_opening_m", "m"});
-  gauge.read = [kinds](const Simulation& simulation) {
+    for (const CrackColumn& column : kCracks)
+      if (column.dimension == 0 || column.dimension == dimension)
+        gauge.columns.push_back(crack_column(column, kind.name.c_str(), name_of_mode(kind.damage),
+                                             motion.model().interface_names[kind.interface]));
+  append(gauge.columns, columns_of(kOpening));
+  gauge.read = [kinds, read](const Simulation& simulation) {
     const Cracks cracks = simulation.motion().totals().count_cracks(kinds);
     std::vector<double> values;
     for (const CrackCount& count : cracks.of_kind)
-      values.insert(values.end(), {static_cast<double>(count.damaged), static_cast<double>(count.broken),
-                                   count.extent, count.broken_extent});
-    values.push_back(cracks.mean_opening);
+      for (const auto value : read) values.push_back(value(count));
+    for (const auto& column : kOpening) values.push_back(column.value(cracks));
     return values;
   };
   gauge.of_motion = true;
@@ -220,37 +389,12 @@ const Motion& motion_of(const Simulation& simulation) {
   return simulation.motion();
 }
 
-template <class Measured, std::size_t N>
-void add_infos(std::vector<ColumnInfo>& to, const std::array<ColumnOf<Measured>, N>& table) {
-  for (const auto& column : table) to.push_back({column.name, column.unit, column.meaning});
-}
-
-/// Adds the columns of a ledger, with the side on which each entry stands.
-template <class Ledger, std::size_t N>
-void add_infos(std::vector<ColumnInfo>& to, const std::array<LedgerEntry<Ledger>, N>& ledger,
-               const char* what) {
-  const auto side = [](LedgerSide of) {
-    switch (of) {
-      case LedgerSide::put_in:
-        return "put in, ";
-      case LedgerSide::held:
-        return "held, ";
-      case LedgerSide::lost:
-        return "lost, ";
-      case LedgerSide::error:
-        return "error, ";
-    }
-    return "";
-  };
-  for (const auto& entry : ledger)
-    to.push_back({entry.column, "J", fmt::format("{} {}{}", what, side(entry.side), entry.meaning)});
+Column probe_column(const std::string& name) {
+  return {fmt::format("probe_{}_degC", name), "degC", "temperature at a [[probes]] of the deck",
+          ColumnRole::probe, name};
 }
 
 }  // namespace
-
-Column extent_column(const Model& model) {
-  return model.dimension() == 2 ? Column{"length_m", "m"} : Column{"area_m2", "m2"};
-}
 
 std::vector<Gauge> clock_gauges(const Simulation& simulation) {
   if (!simulation.moves()) return {};
@@ -283,15 +427,14 @@ std::vector<Gauge> record_gauges(const Simulation& simulation) {
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
   std::vector<Gauge> gauges{transport_gauge()};
-  if (simulation.field().conduction()->hottest_gas()) gauges.push_back(gas_gauge());
+  if (simulation.field().conduction()->hottest_gas()) gauges.push_back(make_gauge(kGas, solver_of, false));
   if (simulation.cracks_hinder_heat()) gauges.push_back(gap_gauge(simulation.model()));
   return gauges;
 }
 
 std::vector<Gauge> probe_gauges(const Simulation& simulation) {
   Gauge gauge;
-  for (const auto& probe : simulation.probes())
-    gauge.columns.push_back({fmt::format("probe_{}_degC", probe.name()), "degC"});
+  for (const auto& probe : simulation.probes()) gauge.columns.push_back(probe_column(probe.name()));
   gauge.read = [](const Simulation& s) {
     std::vector<double> values;
     for (const auto& probe : s.probes()) values.push_back(probe.read(s.field().gridpoints()));
@@ -300,36 +443,22 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
   return {std::move(gauge)};
 }
 
-std::vector<ColumnInfo> possible_gauge_columns() {
-  std::vector<ColumnInfo> infos;
-  add_infos(infos, kClock);
-  add_infos(infos, kTemperature);
-  add_infos(infos, kPress);
-  add_infos(infos, kMotion);
-  add_infos(infos, kEnergies, "energy");
-  infos.push_back({"dissipated_NAME_J", "J", "energy lost by one part of the contact laws, or by creep"});
-  const std::string crack = "MODE_INTERFACE_";
-  infos.push_back(
-      {crack + "damaged", "1", "contact points of the interface whose damage by the mode is above 0"});
-  infos.push_back({crack + "broken", "1", "contact points of the interface whose damage by the mode is 1"});
-  infos.push_back(
-      {crack + "length_m", "m", "length that the damaged contact points stand for, of a plane body"});
-  infos.push_back({crack + "area_m2", "m2", "area that the damaged contact points stand for, of a solid"});
-  infos.push_back(
-      {crack + "broken_length_m", "m", "length that the broken contact points stand for, of a plane body"});
-  infos.push_back(
-      {crack + "broken_area_m2", "m2", "area that the broken contact points stand for, of a solid"});
-  infos.push_back(
-      {"mean_opening_m", "m", "mean opening of contacts damaged in tension or mixed mode, by extent"});
-  infos.push_back({"NAME_UNIT", "its own", "a [[record]] of the deck"});
-  infos.push_back({"rate_K_s", "K/s", "root of the mean square of the temperature's rate over the volume"});
-  infos.push_back({"gas_max_degC", "degC", "hottest gas of all boundaries of heat"});
-  add_infos(infos, kHeats, "heat");
-  infos.push_back({"heat_gap_length_m", "m",
-                   "length of the contacts whose sides have temperatures of their own, of a plane body"});
-  infos.push_back({"heat_gap_area_m2", "m2", "area of these contacts, of a solid"});
-  infos.push_back({"probe_NAME_degC", "degC", "temperature at a [[probes]] of the deck"});
-  return infos;
+std::vector<Column> possible_gauge_columns() {
+  std::vector<Column> columns;
+  append(columns, columns_of(kClock));
+  append(columns, columns_of(kTemperature));
+  append(columns, columns_of(kPress));
+  append(columns, columns_of(kMotion));
+  append(columns, energy_columns({dissipated_column("NAME")}));
+  for (const CrackColumn& column : kCracks) columns.push_back(crack_column(column, kKindOfCracks));
+  append(columns, columns_of(kOpening));
+  columns.push_back({"NAME_UNIT", "its own", kMeaningOfRecord, ColumnRole::record});
+  append(columns, columns_of(kTransport));
+  append(columns, columns_of(kGas));
+  append(columns, heat_columns());
+  append(columns, columns_of(kGaps));
+  columns.push_back(probe_column("NAME"));
+  return columns;
 }
 
 }  // namespace pyroclast

@@ -3,8 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "pyroclast/simulation/column_info.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/column.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -17,8 +16,6 @@ struct Gauge {
   bool of_motion = false;  ///< true where there is nothing to read in a stage that does not move the body
 };
 
-/// Returns the name and unit of the extent of cracks, see Model::extent: "length_m", or in 3D "area_m2".
-Column extent_column(const Model& model);
 /// Returns gauges of the steps and the time of the mechanics.
 std::vector<Gauge> clock_gauges(const Simulation& simulation);
 /// Returns gauges of heating time and temperatures.
@@ -33,6 +30,6 @@ std::vector<Gauge> transport_gauges(const Simulation& simulation);
 /// Returns gauges of the temperatures at the probes.
 std::vector<Gauge> probe_gauges(const Simulation& simulation);
 /// Returns all columns that these gauges may have.
-std::vector<ColumnInfo> possible_gauge_columns();
+std::vector<Column> possible_gauge_columns();
 
 }  // namespace pyroclast

@@ -11,20 +11,13 @@
 
 namespace pyroclast {
 
-Column column_with_unit(const std::string& name, const Unit& unit) {
-  if (unit == unit::dimensionless) return {name, unit.si};
-  std::string spelt = unit.si;
-  std::ranges::replace(spelt, '/', '_');
-  return {fmt::format("{}_{}", name, spelt), unit.si};
-}
-
 void History::add_column(const Column& column) {
   const auto found = find(column.name);
   if (!found) {
     columns_.push_back(column);
     return;
   }
-  if (columns_[*found] == column) return;
+  if (columns_[*found].unit == column.unit) return;
   throw Error(fmt::format("column \"{}\" of the history is in \"{}\", but in \"{}\" elsewhere", column.name,
                           columns_[*found].unit, column.unit));
 }

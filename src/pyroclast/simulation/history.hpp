@@ -7,20 +7,9 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
-#include "pyroclast/base/unit.hpp"
+#include "pyroclast/simulation/column.hpp"
 
 namespace pyroclast {
-
-/// Column of the history. The unit is also the end of the name, where the column has a unit: "stress_MPa".
-struct Column {
-  std::string name;
-  std::string unit;  ///< unit; "1" for a number
-
-  bool operator==(const Column&) const = default;
-};
-
-/// Returns the column of a law's quantity, in SI, with the unit behind its name, where it has one.
-Column column_with_unit(const std::string& name, const Unit& unit);
 
 /// Rows of a history, from `first` up to but without `last`.
 struct RowRange {
@@ -33,7 +22,7 @@ struct RowRange {
 /// does not have the quantity.
 class History {
  public:
-  /// Adds a column after the present ones, unless the same column is there already. Call it before the first
+  /// Adds a column after the present ones, unless one of its name is there already. Call it before the first
   /// row. Throws Error when a column of this name has another unit.
   void add_column(const Column& column);
   void add_row();

@@ -70,7 +70,7 @@ const Unit& rate_unit_of(RecordKind kind) {
 
 Column column_of(const RecordParameters& record) {
   const std::string unit = record.kind == RecordKind::stress ? "MPa" : unit_of(record.kind).si;
-  return {fmt::format("{}_{}", record.name, unit), unit};
+  return {fmt::format("{}_{}", record.name, unit), unit, kMeaningOfRecord, ColumnRole::record, record.name};
 }
 
 double column_over_si(RecordKind kind) {

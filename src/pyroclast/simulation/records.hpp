@@ -43,7 +43,10 @@ struct RecordParameters {
   MeanOver over = MeanOver::size;
 };
 
-/// Returns the column of a record in the history: its name and unit.
+/// Meaning of the column of a record.
+inline constexpr const char* kMeaningOfRecord = "a [[record]] of the deck";
+
+/// Returns the column of a record in the history.
 Column column_of(const RecordParameters& record);
 /// Returns the unit in which decks state a record.
 const Unit& unit_of(RecordKind kind);

@@ -23,15 +23,16 @@ int most_steps(const Simulation& simulation) {
       std::clamp<double>(kMostZoneSteps / simulation.model().whole_zone_count(), 1, kMostSteps));
 }
 
-std::vector<Column> row_columns() {
-  return {{"stage", "1"}};
-}
-
 void append(std::vector<Gauge>& all, std::vector<Gauge> more) {
   for (auto& gauge : more) all.push_back(std::move(gauge));
 }
 
 }  // namespace
+
+Column stage_column() {
+  return {"stage", "1", "number of the stage, from 0; that of the first row is 0 too", ColumnRole::clock,
+          "stage"};
+}
 
 Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
     : simulation_(simulation),
@@ -55,7 +56,7 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
 /// Names the columns in the stated order: number of the stage, clocks, temperatures, the stages' own, motion,
 /// records, transport, probes.
 void Run::name_columns() {
-  for (const Column& column : row_columns()) history_.add_column(column);
+  history_.add_column(stage_column());
   for (std::size_t i = 0; i <= gauges_.size(); ++i) {
     if (i == stages_columns_)
       for (const auto& stage : stages_)
@@ -78,7 +79,7 @@ std::string Run::place_of(const std::string& column) const {
 /// another quantity.
 void Run::require_own_columns() const {
   std::set<std::string> names;
-  for (const Column& column : row_columns()) names.insert(column.name);
+  names.insert(stage_column().name);
   for (const auto& stage : stages_)
     for (const Column& column : stage->columns()) names.insert(column.name);
   for (const Gauge& gauge : gauges_)
@@ -225,7 +226,7 @@ void Run::limit_batch(int most_steps) {
 std::vector<std::optional<double>> Run::measure() const {
   std::vector<std::optional<double>> row(history_.columns().size());
   const auto set = [&](const Column& column, double value) { row[history_.index(column.name)] = value; };
-  set(row_columns().front(), static_cast<double>(stage_));
+  set(stage_column(), static_cast<double>(stage_));
   const Stage* stage = stage_is_begun_ ? stages_[stage_].get() : nullptr;  // none at the start of the run
   for (const Gauge& gauge : gauges_) {
     if (gauge.of_motion && stage && !stage->needs().mechanics) continue;
@@ -288,6 +289,20 @@ void Run::visit_courses(StateVisitor& visitor) {
   outcome_ = stage_is_over_ && !stage_ends_run_ && has_more ? Outcome::running : outcome;
   visitor.require(outcome_ != Outcome::running || !stage_is_over_ || has_more, "outcome",
                   "says that the run goes on behind its last stage");
+}
+
+int test_stage(const Run& run) {
+  int found = -1;
+  bool measures_strength = false;
+  for (int i = 0; i < static_cast<int>(run.stages().size()); ++i) {
+    const auto results = run.stages()[i]->report(run.history(), {}, Outcome::not_begun).results;
+    const bool is_strength = std::ranges::find(results, kStrength.name, &Result::name) != results.end();
+    const bool is_test = std::ranges::find(results, ResultOf::test, &Result::of) != results.end();
+    if (!is_strength && (measures_strength || !is_test)) continue;
+    found = i;
+    measures_strength = is_strength;
+  }
+  return found;
 }
 
 }  // namespace pyroclast

@@ -128,4 +128,11 @@ class Run {
   Outcome outcome_ = Outcome::running;
 };
 
+/// Returns the column of the stage of a row.
+Column stage_column();
+
+/// Returns the stage that is the test of a run, from 0: the last that measures a strength, else the last with
+/// a result that a laboratory would report; -1 where no stage has one.
+int test_stage(const Run& run);
+
 }  // namespace pyroclast

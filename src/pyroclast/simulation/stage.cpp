@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
 namespace pyroclast {
 
 namespace {
@@ -54,6 +56,52 @@ Forecast& Forecast::operator+=(const Forecast& other) {
   exchanges += other.exchanges;
   heating_duration += other.heating_duration;
   return *this;
+}
+
+const char* name_of(ResultOf of) {
+  switch (of) {
+    case ResultOf::test:
+      return "test";
+    case ResultOf::computation:
+      return "computation";
+    case ResultOf::reason:
+      return "reason";
+    case ResultOf::doubt:
+      return "doubt";
+  }
+  return "";
+}
+
+namespace {
+
+/// Returns a text about a result, under its name without the unit.
+Result text_about(const ResultInfo& info, const char* ending, const char* meaning, ResultOf of,
+                  Result::Value text) {
+  std::string name = info.name;
+  if (const std::string unit = fmt::format("_{}", info.unit); name.ends_with(unit))
+    name.resize(name.size() - unit.size());
+  Result result(fmt::format("{}_{}", name, ending), std::move(text), of);
+  result.unit.clear();
+  result.meaning = meaning;
+  result.about = info.name;
+  return result;
+}
+
+}  // namespace
+
+Result reason_of(const ResultInfo& info, Result::Value why) {
+  return text_about(info, "none_because", "why the result has no value", ResultOf::reason, std::move(why));
+}
+
+Result doubt_of(const ResultInfo& info, Result::Value why) {
+  return text_about(info, "doubtful_because", "why the result does not tell what it should", ResultOf::doubt,
+                    std::move(why));
+}
+
+Result reason_of_all(std::string why) {
+  Result result("none_because", std::move(why), ResultOf::reason);
+  result.unit.clear();
+  return result;
 }
 
 Result::Value value_if(bool is_there, double value) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -88,18 +89,68 @@ struct Foreseen {
 
 /// What a result is of.
 enum class ResultOf : std::uint8_t {
-  test,        ///< the test: a laboratory would report it
-  computation  ///< the computation, or what the deck asked for: steps, tolerances, times of a driven test
+  test,         ///< the test: a laboratory would report it
+  computation,  ///< the computation, or what the deck asked for: steps, tolerances, times of a driven test
+  reason,       ///< text: why another result has no value
+  doubt         ///< text: why another result does not tell what it should
 };
 
-/// Result with its unit in the name: "f_c_MPa".
+/// Returns the word for it in files, "test".
+const char* name_of(ResultOf of);
+
+/// Number of digits of a result that a reader sees in as many as it has, up to four.
+inline constexpr int kAnyDigits = -1;
+
+/// What a result is, for readers that do not know its name.
+struct ResultInfo {
+  const char* name;  ///< name, with the unit as its end where it has one: "f_c_MPa"
+  const char* unit;  ///< unit; "1" for a number, a count or a flag, "" for a text
+  const char* label;
+  const char* meaning;
+  ResultOf of = ResultOf::test;
+  int digits = kAnyDigits;    ///< digits behind the point in the unit in which a reader sees it
+  const char* shown_in = "";  ///< unit in which a reader sees it: "1e-3" of strains; empty: its unit
+};
+
+/// Strength of a test: the last stage that measures it is the test of a run.
+inline constexpr ResultInfo kStrength{
+    "f_c_MPa", "MPa", "f_c", "compressive strength: stress at the peak", ResultOf::test, 1};
+
+/// Result of a stage.
 struct Result {
   using Value = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
 
+  // The makers are implicit, so that a report reads as a list of names and values.
+  Result(std::string its_name, Value its_value, ResultOf its_of = ResultOf::test)
+      : name(std::move(its_name)), value(std::move(its_value)), of(its_of), label(name) {}
+  Result(const ResultInfo& info, Value its_value)
+      : name(info.name),
+        value(std::move(its_value)),
+        of(info.of),
+        unit(info.unit),
+        label(info.label),
+        meaning(info.meaning),
+        digits(info.digits),
+        shown_in(info.shown_in) {}
+
   std::string name;
   Value value;  ///< value; monostate where there is none
-  ResultOf of = ResultOf::test;
+  ResultOf of;
+  std::string unit = "1";
+  std::string label;
+  std::string meaning = {};
+  int digits = kAnyDigits;
+  std::string shown_in = {};
+  std::string about =
+      {};  ///< name of the result to which this one belongs; of a reason empty: the whole stage
 };
+
+/// Returns why a result has no value, or why it is in doubt: "E_none_because" of "E_GPa".
+/// \param why  reason; none where there is none
+Result reason_of(const ResultInfo& info, Result::Value why);
+Result doubt_of(const ResultInfo& info, Result::Value why);
+/// Returns a reason for all results of a stage.
+Result reason_of_all(std::string why);
 
 /// Returns the value where it is there, else none.
 Result::Value value_if(bool is_there, double value);
@@ -136,6 +187,9 @@ class Stage {
   /// empty.
   virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
+  /// Returns the largest change of temperature that the stage hands over at once, K; 0 where it hands over
+  /// none.
+  virtual double exchange_increment() const { return 0.0; }
   /// Returns the names of the sets on which the stage acts.
   virtual std::vector<std::string> sets() const { return {}; }
 
@@ -144,8 +198,8 @@ class Stage {
   virtual void check(const Simulation&, Acting&) const {}
   /// Tells whether the stage loads the body from outside.
   virtual bool loads() const { return false; }
-  /// Returns the stress that the stage brings on the upper platen and holds, Pa, compression positive; 0 where
-  /// it brings none.
+  /// Returns the stress that the stage brings on the upper platen and holds, Pa, compression positive; 0
+  /// where it brings none.
   virtual double held_stress() const { return 0.0; }
   /// Prepares supports and loads of the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/stages/known_results.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -142,7 +144,7 @@ Result::Value value_of(const Finding& finding, double factor) {
   return finding ? Result::Value(factor * *finding) : Result::Value();
 }
 
-Result::Value reason_of(const Finding& finding) {
+Result::Value why_none(const Finding& finding) {
   return finding ? Result::Value() : Result::Value(finding.none_because);
 }
 
@@ -162,9 +164,9 @@ StageReport unloading_report(const CompressionCurve& curve) {
     modulus.value = line->slope;
   else
     modulus.none_because = "fewer than three points lie between 90 % and 10 % of the stress at the start";
-  report.results = {{"E_unloading_GPa", value_of(modulus, 1e-9)},
-                    {"E_unloading_none_because", has_points ? reason_of(modulus) : Result::Value()},
-                    {"stress_at_end_MPa", value_if(has_points, last * 1e-6)}};
+  report.results = {{known::unloading_modulus, value_of(modulus, 1e-9)},
+                    reason_of(known::unloading_modulus, has_points ? why_none(modulus) : Result::Value()),
+                    {known::stress_at_end, value_if(has_points, last * 1e-6)}};
   if (!has_points) return report;
   report.lines = {fmt::format("unloaded from {:.2f} to {:.2f} MPa", first * 1e-6, last * 1e-6),
                   line_of("E in unloading", modulus, 1e-9, 3, " GPa")};
@@ -265,7 +267,7 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
 namespace {
 
 /// Returns why f_c does not tell the strength of a concrete; empty where nothing is against it.
-std::string doubt_of(const CompressionCurve& curve, const CompressionResponse& r) {
+std::string doubt_about(const CompressionCurve& curve, const CompressionResponse& r) {
   const double strength = *r.strength, largest = curve.stress[r.largest];
   const double by_small = r.by_small_fall.value.value_or(strength);
   const double by_large = r.by_large_fall.value.value_or(largest);
@@ -294,34 +296,35 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
   const CompressionResponse r = compression_response(curve, aim.waves_until);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   const bool has_points = curve.count() > 0;
-  const std::string doubt = r.strength ? doubt_of(curve, r) : std::string();
+  const std::string doubt = r.strength ? doubt_about(curve, r) : std::string();
   const auto doubted = [&](bool has_value) {
     return has_value && !doubt.empty() ? Result::Value(doubt) : Result::Value();
   };
   report.results = {
-      {"E_GPa", value_of(r.modulus, 1e-9)},
-      {"E_none_because", reason_of(r.modulus)},
-      {"toe_strain", r.toe},
-      {"f_c_MPa", value_of(r.strength, 1e-6)},
-      {"f_c_none_because", reason_of(r.strength)},
-      {"f_c_doubtful_because", doubted(true)},
-      {"strain_at_peak", value_if(r.strength.value.has_value(), r.strength ? curve.strain[r.peak] : 0.0)},
-      {"strain_at_peak_doubtful_because", doubted(true)},
-      {"f_c_by_fall_of_2_percent_MPa", value_of(r.by_small_fall, 1e-6)},
-      {"f_c_by_fall_of_2_percent_none_because", reason_of(r.by_small_fall)},
-      {"f_c_by_fall_of_10_percent_MPa", value_of(r.by_large_fall, 1e-6)},
-      {"f_c_by_fall_of_10_percent_none_because", reason_of(r.by_large_fall)},
-      {"stress_max_MPa", value_if(has_points, has_points ? curve.stress[r.largest] * 1e-6 : 0.0)},
-      {"strain_at_stress_max", value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
-      {"strain_ic", value_of(r.inelastic_strain, 1.0)},
-      {"strain_ic_none_because", reason_of(r.inelastic_strain)},
-      {"strain_ic_doubtful_because", doubted(static_cast<bool>(r.inelastic_strain))},
-      {"quasi_static", inertia.to_peak, ResultOf::computation},
-      {"quasi_static_after_peak", inertia.after_peak, ResultOf::computation},
-      {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak, ResultOf::computation},
-      {"kinetic_over_elastic_after_peak", inertia.kinetic_after_peak, ResultOf::computation},
-      {"platen_difference_over_f_c_to_peak", inertia.difference_to_peak, ResultOf::computation},
-      {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak, ResultOf::computation},
+      {known::modulus, value_of(r.modulus, 1e-9)},
+      reason_of(known::modulus, why_none(r.modulus)),
+      {known::toe_strain, r.toe},
+      {kStrength, value_of(r.strength, 1e-6)},
+      reason_of(kStrength, why_none(r.strength)),
+      doubt_of(kStrength, doubted(true)),
+      {known::strain_at_peak,
+       value_if(r.strength.value.has_value(), r.strength ? curve.strain[r.peak] : 0.0)},
+      doubt_of(known::strain_at_peak, doubted(true)),
+      {known::by_small_fall, value_of(r.by_small_fall, 1e-6)},
+      reason_of(known::by_small_fall, why_none(r.by_small_fall)),
+      {known::by_large_fall, value_of(r.by_large_fall, 1e-6)},
+      reason_of(known::by_large_fall, why_none(r.by_large_fall)),
+      {known::stress_max, value_if(has_points, has_points ? curve.stress[r.largest] * 1e-6 : 0.0)},
+      {known::strain_at_stress_max, value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
+      {known::inelastic_strain, value_of(r.inelastic_strain, 1.0)},
+      reason_of(known::inelastic_strain, why_none(r.inelastic_strain)),
+      doubt_of(known::inelastic_strain, doubted(static_cast<bool>(r.inelastic_strain))),
+      {known::quasi_static, inertia.to_peak},
+      {known::quasi_static_after_peak, inertia.after_peak},
+      {known::kinetic_to_peak, inertia.kinetic_to_peak},
+      {known::kinetic_after_peak, inertia.kinetic_after_peak},
+      {known::difference_to_peak, inertia.difference_to_peak},
+      {known::difference_after_peak, inertia.difference_after_peak},
   };
   report.lines.push_back(line_of("f_c", r.strength, 1e-6, 3, " MPa"));
   if (r.strength) report.lines.back() += fmt::format(" at strain {:.2g}", curve.strain[r.peak]);

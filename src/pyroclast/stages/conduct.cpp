@@ -7,6 +7,7 @@
 
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/stages/known_results.hpp"
 
 namespace pyroclast {
 
@@ -89,12 +90,12 @@ StageReport Conduct::report(const History& history, RowRange rows, Outcome outco
   StageReport report;
   const auto last_or_none = [&](const char* name) { return last_value(history, name, rows); };
   report.results = {
-      {"steady", outcome == Outcome::steady},
-      {"heating_time_s", last_or_none("heating_time_s"), ResultOf::computation},
-      {"temperature_mean_degC", last_or_none("temperature_degC")},
-      {"temperature_min_degC", last_or_none("temperature_min_degC")},
-      {"temperature_max_degC", last_or_none("temperature_max_degC")},
-      {"rate_K_s", last_or_none("rate_K_s")},
+      {known::steady, outcome == Outcome::steady},
+      {known::heating_time, last_or_none("heating_time_s")},
+      {known::temperature_mean, last_or_none("temperature_degC")},
+      {known::temperature_min, last_or_none("temperature_min_degC")},
+      {known::temperature_max, last_or_none("temperature_max_degC")},
+      {known::rate, last_or_none("rate_K_s")},
   };
   if (rows.empty()) return report;
   const auto last = [&](const char* name) { return history.values(name, rows).back(); };

@@ -8,6 +8,7 @@
 
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/stages/drive_checks.hpp"
+#include "pyroclast/stages/known_results.hpp"
 
 namespace pyroclast {
 
@@ -217,10 +218,9 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
   StageReport report;
   const bool has_rows = !rows.empty();
   const double work = has_rows ? history.values("energy_loading_J", rows).back() - watch_.first_work() : 0.0;
-  report.results = {
-      {"steps", kept_.steps, ResultOf::computation},
-      {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows), ResultOf::computation},
-      {"loading_work_J", value_if(has_rows, work), ResultOf::computation}};
+  report.results = {{known::steps, kept_.steps},
+                    {known::unbalanced_ratio, last_value(history, "unbalanced_ratio", rows)},
+                    {known::loading_work, value_if(has_rows, work)}};
   const auto of_records =
       record_results(keys_.records, watch_.peaks(), keys_.results, kept_.body, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
@@ -249,10 +249,7 @@ Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
 }
 
 std::vector<Column> Drive::columns() const {
-  if (!control_) return {};
-  std::vector<Column> columns;
-  for (const ColumnInfo& info : OpeningControl::columns()) columns.push_back({info.name, info.unit});
-  return columns;
+  return control_ ? OpeningControl::columns() : std::vector<Column>{};
 }
 
 std::vector<double> Drive::values() const {

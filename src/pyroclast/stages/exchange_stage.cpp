@@ -7,6 +7,7 @@
 
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/stages/known_results.hpp"
 
 namespace pyroclast {
 
@@ -166,20 +167,19 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const ExchangeResponse r = exchange_response(history, rows, outcome);
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   report.results = {
-      {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction", ResultOf::computation},
-      {"platen", kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value(),
-       ResultOf::computation},
-      {"load_stress_MPa", value_if(kept_.has_press, kept_.load_stress * 1e-6), ResultOf::computation},
-      {"critical_temperature_degC", value_if(failed, r.critical_temperature.value_or(0.0))},
-      {"critical_time_s", value_if(failed, r.critical_time)},
-      {"answer_is", conditions_of_answer(keys_.dimension), ResultOf::computation},
-      {"highest_temperature_degC", value_if(has_rows, r.highest), ResultOf::computation},
-      {"largest_exchange_increment_K", coupling().increment, ResultOf::computation},
-      {"exchanges", r.exchanges, ResultOf::computation},
-      {"exchanges_not_converged", r.not_converged, ResultOf::computation},
-      {"worst_unbalanced_ratio", value_if(has_rows, r.worst_ratio), ResultOf::computation},
-      {"cycles", static_cast<std::int64_t>(r.cycles), ResultOf::computation},
-      {"largest_thrust_MPa", value_if(has_rows && kept_.has_press, r.largest_thrust)},
+      {known::field, needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
+      {known::platen, kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value()},
+      {known::load_stress, value_if(kept_.has_press, kept_.load_stress * 1e-6)},
+      {known::critical_temperature, value_if(failed, r.critical_temperature.value_or(0.0))},
+      {known::critical_time, value_if(failed, r.critical_time)},
+      {known::answer_is, conditions_of_answer(keys_.dimension)},
+      {known::highest_temperature, value_if(has_rows, r.highest)},
+      {known::largest_increment, coupling().increment},
+      {known::exchanges, r.exchanges},
+      {known::exchanges_not_converged, r.not_converged},
+      {known::worst_unbalanced_ratio, value_if(has_rows, r.worst_ratio)},
+      {known::cycles, static_cast<std::int64_t>(r.cycles)},
+      {known::largest_thrust, value_if(has_rows && kept_.has_press, r.largest_thrust)},
   };
   if (!has_rows) return report;
   const std::string conditions = conditions_of_answer(keys_.dimension);

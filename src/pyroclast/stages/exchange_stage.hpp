@@ -21,6 +21,7 @@ class ExchangeStage : public Stage {
   void begin(Simulation& simulation) final;
   bool advance(Simulation& simulation, int most_steps) final;
   Verdict judge(Simulation& simulation) final;
+  double exchange_increment() const final { return coupling().increment; }
   std::vector<Column> columns() const final { return Exchange::columns(); }
   std::vector<double> values() const final { return exchange_.values(); }
   StageReport report(const History& history, RowRange rows, Outcome outcome) const final;

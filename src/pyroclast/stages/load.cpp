@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/stages/known_results.hpp"
 #include "pyroclast/stages/settle.hpp"
 #include "pyroclast/stages/strength_of_run.hpp"
 
@@ -144,20 +145,18 @@ double Load::progress(const Simulation& simulation) const {
 StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
   report.results = {
-      {"load_stress_MPa", keys_.stress * 1e-6, ResultOf::computation},
-      {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value(), ResultOf::computation},
-      {"f_c_of_level_MPa", keys_.level ? Result::Value(keys_.strength * 1e-6) : Result::Value(),
-       ResultOf::computation},
-      {"f_c_of_level_is", keys_.level ? Result::Value(keys_.strength_of) : Result::Value(),
-       ResultOf::computation}};
+      {known::load_stress, keys_.stress * 1e-6},
+      {known::load_level, keys_.level ? Result::Value(*keys_.level) : Result::Value()},
+      {known::strength_of_level, keys_.level ? Result::Value(keys_.strength * 1e-6) : Result::Value()},
+      {known::strength_of_level_is, keys_.level ? Result::Value(keys_.strength_of) : Result::Value()}};
   if (keys_.level)
     report.lines.push_back(fmt::format("load {:.2f} MPa: {:g} of f_c {:.2f} MPa, {}", keys_.stress * 1e-6,
                                        *keys_.level, keys_.strength * 1e-6, keys_.strength_of));
   const auto stress = history.values("stress_MPa", rows);
   const double borne = stress.empty() ? 0.0 : *std::ranges::max_element(stress);
-  report.results.push_back({"largest_stress_MPa", value_if(!rows.empty(), borne)});
-  report.results.push_back({"steps", kept_.steps, ResultOf::computation});
-  report.results.push_back({"strain", last_value(history, "strain", rows), ResultOf::computation});
+  report.results.push_back({known::largest_stress, value_if(!rows.empty(), borne)});
+  report.results.push_back({known::steps, kept_.steps});
+  report.results.push_back({known::strain, last_value(history, "strain", rows)});
   if (outcome == Outcome::crushed) {
     report.lines.push_back(
         fmt::format("crushed: the specimen bore {:.2f} MPa at most of the {:.2f} MPa of the load", borne,

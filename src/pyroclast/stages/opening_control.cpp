@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/stages/known_results.hpp"
 
 namespace pyroclast {
 
@@ -115,9 +116,11 @@ double OpeningControl::unit_force() const {
   return sum;
 }
 
-std::vector<ColumnInfo> OpeningControl::columns() {
-  return {{"load_factor", "1", "share of the drives' loads that a [stages.control] lets act"},
-          {"control_force_N", "N", "force of the pair that makes the controlled opening grow"}};
+std::vector<Column> OpeningControl::columns() {
+  return {{"load_factor", "1", "share of the drives' loads that a [stages.control] lets act",
+           ColumnRole::control, "load_factor"},
+          {"control_force_N", "N", "force of the pair that makes the controlled opening grow",
+           ColumnRole::control, "force"}};
 }
 
 void OpeningControl::add_to(StageReport& report, double work) const {
@@ -125,12 +128,11 @@ void OpeningControl::add_to(StageReport& report, double work) const {
   const double peak = kept_.largest_load;
   const double of_peak = std::max(0.0, share(kept_.largest_with_pair, peak) - 1.0);
   const double of_work = share(std::abs(kept_.pair_work), std::abs(work));
-  report.results.push_back({"largest_load_factor", kept_.largest_factor});
-  report.results.push_back(
-      {"control_force_over_peak", share(kept_.largest_pair, peak), ResultOf::computation});
-  report.results.push_back({"largest_load_with_control_N", kept_.largest_with_pair});
-  report.results.push_back({"control_error_of_largest_load", of_peak, ResultOf::computation});
-  report.results.push_back({"control_work_over_loading_work", of_work, ResultOf::computation});
+  report.results.push_back({known::largest_load_factor, kept_.largest_factor});
+  report.results.push_back({known::control_force, share(kept_.largest_pair, peak)});
+  report.results.push_back({known::load_with_control, kept_.largest_with_pair});
+  report.results.push_back({known::control_error, of_peak});
+  report.results.push_back({known::control_work, of_work});
   report.lines.push_back(fmt::format(
       "control of {}: the largest load is {:.4g} N, and {:.4g} N with the force of the pair beside this "
       "({:+.2g} %); the pair bore up to {:.2g} % of that load, and did {:.2g} % of the work",

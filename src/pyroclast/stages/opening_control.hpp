@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pyroclast/simulation/column_info.hpp"
+#include "pyroclast/simulation/column.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/drive_loads.hpp"
 
@@ -41,7 +41,7 @@ class OpeningControl {
   const ControlKeys& keys() const { return *drive_.control; }
 
   /// Returns the columns of a drive with a control.
-  static std::vector<ColumnInfo> columns();
+  static std::vector<Column> columns();
   std::vector<double> values() const { return {kept_.load_factor, kept_.pair_force}; }
   /// Reports the pair's part of the test. The largest load and the largest of load and pair together bound
   /// the strength: where a part fails under both, its own peak may come before that of the load. Where single

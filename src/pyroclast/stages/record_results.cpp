@@ -275,6 +275,29 @@ std::vector<RecordResult> read_record_results(const Section& stage,
   return results;
 }
 
+namespace {
+
+/// Adds a value of a record, under a name and the unit of the record's column.
+void add(std::vector<Result>& results, const std::string& label, const Column& column, Result::Value value,
+         const char* meaning) {
+  Result& result = results.emplace_back(fmt::format("{}_{}", label, column.unit), std::move(value));
+  result.unit = column.unit;
+  result.label = label;
+  result.meaning = fmt::format("{} of the [[record]] {}", meaning, column.of);
+}
+
+/// Adds the time of the value that was added last.
+void add_time(std::vector<Result>& results, const std::string& label, Result::Value time) {
+  const std::string about = results.back().name;
+  Result& result =
+      results.emplace_back(fmt::format("{}_time_s", label), std::move(time), ResultOf::computation);
+  result.unit = "s";
+  result.meaning = fmt::format("time of {} since the stage began", about);
+  result.about = about;
+}
+
+}  // namespace
+
 std::vector<Result> record_results(const std::vector<RecordParameters>& records,
                                    const std::vector<RecordPeak>& peaks,
                                    const std::vector<RecordResult>& asked, const BodyFigures& body,
@@ -285,22 +308,27 @@ std::vector<Result> record_results(const std::vector<RecordParameters>& records,
     const double factor = column_over_si(records[i].kind);
     const RecordPeak known = peaks.empty() ? RecordPeak() : peaks[i];
     const bool has_peak = known.peak().is_found(), has_largest = !peaks.empty();
-    results.push_back({fmt::format("peak_{}", column.name),
-                       value_if(has_peak, has_peak ? factor * known.values()[i] : 0.0)});
-    results.push_back({fmt::format("peak_{}_time_s", records[i].name), value_if(has_peak, known.time()),
-                       ResultOf::computation});
-    results.push_back(
-        {fmt::format("largest_{}", column.name), value_if(has_largest, factor * known.largest())});
-    results.push_back({fmt::format("largest_{}_time_s", records[i].name),
-                       value_if(has_largest, known.largest_time()), ResultOf::computation});
+    const std::string& name = records[i].name;
+    add(results, fmt::format("peak_{}", name), column,
+        value_if(has_peak, has_peak ? factor * known.values()[i] : 0.0), "value at the peak");
+    add_time(results, fmt::format("peak_{}", name), value_if(has_peak, known.time()));
+    const std::string peak = results[results.size() - 2].name;
+    add(results, fmt::format("largest_{}", name), column, value_if(has_largest, factor * known.largest()),
+        "value where it is largest");
+    results.back().about = peak;
+    add_time(results, fmt::format("largest_{}", name), value_if(has_largest, known.largest_time()));
   }
   Values known = values_of(body);
   for (const RecordResult& each : asked) {
     const auto value = value_of(each, records, peaks, known, history, rows);
     if (value) known[each.name] = *value;
-    results.push_back({name_with_unit(each.name, each.unit),
-                       value ? Result::Value((*value - each.unit_zero) / each.unit_size) : Result::Value(),
-                       each.kind == RecordResult::Kind::given ? ResultOf::computation : ResultOf::test});
+    Result& result = results.emplace_back(
+        name_with_unit(each.name, each.unit),
+        value ? Result::Value((*value - each.unit_zero) / each.unit_size) : Result::Value(),
+        each.kind == RecordResult::Kind::given ? ResultOf::computation : ResultOf::test);
+    result.unit = each.unit;
+    result.label = each.name;
+    result.meaning = "a [[stages.results]] of the deck";
   }
   return results;
 }

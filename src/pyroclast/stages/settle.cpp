@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/stages/known_results.hpp"
 
 namespace pyroclast {
 
@@ -59,9 +60,8 @@ Verdict Settle::judge(Simulation& simulation) {
 
 StageReport Settle::report(const History& history, RowRange rows, Outcome) const {
   StageReport report;
-  report.results = {
-      {"steps", kept_.steps, ResultOf::computation},
-      {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows), ResultOf::computation}};
+  report.results = {{known::steps, kept_.steps},
+                    {known::unbalanced_ratio, last_value(history, "unbalanced_ratio", rows)}};
   return report;
 }
 

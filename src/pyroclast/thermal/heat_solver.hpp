@@ -31,17 +31,17 @@ struct HeatLedger {
 
 /// Entries in the order of the history's columns. No deck has a source.
 inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
-    {"stored", "heat_stored_J", LedgerSide::held, "in the body",
+    {"stored", "heat_stored_J", LedgerSide::held, "stored", "in the body",
      [](const HeatLedger& h) { return h.stored; }},
-    {"prescribed", "heat_prescribed_J", LedgerSide::put_in, "to hold prescribed temperatures",
-     [](const HeatLedger& h) { return h.prescribed; }},
-    {"flux", "heat_flux_J", LedgerSide::put_in, "by given fluxes",
+    {"prescribed", "heat_prescribed_J", LedgerSide::put_in, "prescribed temperatures",
+     "to hold prescribed temperatures", [](const HeatLedger& h) { return h.prescribed; }},
+    {"flux", "heat_flux_J", LedgerSide::put_in, "given fluxes", "by given fluxes",
      [](const HeatLedger& h) { return h.boundary.flux; }},
-    {"convection", "heat_convection_J", LedgerSide::put_in, "by convection",
+    {"convection", "heat_convection_J", LedgerSide::put_in, "convection", "by convection",
      [](const HeatLedger& h) { return h.boundary.convection; }},
-    {"radiation", "heat_radiation_J", LedgerSide::put_in, "by radiation",
+    {"radiation", "heat_radiation_J", LedgerSide::put_in, "radiation", "by radiation",
      [](const HeatLedger& h) { return h.boundary.radiation; }},
-    {"error", "heat_error_J", LedgerSide::error, "heat that came in, less heat stored",
+    {"error", "heat_error_J", LedgerSide::error, "error", "heat that came in, less heat stored",
      [](const HeatLedger& h) { return h.error(); }},
 });
 

@@ -1,0 +1,16 @@
+#include "pyroclast/stages/possible_columns.hpp"
+
+#include "pyroclast/simulation/exchange.hpp"
+#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/stages/opening_control.hpp"
+
+namespace pyroclast {
+
+std::vector<Column> possible_columns() {
+  std::vector<Column> columns{stage_column()};
+  for (const auto& more : {possible_gauge_columns(), Exchange::columns(), OpeningControl::columns()})
+    columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
+
+}  // namespace pyroclast
