@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from sanitized import needs_studies  # noqa: E402
 from test_user import CARELESS_LAW, PROGRAM, deck_of_careless_law  # noqa: E402
 
 MARK = """#include <cstdio>
@@ -181,6 +182,7 @@ class CodeOfADeck(CodeTest):
         shutil.rmtree(self.folder / "home")
         self.assert_refused("check", "header.toml", *named, "--of-study")
 
+    @needs_studies
     def test_a_study_of_a_deck_with_a_law(self):
         self.make_object()
         (self.folder / "study.toml").write_text(STUDY.format(runner='deck = "object.toml"').replace(
@@ -197,6 +199,7 @@ class CodeOfADeck(CodeTest):
         self.assertNotEqual(done.returncode, 0)
 
 
+@needs_studies
 class CodeOfAStudy(CodeTest):
     def try_study(self, runner: str, change) -> None:
         (self.folder / "study.toml").write_text(STUDY.format(runner=runner))
@@ -230,6 +233,7 @@ class CodeOfAStudy(CodeTest):
         self.try_study('runner = "command"\ncommand = "./model.sh {folder}"', change)
 
 
+@needs_studies
 class HashOfAStudy(CodeTest):
     """What runs is what was hashed, and runs of other code do not count."""
 
@@ -422,6 +426,7 @@ class HashOfAStudy(CodeTest):
         self.assertIn("w.sh has changed since the study began", done.stderr)
 
 
+@needs_studies
 class OptionsOfSlurm(CodeTest):
     """What sbatch gets from a study runs nothing without the user's word."""
 

@@ -13,6 +13,8 @@ import tempfile
 import tomllib
 import unittest
 
+from sanitized import needs_studies
+
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 NAMES = ("My deck", "it's mine", "-dash", 'say "hello"', "Prüfung 1", "a&b;c", "$HOME")
@@ -49,6 +51,7 @@ class CommandsToPaste(unittest.TestCase):
                 self.assertIn("valid", self.paste(self.proposed(said, "pyroclast check")))
                 self.assertEqual(shlex.split(self.proposed(said, "pyroclast run"))[2].removeprefix("./"), f"{name}.toml")
 
+    @needs_studies
     def test_the_calibration_of_a_concrete_is_found_from_its_message_and_from_its_files(self):
         for name in NAMES[1:5]:
             with self.subTest(name):
@@ -81,6 +84,7 @@ class CommandsToPaste(unittest.TestCase):
         (self.folder / "MORE.toml").write_text('[[stages]]\nkind = "conduct"\nduration = "1 min"\ninterval = "30 s"\n')
         self.paste(f"{command} --no-figures")
 
+    @needs_studies
     def test_a_study_and_its_next_command(self):
         (self.folder / "model.py").write_text('def f(seed):\n    return {"z": seed}\n')
         for name in NAMES[:5]:

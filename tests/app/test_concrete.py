@@ -12,6 +12,7 @@ import tomllib
 import unittest
 
 from in_a_folder import PROGRAM, InAFolder
+from sanitized import needs_studies
 
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 LIMESTONE = ("--f_c", "45 MPa", "--E", "32 GPa", "--aggregate", "limestone")
@@ -46,6 +47,7 @@ class Concrete(InAFolder):
         for line in text.splitlines():
             self.assertLessEqual(len(line), 150, line)
 
+    @needs_studies
     def test_every_rock_makes_a_deck_for_cold_and_hot_tests(self):
         rocks = [line for line in self.pyroclast("list", "rocks").stdout.splitlines() if not line.startswith(" ")]
         self.assertGreaterEqual(len(rocks), 6)
@@ -157,6 +159,7 @@ class Concrete(InAFolder):
         self.assertGreater(rows[-1][0], 4.0 * found["strain_at_peak"])
         self.assertLess(min(stress for strain, stress in rows if strain > found["strain_at_peak"]), 0.85 * found["f_c_MPa"])
 
+    @needs_studies
     def test_a_cylinder_has_the_stones_that_its_blocks_resolve_and_contacts_of_bodies_in_space(self):
         done = self.concrete("--cylinder", *SIEVES)
         deck = self.deck()

@@ -18,6 +18,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from sanitized import needs_studies  # noqa: E402
 from test_user import CARELESS_LAW, PROGRAM, UserTest, deck_of_careless_law, small_deck  # noqa: E402
 
 FRAME = "fields/blocks_0001.hdf"
@@ -377,6 +378,7 @@ class Interrupted(FolderTest):
         self.assertFalse((self.out / "lock").exists())
         self.assertEqual(list(self.out.rglob("*.partial")), [])
 
+    @needs_studies
     def test_within_the_report_of_a_study(self):
         os.mkfifo(self.folder / "pipe")
         self.write('[study]\ndeck = "out/deck.toml"\nearlier = ["pipe"]\n[method]\nkind = "ensemble"\n'

@@ -15,6 +15,8 @@ import tempfile
 import time
 import unittest
 
+from sanitized import SANITIZED
+
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 STARTER = (CASES / "starter.toml").read_text()
@@ -280,6 +282,7 @@ class Memory(UserTest):
             process.returncode = 0
         return used.ru_maxrss * 1024e-6
 
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
     def test_check_foretells_what_a_run_takes(self):
         words = (CASES / "starter.toml", "--set", "blocks.count=10000", "--set", "stages[0].most_steps=50", "-t", 1)
         check = self.pyroclast("check", *words)
@@ -1331,12 +1334,11 @@ class DecksGoneWrong(UserTest):
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere.toml", done.stderr)
 
+    @unittest.skipIf(SANITIZED, "the address sanitizer needs more addresses than that to begin with")
     def test_a_million_blocks_without_memory(self):
         def limit() -> None:
             resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
 
-        if "AddressSanitizer" in self.pyroclast("--version", preexec_fn=limit).stderr:
-            self.skipTest("the address sanitizer needs more addresses than that to begin with")
         self.refuse(small_deck(count="count = 1000000"), "1000000", "memory", "GB", preexec_fn=limit)
         raw, solid, wall = ("blocks.shortest_edge=0",), "starter_3d", "fire_one_side"
         for case, blocks, needed, changes in ((solid, 50_000, "2.8", raw), (solid, 50_000, "2.0", ()),

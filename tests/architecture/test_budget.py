@@ -1,0 +1,27 @@
+"""Modules of src keep to a stated number of lines. A change that needs more says so here, and in its message why."""
+
+import pathlib
+import unittest
+
+SOURCE = pathlib.Path(__file__).parents[2] / "src" / "pyroclast"
+BUDGET = {"app": 3850, "base": 3050, "deck": 3500, "laws": 2900, "material": 3350, "mechanics": 5600, "model":
+          1650, "plugin": 1400, "python": 1700, "results": 3550, "session": 1300, "setup": 5300,
+          "simulation": 6100, "solid": 2400, "specimen": 7450, "stages": 4700, "tables": 2750,
+          "thermal": 3350, "units": 1200}
+SPARE = 100  # lines: a module that shrinks by more hands them back
+
+
+class Budget(unittest.TestCase):
+    def test_each_module_keeps_to_it(self):
+        lines = {module.name: sum(len(file.read_text(encoding="utf-8").splitlines()) for file in module.rglob("*")
+                                  if file.suffix in (".cpp", ".hpp"))
+                 for module in SOURCE.iterdir() if module.is_dir()}
+        self.assertEqual(lines.keys(), BUDGET.keys())
+        for module, most in BUDGET.items():
+            with self.subTest(module):
+                self.assertLessEqual(lines[module], most)
+                self.assertGreater(lines[module], most - SPARE, "lower the budget")
+
+
+if __name__ == "__main__":
+    unittest.main()
