@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from .stored.results import Results as Results
     from .stored.results import SpecimenFolder as SpecimenFolder
     from .stored.results import read as read
+    from .stored.run_facts import RunFacts as RunFacts
     from .study.study import Study as Study
 else:
     # Imported when first asked for: figures must not need the compiled part.
@@ -76,6 +77,7 @@ else:
         "stored.compressed": ("Compressed",),
         "stored.heated": ("Heated",),
         "stored.results": ("Results", "SpecimenFolder", "read"),
+        "stored.run_facts": ("RunFacts",),
         "live.decks": ("Deck",),
         "live.functions": ("Function",),
         "live.laws": ("Law",),

@@ -105,7 +105,7 @@ def _fractured(name: str, drawn: Rows, magnification: float | None) -> Picture:
 
 def _inside(run: Results) -> Iterator[Picture]:
     """Yields the cracks inside of a solid whose contacts can break."""
-    if run.frames and run.crack_modes and run.mesh.blocks.dimension == 3:
+    if run.frames and run.facts.crack_modes and run.mesh.blocks.dimension == 3:
         yield Picture("cracks_inside", lambda: cracks_inside(run, run.frames[-1]))
 
 

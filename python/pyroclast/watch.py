@@ -60,6 +60,7 @@ from .stored.files import GapWarning, Lock, Writer, read_json
 from .stored.frames import Frame
 from .stored.heated import Heated
 from .stored.results import GrowingResults, Results
+from .stored.run_facts import BROKEN
 from .texts import seen_on_a_line
 from .writing import shell_path
 
@@ -112,10 +113,10 @@ def _curve_of(run: GrowingResults) -> _Curve:
         return _record_curve(run)
     if not hot.is_last:
         course = loading_course(run)
-        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa", has_peak=True)
+        return _Curve(course, course.stress, style.STRESS_LABEL, "stress", " MPa", has_peak=True)
     course = heating_course(run)
     if hot.restrained:
-        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa", has_peak=True)
+        return _Curve(course, course.stress, THRUST_LABEL, "stress", " MPa", has_peak=True)
     return _Curve(course, style.PER_MILLE * hot.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
 
 
@@ -227,9 +228,8 @@ class Watch:
             mean, low, high = (history[f"temperature_{name}degC"][row] for name in ("", "min_", "max_"))
             parts.append(f"{mean:.0f} °C" if Heated(self.run).uniform
                          else f"mean {mean:.0f} °C, {low:.0f} to {high:.0f} °C")
-        broken = sum(history[f"{mode}_{interface}_broken"][-1] for mode, interfaces in self.run.crack_modes.items()
-                     for interface in interfaces)
-        if np.isfinite(broken) and self.run.crack_modes:
+        broken = sum(history[column.name][-1] for column in self.run.facts.of_role(BROKEN))
+        if np.isfinite(broken) and self.run.facts.crack_modes:
             parts.append(f"{broken:.0f} contact points broken")
         return parts
 

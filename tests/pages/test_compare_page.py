@@ -26,7 +26,7 @@ class Compared(PageTest):
         other = self.copy(RUNS / "compression")
         run = pyroclast.read(RUNS / "compression")
         last = run.frames[-1]
-        damages = [f"{mode}_damage [1]" for mode in run.crack_modes]
+        damages = [f"{mode}_damage [1]" for mode in run.facts.crack_modes]
         broken = [c for c in range(len(run.mesh.contacts.cells))
                   if max(run.contact_field(last, name)[c] for name in damages) > 0.55]
         healed = broken[:7]

@@ -26,7 +26,7 @@ class Judging(unittest.TestCase):
         """A run whose summary says something else. results: of its last stage."""
         folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, folder)
-        for name in ("history.csv", "deck.toml", "summary.json", "references.json"):
+        for name in ("run.json", "history.csv", "deck.toml", "summary.json", "references.json"):
             if (RUNS / case / name).exists():
                 shutil.copy(RUNS / case / name, folder)
         summary = json.loads((folder / "summary.json").read_text())
@@ -154,7 +154,7 @@ class Judging(unittest.TestCase):
         run = pyroclast.read(RUNS / "compression")
         history = run.history
         broken = sum(history[name] for name in history.names if name.endswith("_broken"))
-        length = sum(history[f"{mode}_{interface}_length_m"] for mode, interfaces in run.crack_modes.items()
+        length = sum(history[f"{mode}_{interface}_length_m"] for mode, interfaces in run.facts.crack_modes.items()
                      for interface in interfaces)
         found = {mark.id: mark.row for mark in marks(run, history["stress_MPa"], history["strain"])}
         self.assertGreater(broken[found["first"]], 0)

@@ -132,7 +132,7 @@ class OneRun(PageOfRun):
             block = np.unique(blocks.block, return_inverse=True)[1].ravel()
             mean = np.bincount(block, blocks.sizes * stress) / np.bincount(block, blocks.sizes)
             self.assert_within_step("stress_y", k, mean)
-            damages = {mode: self.run_.contact_field(frame, f"{mode}_damage [1]") for mode in self.run_.crack_modes}
+            damages = {mode: self.run_.contact_field(frame, f"{mode}_damage [1]") for mode in self.run_.facts.crack_modes}
             for mode, damage in damages.items():
                 kept = self.kept(f"damage_{mode}", k)
                 # the last step is kept for broken contacts, so one that is nearly so may be a whole step away
@@ -213,7 +213,7 @@ class OneRun(PageOfRun):
         frame, ringed, now = browser.run("return [pyroclast.scene.frame, [...pyroclast.specimen.ringed], "
                                          "document.getElementById('now').textContent]")
         row = int((sum(run.history[name] for name in run.history.names if name.endswith("_broken")) > 0).argmax())
-        kinds = {(mode, name) for mode, interfaces in run.crack_modes.items() for name in interfaces
+        kinds = {(mode, name) for mode, interfaces in run.facts.crack_modes.items() for name in interfaces
                  if run.history[f"{mode}_{name}_broken"][row] > 0}
 
         def broken(k):
@@ -230,7 +230,7 @@ class OneRun(PageOfRun):
         self.assertNotEqual(self.picture(), plain[0])
         browser.run("document.querySelector('#marks [data-mark=extent]').click()")
         frame, now = browser.run("return [pyroclast.scene.frame, document.getElementById('now').textContent]")
-        most = np.max([run.contact_field(run.frames[frame], f"{mode}_damage [1]") for mode in run.crack_modes], axis=0)
+        most = np.max([run.contact_field(run.frames[frame], f"{mode}_damage [1]") for mode in run.facts.crack_modes], axis=0)
         told = int(now.split("; ")[-1].split()[0])
         self.assertTrue((most > 0.0041).sum() <= told <= (most > 0.0038).sum(), told)  # half a step of damage
         self.assertNotEqual(self.picture(), plain[1])
@@ -261,7 +261,7 @@ class OneRun(PageOfRun):
 
         def beyond(k):
             return np.max([self.run_.contact_field(self.run_.frames[k], f"{mode}_damage [1]")
-                           for mode in self.run_.crack_modes], axis=0) > 0.5
+                           for mode in self.run_.facts.crack_modes], axis=0) > 0.5
 
         new = np.flatnonzero(beyond(frame) & ~beyond(frame - 1))
         self.assertTrue(len(new))
@@ -283,7 +283,7 @@ class OneRun(PageOfRun):
         self.assertTrue(shown[0] < low <= shown[1] < shown[2] <= high < shown[3], (shown, low, high))
         rows = np.searchsorted(self.run_.history["step"], steps)
         told = {tuple(row[:2]): row[2:] for row in self.cells("#piece table", 0)}
-        for mode, interfaces in self.run_.crack_modes.items():
+        for mode, interfaces in self.run_.facts.crack_modes.items():
             for name in interfaces:
                 broken = np.diff(self.run_.history[f"{mode}_{name}_broken"][rows])[0]
                 self.assertEqual(float(told[mode, name.replace("_", "–")][1]), broken)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,8 +31,63 @@ HEATED_COLUMNS = (
     + ["exchange", "cycles", "converged", "strain", "specimen_strain"]
     + HISTORY_COLUMNS[4:]
 )
+LABELS = {"tension": "tension softening", "shear": "shear softening", "compression": "crushing",
+          "zones": "stored in zones", "contacts": "stored in contacts"}
+ROLES = {  # of columns, each with what it is of in brackets
+    "clock": "(stage) (step) (time)_s (heating_time)_s",
+    "temperature": "temperature_degC temperature_(min|max)_degC",
+    "press": "(strain) (stage_strain) (specimen_strain) (stress)_MPa (stress_top|stress_bottom)_MPa (lateral_strain)",
+    "rest": "(unbalanced_ratio) (kinetic_over_strain) (largest_jump)",
+    "exchange": "(exchange) (cycles) (converged)",
+    "energy.put_in": "energy_(loading|gravity|property_change|mass_scaling)_J",
+    "energy.held": "energy_(zones|contacts|kinetic)_J",
+    "energy.lost": "dissipated_(.+)_J energy_(local_damping|viscous_damping)_J",
+    "energy.error": "energy_(error)_J",
+    "crack.opening": "(mean)_opening_m",
+    "heat.held": "heat_(stored)_J",
+    "heat.put_in": "heat_(prescribed|flux|convection|radiation)_J",
+    "heat.error": "heat_(error)_J",
+    "heat.flow": "(rate)_K_s (gas)_max_degC",
+    "probe": "probe_(.+)_degC",
+}
+RESULTS = (("E_GPa", "GPa", "E", 1, "GPa"), ("f_c_MPa", "MPa", "f_c", 1, "MPa"),
+           ("strain_at_peak", "1", "strain at the peak", 2, "1e-3"), ("strain_ic", "1", "ε_ic", 2, "1e-3"),
+           ("load_level", "1", "load level", 2, "of f_c"), ("load_stress_MPa", "MPa", "stress while heated", 1, "MPa"),
+           ("critical_temperature_degC", "degC", "critical temperature", 0, "degC"),
+           ("highest_temperature_degC", "degC", "highest temperature", 0, "degC"),
+           ("largest_thrust_MPa", "MPa", "largest thrust", 1, "MPa"))
 STRENGTH, MODULUS = 35.0, 21.5e3  # MPa
 EXCHANGE, FRAME_EVERY = 5.0, 5  # K from exchange to exchange; exchanges from frame to frame
+
+
+def column_facts(name: str) -> dict:
+    """What run.json says of a column; of one that is not listed, that it is a record."""
+    facts = {"name": name, "unit": "m", "label": "", "meaning": "", "role": "record", "of": name}
+    if found := re.fullmatch(r"(tension|shear|mixed)_(.+?)_(damaged|broken|length_m|area_m2|broken_length_m|broken_area_m2)",
+                             name):
+        broken = "broken" if "broken" in found[3] else "damaged"
+        role = f"crack.{broken}" + ("" if found[3] in ("damaged", "broken") else "_extent")
+        return facts | {"role": role, "mode": found[1], "interface": found[2]}
+    for role, names in ROLES.items():
+        for pattern in names.split():
+            if found := re.fullmatch(pattern, name):
+                of = found[1] if found.groups() else name
+                return facts | {"role": role, "of": of, "label": LABELS.get(of, of.replace("_", " "))}
+    return facts
+
+
+def write_facts(folder: Path, columns: list[str], test_stage: int | None = None) -> None:
+    """Writes run.json of a plane run; its results are those of a compression and of a heating."""
+    in_space = any(name.endswith("_area_m2") for name in columns)
+    results = [{"name": name, "unit": unit, "label": label, "meaning": label, "of": "test", "digits": digits,
+                "shown_in": shown} for name, unit, label, digits, shown in RESULTS]
+    results += [{"name": f"{name}_none_because", "unit": "", "label": "", "meaning": "", "of": "reason",
+                 "digits": None, "shown_in": "", "about": about} for name, about in (("E", "E_GPa"), ("f_c", "f_c_MPa"))]
+    (folder / "run.json").write_text(json.dumps({
+        "dimension": 3 if in_space else 2, "moves": "unbalanced_ratio" in columns, "has_press": "strain" in columns,
+        "extent": {"name": "area", "unit": "m2"} if in_space else {"name": "length", "unit": "m"},
+        "test_stage": test_stage, "columns": [column_facts(name) for name in columns], "results": results,
+        "fields": [], "sets": []}))
 
 
 def stress(strain: float) -> float:
@@ -449,3 +505,5 @@ def _write_csv(path: Path, header, rows) -> None:
         writer = csv.writer(file)
         writer.writerow(header)
         writer.writerows(rows)
+    if path.name == "history.csv":
+        write_facts(path.parent, list(header))

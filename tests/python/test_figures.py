@@ -168,7 +168,9 @@ class BodyTest(FolderTest):
         header, rest = history.read_text().split("\n", 1)
         names = {"strain": "stretch_m", "stress_MPa": "grip_N", "stress_top_MPa": "temperature_max_degC",
                  "stress_bottom_MPa": "temperature_min_degC"}
-        history.write_text(",".join(names.get(name, name) for name in header.split(",")) + "\n" + rest)
+        columns = [names.get(name, name) for name in header.split(",")]
+        history.write_text(",".join(columns) + "\n" + rest)
+        synthetic_run.write_facts(self.run_folder, columns)
         (self.run_folder / "deck.toml").write_text(
             '[[record]]\nname = "grip"\nkind = "force"\n[[record]]\nname = "stretch"\nkind = "opening"\n')
         with h5py.File(self.run_folder / "fields" / "mesh.h5", "r+") as file:
@@ -431,7 +433,7 @@ class CracksAndEnergies(HeatedTest):
         lines = {line.get_label(): line for line in axes.lines}
         for mode in ("tension", "shear"):
             test = Compressed(run)
-            length = sum(test.column(f"{mode}_{name}_broken_length_m") for name in run.crack_modes[mode])
+            length = sum(test.column(f"{mode}_{name}_broken_length_m") for name in run.facts.crack_modes[mode])
             np.testing.assert_allclose(np.nan_to_num(lines[f"{mode}, broken ($D=1$)"].get_ydata()), length)
         labels = [area.get_label() for area in axes.collections]
         self.assertEqual(len([label for label in labels if "damaged" in label]), 2)

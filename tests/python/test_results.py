@@ -116,6 +116,7 @@ class HistoryOfResults(Case):
 
     def test_a_record_that_is_called_strain_makes_no_test_between_platens(self):
         (self.folder / "history.csv").write_text("stage,step,time_s,unbalanced_ratio,strain_m\n0,0,0,0,0.5\n")
+        synthetic_run.write_facts(self.folder, ["stage", "step", "time_s", "unbalanced_ratio", "strain_m"])
         self.assertFalse(self.results.has_platens)
         self.assertTrue(self.results.moves)
 
@@ -140,7 +141,7 @@ class FieldsOfFrames(Case):
         self.assertEqual(found.sizes["frame"], FRAMES)
         np.testing.assert_array_equal(found["stage"], [frame.stage for frame in frames])
         np.testing.assert_array_equal(found["test_strain"], [frame.strain for frame in frames])
-        np.testing.assert_array_equal(found["test_stress"], [1e6 * frame.stress_MPa for frame in frames])
+        np.testing.assert_array_equal(found["test_stress"], [1e6 * frame.stress for frame in frames])
         self.assertEqual((found["test_stress"].attrs["units"], found["time"].attrs["units"]), ("Pa", "s"))
         self.assertNotIn("mean_temperature", found.coords)  # the run's frames.csv does not have it
         np.testing.assert_array_equal(found["position"], self.section.points)

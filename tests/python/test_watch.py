@@ -235,6 +235,8 @@ def bent(folder: Path, recorded: str = "") -> None:
         places = dict(zip(("strain", "stress_MPa"), instead))
         words = [places.get(word, word) for word in header.strip().split(",")]
         (folder / name).write_text(",".join(words) + "\n" + "".join(rows))
+        if name == "history.csv":
+            synthetic_run.write_facts(folder, words)
     records = {"cmod": "opening", "load": "force"}
     (folder / "deck.toml").write_text(DECK + "".join(
         f'[[record]]\nname = "{name}"\nkind = "{kind}"\n' for name, kind in records.items() if recorded in ("", name)))

@@ -123,7 +123,7 @@ class Undamaged(Case):
                     self.assertIn("heating_fracture.png" if kind == "heat" else "fracture.png", names)
                     self.assertNotIn("cracks_inside.png", names)
                     results = read(folder)
-                    self.assertEqual(results.crack_modes, {})
+                    self.assertEqual(results.facts.crack_modes, {})
                     report.write_page([folder])
                     watch.Watch(folder).draw()
                     if dimension == 3:

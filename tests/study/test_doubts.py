@@ -23,6 +23,8 @@ results = {"f_c_MPa": 20.0 * x, "E_GPa": 30.0}
 results |= {"f_c_doubtful_because": "WHY" if str(seed) in doubted else None}
 (folder / "summary.json").write_text(json.dumps(
     {"outcome": "completed", "stages": [{"kind": "compress", "outcome": "completed", "results": results}]}))
+(folder / "run.json").write_text(json.dumps(
+    {"results": [{"name": "f_c_doubtful_because", "of": "doubt", "about": "f_c_MPa"}]}))
 '''.replace("WHY", WHY)
 SECANT, CALIBRATE = 'kind = "secant"', 'kind = "calibrate"\ngenerations = 3\npopulation = 4'
 
@@ -91,6 +93,9 @@ sd = {0.01 * value}
         stages = [{"results": {"f_c_MPa": 30.0, "f_c_doubtful_because": "early"}},
                   {"results": {"f_c_MPa": 31.0, "f_c_doubtful_because": None, "strain_ic": 1e-3,
                                "strain_ic_doubtful_because": "late"}}]
+        (self.folder / "run.json").write_text(json.dumps({"results": [
+            {"name": f"{name}_doubtful_because", "of": "doubt", "about": about}
+            for name, about in (("f_c", "f_c_MPa"), ("strain_ic", "strain_ic"))]}))
         self.assertEqual(Output("f", "f_c_MPa").of(self.folder, {"stages": stages}), (31.0, ""))
         self.assertEqual(Output("e", "strain_ic").of(self.folder, {"stages": stages}), (1e-3, "late"))
         self.assertEqual(Output("f", "f_c_MPa").of(self.folder, {"stages": stages[:1]}), (30.0, "early"))

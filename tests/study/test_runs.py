@@ -867,7 +867,7 @@ top = "history: top_m last"
             self.study(text.replace("SEEDS", "2")).check()
 
 
-class Judgements(unittest.TestCase):
+class Judgements(StudyTest):
     def test_outcomes(self) -> None:
         self.assertEqual(judge({"outcome": "completed"})[0], "done")
         self.assertEqual(judge({"outcome_id": "unstable", "outcome": "so"}), ("crashed", "so"))
@@ -879,9 +879,11 @@ class Judgements(unittest.TestCase):
     def test_numbers_of_a_summary(self) -> None:
         summary = {"steps": 5, "energy_J": {"kinetic": 2.5}, "stages": [
             {"results": {"f_c_MPa": 30.0}}, {"results": {"f_c_MPa": None, "f_c_none_because": "it was not loaded"}}]}
-        self.assertEqual(Output("n", "steps").of(None, summary), (5.0, ""))
-        self.assertEqual(Output("k", "energy_J.kinetic").of(None, summary), (2.5, ""))
-        value, why = Output("f", "f_c_MPa").of(None, summary)
+        facts = {"results": [{"name": "f_c_none_because", "of": "reason", "about": "f_c_MPa"}]}
+        (self.folder / "run.json").write_text(json.dumps(facts))
+        self.assertEqual(Output("n", "steps").of(self.folder, summary), (5.0, ""))
+        self.assertEqual(Output("k", "energy_J.kinetic").of(self.folder, summary), (2.5, ""))
+        value, why = Output("f", "f_c_MPa").of(self.folder, summary)
         self.assertTrue(math.isnan(value))
         self.assertEqual(why, "it was not loaded")
 

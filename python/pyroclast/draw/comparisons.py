@@ -79,13 +79,13 @@ def _by_load(runs: Sequence[Results]) -> list[_Group]:
     together: dict[tuple, list[Results]] = {}
     for run, name in zip(runs, names_apart(runs)):
         hot = Heated(run)
-        if hot.restrained or hot.load_stress_MPa is None:
+        if hot.restrained or hot.load_stress is None:
             key = (2, 0.0, name)
         elif hot.load_level is not None:
             band = reference.strain_band(hot.load_level)
             key = (0, band.level if band else round(hot.load_level, 3), "")
         else:
-            key = (1, round(hot.load_stress_MPa, 3), "")
+            key = (1, round(hot.load_stress, 3), "")
         together.setdefault(key, []).append(run)
     others = cycle(_OTHER_COLOURS)
     return [_Group(style.load_label(together[key][0]) or key[2],
@@ -145,7 +145,7 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
     figure, (axes,), beside = style.panels(4.2, beside=0.42)
     title_together(axes, runs)
     if len(runs) > MANY:
-        draw_spread(axes, [(over(run), Heated(run).column("stress_MPa")) for run in runs], style.BLUE)
+        draw_spread(axes, [(over(run), Heated(run).stress) for run in runs], style.BLUE)
     else:
         _draw_thrusts(axes, runs, over)
     draw_tables(axes, runs, _over(runs), ("stress", 1.0))
@@ -157,8 +157,8 @@ def compare_thrust(runs: Sequence[Results]) -> Figure:
 
 def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results], np.ndarray]) -> None:
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
-        largest = run.history.known("stress_MPa", Heated(run).rows).max()
-        axes.plot(over(run), Heated(run).column("stress_MPa"), color=colour,
+        largest = run.history.known(run.facts.press("stress"), Heated(run).rows).max()
+        axes.plot(over(run), Heated(run).stress, color=colour,
                   linestyle=dashes, label=f"{textwrap.fill(name, 34)},\nlargest {largest:.2f} MPa")
 
 
@@ -176,9 +176,9 @@ def compare_cracks(runs: Sequence[Results]) -> Figure:
     title_together(panels[0], runs)
     if len({extent_of_cracks(run) for run in runs}) > 1:
         raise Error("compare: cracks of runs in the plane and in space have no common axis")
-    what, unit, _ = extent_of_cracks(runs[0])
+    what, unit = extent_of_cracks(runs[0])
     drawn = [(crack_extent(course, "tension", True), crack_extent(course, "shear", True),
-              1e6 * course["mean_opening_m"]) for course in courses]
+              1e6 * course.opening) for course in courses]
     if len(runs) > MANY:
         for axes, of_all in zip(panels, zip(*drawn)):
             draw_spread(axes, [(course.over, values) for course, values in zip(courses, of_all)], style.BLUE)

@@ -53,11 +53,12 @@ def can_crack(run: Results, interfaces: Collection[str]) -> np.ndarray:
 
 def cracked(run: Results, frame: Frame, crack: CrackStyle) -> np.ndarray:
     """Returns (C,) bool: contact points that are drawn so."""
-    return can_crack(run, run.crack_modes[crack.mode]) & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
+    damage = run.contact_field(frame, f"{crack.mode}_damage [1]")
+    return can_crack(run, run.facts.crack_modes[crack.mode]) & crack.holds(damage)
 
 
 def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Counts the cracked contact points of a figure, by mode (of `Results.crack_modes`) and whether broken."""
+    """Counts the cracked contact points of a figure, by mode (of `RunFacts.crack_modes`) and whether broken."""
     return {(crack.mode, crack.broken): int(cracked(run, frame, crack).sum()) for crack in cracks_of(run)}
 
 
@@ -68,7 +69,7 @@ def size_of_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], float]:
 
 
 def cracks_of(run: Results) -> list[CrackStyle]:
-    return [crack for crack in CRACKS if crack.mode in run.crack_modes]
+    return [crack for crack in CRACKS if crack.mode in run.facts.crack_modes]
 
 
 def crack_legend(run: Results) -> list[Artist]:

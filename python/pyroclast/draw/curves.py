@@ -41,7 +41,7 @@ def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     axes.set_title(style.title_of(run))
     if run.parent and not Heated(run.parent).is_last:
         style.draw_parent(axes, run.parent, style.PER_MILLE * Compressed(run.parent).strain,
-                          Compressed(run.parent).column("stress_MPa"))
+                          Compressed(run.parent).stress)
     _draw_run(axes, run)
     if reference.COMPRESSION in run.references.builtin:
         _draw_references(axes, max(np.nanmax(Compressed(run).strain), _LEAST_STRAIN_SHOWN))
@@ -75,19 +75,19 @@ def _draw_run(axes: Axes, run: Results) -> None:
     test = Compressed(run)
     if (before := test.before).any():
         axes.plot(style.PER_MILLE * (run.history["strain"][before] - test.strain_before),
-                  run.history["stress_MPa"][before], color=style.BLUE, linewidth=0.9, zorder=2.5,
+                  run.history[run.facts.press("stress")][before], color=style.BLUE, linewidth=0.9, zorder=2.5,
                   label="its stages before the last")
     strain = style.PER_MILLE * test.strain
     top, bottom = test.column("stress_top_MPa"), test.column("stress_bottom_MPa")
     again = test.rise_again
-    axes.plot(strain, test.column("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
+    axes.plot(strain, test.stress, color=style.BLUE, linewidth=1.8, zorder=3,
               label=style.page().said("this run, mean of both platens", "this run")
                     + (f";\nrises again, {100.0 * again:+.0f} % above $f_c$" if again > 0.005 else ""))
     if test.has_peak:
         at, strength = test.peak
         axes.plot(style.PER_MILLE * at, strength, "D", color=style.BLUE, markersize=5.0, zorder=4.5, linestyle="none",
                   label=f"its $f_c$, {strength:.3g} MPa")
-        stress = test.column("stress_MPa")
+        stress = test.stress
         passes = int(np.argmax(stress >= _WITHIN_FIT * strength))
         if isinstance(modulus := test.results.get("E_GPa"), float) and stress[passes] >= _WITHIN_FIT * strength:
             first = max(0.0, strain[passes] - stress[passes] / modulus)  # per mille: MPa over GPa
@@ -122,11 +122,11 @@ def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> N
 
 def _draw_marks(axes: Axes, marks: Mapping[str, Frame]) -> None:
     axes.plot([style.PER_MILLE * frame.strain for frame in marks.values()],
-              [frame.stress_MPa for frame in marks.values()], "o", color=style.BLUE, markersize=6.5,
+              [frame.stress for frame in marks.values()], "o", color=style.BLUE, markersize=6.5,
               linestyle="none", zorder=4,
               label=style.page().said("frames shown in fracture: ", "frames ") + ", ".join(marks) if marks else None)
     for letter, frame in marks.items():
-        axes.annotate(letter, (style.PER_MILLE * frame.strain, frame.stress_MPa), xytext=(-7, -11),
+        axes.annotate(letter, (style.PER_MILLE * frame.strain, frame.stress), xytext=(-7, -11),
                       textcoords="offset points", ha="center", va="center", fontweight="bold", zorder=3.5,
                       bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": "none",
                             "alpha": 0.8})
@@ -247,7 +247,7 @@ def mean_curve(runs: Sequence[Results]) -> tuple[np.ndarray, np.ndarray]:
 def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
     """Returns strain and stress [MPa]; from rest, unless heat came before."""
     test = Compressed(run)
-    strain, stress = test.strain, test.column("stress_MPa")
+    strain, stress = test.strain, test.stress
     run.history.known("strain", test.rows)
     if not Heated(run).exchanged.any():
         strain, stress = np.concatenate([[0.0], strain]), np.concatenate([[0.0], stress])

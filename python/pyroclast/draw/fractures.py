@@ -61,7 +61,7 @@ def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: floa
     frames: those of the loading stage, in order, at least one. peak_stress: MPa.
     """
     peak = min(range(len(frames)), key=lambda i: abs(frames[i].strain / peak_strain - 1.0)
-               + abs(frames[i].stress_MPa / peak_stress - 1.0))
+               + abs(frames[i].stress / peak_stress - 1.0))
     selected = {}
     if before := frames[:peak]:
         selected["A"] = min(before, key=lambda frame: abs(frame.strain - _BEFORE_PEAK * peak_strain))
@@ -69,9 +69,9 @@ def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: floa
     after = [frame for frame in frames[peak + 1:] if frame.step > frames[peak].step]
     if after:
         end = after[-1]
-        wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress_MPa))
+        wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress))
         if falling := [frame for frame in after if frame.step < end.step]:
-            selected["C"] = min(falling, key=lambda frame: abs(frame.stress_MPa - wanted))
+            selected["C"] = min(falling, key=lambda frame: abs(frame.stress - wanted))
         selected["D"] = end
     return selected
 
@@ -109,17 +109,17 @@ def fracture(run: Results, marks: Mapping[str, Frame]) -> Rows:
     strength = test.peak[1]
     panels = []
     for letter, frame in marks.items():
-        is_peak = test.has_peak and letter == "B" and frame.stress_MPa >= _AT_PEAK * strength
+        is_peak = test.has_peak and letter == "B" and frame.stress >= _AT_PEAK * strength
         caption = (f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
-                   f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n"
-                   f"{100.0 * frame.stress_MPa / strength:.0f} % of {'$f_c$' if test.has_peak else 'the largest'}")
+                   f"$\\sigma$ = {frame.stress:.1f} MPa\n"
+                   f"{100.0 * frame.stress / strength:.0f} % of {'$f_c$' if test.has_peak else 'the largest'}")
         panels.append(Panel(run, frame, f"{letter}, peak" if is_peak else letter, caption))
     return Rows([("", panels)], style.title_of(run))
 
 
 def broken_share(run: Results, frame: Frame) -> float:
     """Returns the extent of broken contact points, by any mode, over that of all that can break."""
-    inner = can_crack(run, {name for names in run.crack_modes.values() for name in names})
+    inner = can_crack(run, {name for names in run.facts.crack_modes.values() for name in names})
     broken = np.zeros(len(inner), dtype=bool)
     for crack in cracks_of(run):
         if crack.broken:
@@ -133,8 +133,8 @@ def write_counts(path: Path, drawn: Rows) -> None:
     half and not broken, and the extent of both: lengths in m, of a solid areas in m².
     """
     runs = [panel.run for panel in drawn.panels]
-    modes = list(dict.fromkeys(mode for run in runs for mode in run.crack_modes))
-    unit = "length_m" if runs[0].mesh.blocks.dimension == 2 else "area_m2"
+    modes = list(dict.fromkeys(mode for run in runs for mode in run.facts.crack_modes))
+    unit = "_".join(runs[0].facts.extent)
     columns = [f"{mode}_{state}{ending}" for mode in modes for state in ("broken", "damaged_above_half")
                for ending in ("", f"_{unit}")]
     with whole(path) as aside, open(aside, "w", newline="", encoding="utf-8") as file:
@@ -147,7 +147,7 @@ def write_counts(path: Path, drawn: Rows) -> None:
             numbers = [f"{values[mode, is_broken]:.9g}" if (mode, is_broken) in counts else ""
                        for mode in modes for is_broken in (True, False) for values in (counts, extents)]
             writer.writerow([run.folder.resolve().name, panel.title, frame.number, frame.stage, frame.step, frame.time,
-                             frame.strain, frame.stress_MPa, "" if frame.temperature is None else frame.temperature,
+                             frame.strain, frame.stress, "" if frame.temperature is None else frame.temperature,
                              f"{broken_share(run, frame):.6g}", *numbers])
 
 

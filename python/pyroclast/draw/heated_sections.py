@@ -140,7 +140,7 @@ def _panel(run: Results, frame: Frame) -> Panel:
         title = f"failed, {title}"
     elif last:
         title = f"end, {title}"
-    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if hot.restrained else ""
+    stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if hot.restrained else ""
     strain = "" if mean and stress else (f"$\\varepsilon_{{\\mathrm{{tot}}}} = "
                                          f"{style.PER_MILLE * hot.total_strain_at(frame):.2f}\\times 10^{{-3}}$\n")
     return Panel(run, frame, title, f"{mean}{strain}{stress}broken {100.0 * broken_share(run, frame):.2g} %")

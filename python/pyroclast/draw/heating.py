@@ -65,15 +65,15 @@ def thrust(run: Results) -> Figure:
     """Draws the stress that a restrained specimen builds up against its platens, and lateral strain."""
     hot = Heated(run)
     figure, over, upper, lower, below = _two_while_heated(run)
-    stress = hot.column("stress_MPa")
+    stress = hot.stress
     top, bottom = hot.column("stress_top_MPa"), hot.column("stress_bottom_MPa")
-    _draw_heated_parent(upper, run, "stress_MPa", 1.0)
+    _draw_heated_parent(upper, run, run.facts.press("stress"), 1.0)
     draw_tables(upper, [run], over_minutes(hot.timed), ("stress", 1.0))
     upper.fill_between(over, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label=style.page().said("between its upper and lower platen", "between its platens"))
     upper.plot(over, stress, color=style.BLUE, linewidth=1.8,
                label=style.page().said("this run, mean of both platens", "this run"))
-    if run.history.known("stress_MPa", hot.rows).min() >= 0.0:
+    if run.history.known(run.facts.press("stress"), hot.rows).min() >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, over, stress)

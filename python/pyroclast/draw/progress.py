@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import cycle
+from itertools import cycle, islice
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,23 +13,15 @@ from ..errors import Error
 from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.results import Results
+from ..stored.run_facts import (BROKEN_EXTENT, DAMAGED_EXTENT, ENERGY_ERROR, HELD, LOST, OPENING, PUT_IN,
+                                Column)
 from . import style
 
-ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
-              "energy_mass_scaling_J")
-ENERGY_OUT = (
-    ("energy_zones_J", "stored in zones", "#9ecae1", None),
-    ("energy_contacts_J", "stored in contacts", style.BLUE, None),
-    ("energy_kinetic_J", "kinetic", style.BLACK, None),
-    ("dissipated_tension_J", "tension softening", style.VERMILLION, None),
-    ("dissipated_shear_J", "shear softening", style.SHEAR_COLOUR, None),
-    ("dissipated_friction_J", "friction", style.ORANGE, "////"),
-    ("dissipated_compression_J", "crushing", style.YELLOW, None),
-    ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
-    ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
-)
+_HELD = (("#9ecae1", None), (style.BLUE, None), (style.BLACK, None))  # colour and hatch of each energy, in order
+_LOST = ((style.VERMILLION, None), (style.SHEAR_COLOUR, None), (style.ORANGE, "////"), (style.YELLOW, None))
+_MORE_LOST = ((style.PURPLE, "++"), ("#8c6d31", "++"), ("#66c2a4", "++"))  # where laws lose more than the paper's
+_DAMPED = (("#d9d9d9", "...."), (style.FAINT, "xxxx"))  # the last that are lost
 _LEAST_SHARE = 5e-4  # of the energy turned over, that an energy needs to be drawn and listed
-_MORE_LOSSES = (style.PURPLE, "#8c6d31", "#66c2a4")  # colours
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
 MINUTES_LABEL = "Time of heating [min]"
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
@@ -45,6 +37,16 @@ class Course:
     label: str
     start: float  #: left end of the axis
     ordered: bool = True  #: False when time stands in for a temperature that also falls
+
+    @property
+    def stress(self) -> np.ndarray:
+        """Stress (n,) [MPa] between the platens."""
+        return self[self.run.facts.press("stress")]
+
+    @property
+    def opening(self) -> np.ndarray:
+        """Mean opening (n,) [m] of contacts damaged in tension or mixed mode."""
+        return self[self.run.facts.of_role(OPENING)[0].name]
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Returns (n,) a column of the history."""
@@ -98,7 +100,7 @@ def heating_cracks(run: Results) -> Figure:
     lengths.set_title(style.title_of(run))
     course = heating_course(run)
     _draw_extents(lengths, course)
-    opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
+    opening.plot(*style.thinned(course.over, 1e6 * course.opening), color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension or mixed mode [µm]")
     opening.set_ylim(bottom=0.0)
     opening.sharex(lengths)
@@ -109,25 +111,23 @@ def heating_cracks(run: Results) -> Figure:
     return figure
 
 
-def extent_of_cracks(run: Results) -> tuple[str, str, str]:
-    """Returns what cracks are measured by: "Length" or in space "Area", its unit, and what its columns end with."""
-    in_space = any(f"{mode}_{interface}_area_m2" in run.history.names for mode, interfaces in run.crack_modes.items()
-                   for interface in interfaces)  # and not a record of that ending
-    return ("Area", "m²", "area_m2") if in_space else ("Length", "m", "length_m")
+def extent_of_cracks(run: Results) -> tuple[str, str]:
+    """Returns the measure of cracks, "Length" or in space "Area", and its unit."""
+    name, unit = run.facts.extent
+    return name.capitalize(), unit.replace("2", "²")
 
 
 def crack_extent(course: Course, mode: str, is_broken: bool) -> np.ndarray:
-    """Returns (n,) length [m], in space area [m²], of all cracks of a mode: of the broken, or of all with damage."""
-    ending = ("broken_" if is_broken else "") + extent_of_cracks(course.run)[2]
-    interfaces = course.run.crack_modes.get(mode, [])
-    return sum((course[f"{mode}_{name}_{ending}"] for name in interfaces), np.zeros(len(course.over)))
+    """Returns length [m], in space area [m²], (n,) of all cracks of a mode: of the broken, or of all with damage."""
+    columns = course.run.facts.of_role(BROKEN_EXTENT if is_broken else DAMAGED_EXTENT, mode=mode)
+    return sum((course[column.name] for column in columns), np.zeros(len(course.over)))
 
 
 def _draw_extents(axes: Axes, course: Course) -> None:
     """Draws extents on a logarithmic axis, which shows a tenth of all: broken as lines, damaged as light areas."""
-    what, unit, _ = extent_of_cracks(course.run)
+    what, unit = extent_of_cracks(course.run)
     drawn = [(mode, is_broken, crack_extent(course, mode, is_broken)) for is_broken in (False, True)
-             for mode in course.run.crack_modes]
+             for mode in course.run.facts.crack_modes]
     drawn = [(mode, is_broken, values) for mode, is_broken, values in drawn if (values > 0.0).any()]
     axes.set_ylabel(f"{what} of cracks [{unit}]")
     if not drawn:
@@ -151,7 +151,7 @@ def _draw_extents(axes: Axes, course: Course) -> None:
 
 def _draw_stress_behind(axes: Axes, course: Course) -> None:
     behind = axes.twinx()
-    behind.plot(*style.thinned(course.over, course["stress_MPa"]), color=style.FAINT, linewidth=0.8)
+    behind.plot(*style.thinned(course.over, course.stress), color=style.FAINT, linewidth=0.8)
     behind.set_ylim(bottom=0.0)
     behind.set_ylabel("Axial stress [MPa]", color="#6a6a6a")
     behind.tick_params(axis="y", colors="#6a6a6a")
@@ -168,7 +168,8 @@ def energy(course: Course) -> Figure:
 
     Shares are of the energy turned over: all that was put in or taken out, each by its size.
     """
-    changes = course["energy_property_change_J"]
+    changed = course.run.facts.column(PUT_IN, "property_change")
+    changes = course[changed.name] if changed else np.zeros(len(course.over))
     heights = (1.0, 0.45, 0.3) if changes.any() else (1.0, 0.3)
     figure, all_axes, beside = style.panels(4.8 if len(heights) == 2 else 5.6, heights, beside=0.4)
     upper, lower = all_axes[0], all_axes[-1]
@@ -177,7 +178,7 @@ def energy(course: Course) -> Figure:
     for axes in all_axes[:-1]:
         axes.tick_params(labelbottom=False)
     figure.suptitle(style.title_of(course.run), fontsize=style.page().size(9.0))
-    parts = [course[name] for name in ENERGY_IN if name in course.run.history]
+    parts = [course[name] for name in energies_in(course.run)]
     work_in = sum(parts)
     turned_over = sum(map(np.abs, parts))
     if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
@@ -200,35 +201,40 @@ def energy(course: Course) -> Figure:
         all_axes[1].set_ylabel(style.page().said("Put in by\nthe change of\nproperties [J]",
                                                  "Changed\nproperties\n[J]"))
 
-    lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
+    error = course.run.facts.of_role(ENERGY_ERROR)[0]
+    lower.plot(course.over, 100.0 * course[error.name] / turnover, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
     lower.set_ylabel(style.page().said("Ledger error\n[% of energy\nturned over]", "Ledger\nerror [%]"))
     lower.set_xlabel(course.label)
     return figure
 
 
-def energies_out(run: Results) -> list[tuple[str, str, str, str | None]]:
-    """Returns columns of the run's energies, with name, colour and hatch: a law may lose others than the paper's."""
-    known = [entry for entry in ENERGY_OUT if entry[0] in run.history]
-    others = [name for name in run.history.names
-              if name.startswith("dissipated_") and name not in {column for column, *_ in ENERGY_OUT}]
-    return known + [(name, name.removeprefix("dissipated_").removesuffix("_J").replace("_", " "), colour, "++")
-                    for name, colour in zip(others, cycle(_MORE_LOSSES))]
+def energies_in(run: Results) -> list[str]:
+    """Returns the columns of energies that are put in."""
+    return [column.name for column in run.facts.of_role(PUT_IN)]
+
+
+def energies_out(run: Results) -> list[tuple[Column, str, str | None]]:
+    """Returns the columns of energies that are held or lost, with colour and hatch."""
+    held, lost = run.facts.of_role(HELD), run.facts.of_role(LOST)
+    styles = [*_LOST, *islice(cycle(_MORE_LOST), max(0, len(lost) - len(_LOST) - len(_DAMPED)))]
+    looks = [*_HELD[:len(held)], *styles[:max(0, len(lost) - len(_DAMPED))], *_DAMPED]
+    return [(column, *look) for column, look in zip(held + lost, looks)]
 
 
 def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     energies = energies_out(course.run)
     rows, top = np.zeros(len(course.over), dtype=bool), np.zeros_like(course.over)
     for column, *_ in energies:
-        top = top + course[column]
+        top = top + course[column.name]
         rows |= style.kept(course.over, top)
     over, below = course.over[rows], np.zeros(np.count_nonzero(rows))
-    for column, name, colour, hatch in energies:
-        values = course[column]
+    for column, colour, hatch in energies:
+        values = course[column.name]
         if np.nanmax(np.abs(values), initial=0.0) < _LEAST_SHARE * turnover:
             continue
         known = values[np.isfinite(values)]
-        name = style.page().said(name, name.removeprefix("stored ").removesuffix(" softening"))
+        name = style.page().said(column.label, column.label.removeprefix("stored ").removesuffix(" softening"))
         axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,
                           edgecolor="white", linewidth=0.3, label=f"{name}: {_share(known, turnover)}")
         below = below + values[rows]

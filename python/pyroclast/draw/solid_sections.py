@@ -236,10 +236,10 @@ class CrackFaces:
 def crack_faces(run: Results, frame: Frame, least: float = 0.0) -> CrackFaces:
     """Takes contact points of a solid whose damage is above `least`: none where no law of its contacts has a damage."""
     contacts = run.mesh.contacts
-    modes = list(run.crack_modes) or ["tension"]
-    values = np.array([run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes]
+    modes = list(run.facts.crack_modes) or ["tension"]
+    values = np.array([run.contact_field(frame, f"{mode}_damage [1]") for mode in run.facts.crack_modes]
                       or [np.zeros(len(contacts.cells))])
-    interfaces = {name for names in run.crack_modes.values() for name in names}
+    interfaces = {name for names in run.facts.crack_modes.values() for name in names}
     largest = values.max(axis=0)
     which = can_crack(run, interfaces) & (largest > least)
     cells = contacts.points[contacts.cells[which]]

@@ -474,7 +474,7 @@ def load_label(run) -> str:
         return ""
     if hot.load_level is not None:
         return f"$\\sigma/f_c$ = {hot.load_level:g}"
-    return "" if hot.load_stress_MPa is None else f"$\\sigma$ = {hot.load_stress_MPa:g} MPa"
+    return "" if hot.load_stress is None else f"$\\sigma$ = {hot.load_stress:g} MPa"
 
 
 def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.ndarray:

@@ -10,12 +10,13 @@ import numpy as np
 
 from ..draw import style
 from ..draw.heating import GAS
-from ..draw.progress import ENERGY_IN, energies_out, extent_of_cracks
+from ..draw.progress import energies_in, energies_out
 from ..draw.records import abscissa, leading, records_of
 from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.reference import TRANSIENT_STRAIN, strain_band
 from ..stored.results import Results
+from ..stored.run_facts import BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE
 from .marks import Mark, marks
 from .packing import packed_floats
 
@@ -47,11 +48,13 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
     test = Compressed(run)
     hot = Heated(run)
     yield CurveQuantity("strain", "axial strain, compression positive [10⁻³]", "strain", 1e3, "strain")
-    if run.moves and run.has_platens and not hot.is_last and np.isfinite(run.history["stress_MPa"]).any():
+    if run.moves and run.has_platens and not hot.is_last and np.isfinite(run.history[run.facts.press("stress")]).any():
         before = test.strain_before
         yield CurveQuantity(OVER_LOAD, "axial strain since loading began, compression positive [10⁻³]", "strain", 1e3,
                             offset=1e3 * before, stage=int(run.history["stage"][test.rows][0]) if before else 0)
-    yield CurveQuantity("stress", "axial stress, compression positive [MPa]", "stress_MPa", 1.0, "stress")
+    if run.has_platens:
+        yield CurveQuantity("stress", "axial stress, compression positive [MPa]", run.facts.press("stress"), 1.0,
+                            "stress")
     yield CurveQuantity("total_strain", "total axial strain, expansion positive [10⁻³]", "specimen_strain", -1e3,
                    "total_strain")
     yield CurveQuantity("lateral_strain", "lateral strain, expansion positive [10⁻³]", "lateral_strain", 1e3)
@@ -63,12 +66,13 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
     yield CurveQuantity("temperature_min", "least temperature [°C]", "temperature_min_degC")
     yield CurveQuantity("temperature_max", "greatest temperature [°C]", "temperature_max_degC")
     yield CurveQuantity("gas", "hottest gas [°C]", GAS)
-    for name in run.probes:
-        yield CurveQuantity(f"probe_{name}", f"probe {name} [°C]", f"probe_{name}_degC", 1.0, name)
+    for probe in run.facts.of_role(PROBE):
+        yield CurveQuantity(f"probe {probe.of}", f"probe {probe.of} [°C]", probe.name, 1.0, probe.of)
     yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
     yield CurveQuantity("step", "step", "step")
-    yield CurveQuantity("mean_opening", "mean opening of contacts damaged in tension or mixed mode [µm]",
-                        "mean_opening_m", 1e6)
+    for opening in run.facts.of_role(OPENING):
+        yield CurveQuantity("mean_opening", "mean opening of contacts damaged in tension or mixed mode [µm]",
+                            opening.name, 1e6)
     yield CurveQuantity("unbalanced", "unbalanced ratio [–]", "unbalanced_ratio")
     yield CurveQuantity("kinetic", "kinetic over strain energy [–]", "kinetic_over_strain")
     yield CurveQuantity("cycles", "cycles after the exchange", "cycles")
@@ -79,7 +83,7 @@ def _drawn(run: Results) -> tuple[str, list[str]]:
     hot = Heated(run)
     if not run.moves:
         return "minutes", ["temperature", "temperature_min", "temperature_max",
-                           *(f"probe_{name}" for name in run.probes)]
+                           *(f"probe {name}" for name in run.probes)]
     if not run.has_platens:
         records = records_of(run)
         over, _, _ = abscissa(run, records)
@@ -116,7 +120,6 @@ def course_of(run: Results) -> PackedCourse:
     needed |= set((np.flatnonzero(np.diff(stage)) + 1).tolist())
     rows = _kept(run, [by_id[name].column for name in [over, *drawn] if name], sorted(needed))
     place = {row: i for i, row in enumerate(rows.tolist())}
-    modes = run.crack_modes if run.moves else {}
     about = {
         "columns": history.names,
         "quantities": [asdict(one) for one in there],
@@ -124,17 +127,26 @@ def course_of(run: Results) -> PackedCourse:
         "marks": [{"id": mark.id, "label": mark.label, "rows": [place[row] for row in mark.rows]} for mark in found],
         "frames": [place[row] for row in frames],
         "stages": _stages(run, stage[rows]),
-        "modes": modes,
-        "energy_in": [name for name in ENERGY_IN if name in history.names],
-        "energy_out": [{"column": name, "label": label, "colour": colour}
-                       for name, label, colour, _ in energies_out(run)],
+        "energy_in": energies_in(run),
+        "energy_out": [{"column": column.name, "of": column.of, "label": column.label, "colour": colour,
+                        "is_held": column.role == HELD} for column, colour, _ in energies_out(run)],
         "references": list(_references(run)),
-        "extent": extent_of_cracks(run)[2],
+        "cracks": _cracks(run),
+        "extent_unit": run.facts.extent[1],
     }
     notes = [] if len(rows) == history.rows else \
         [f"the page keeps {len(rows)} of {history.rows} rows of history.csv"]
     values = np.column_stack([history[name][rows] for name in history.names])
     return PackedCourse(about, packed_floats(values), _parent(run, there), found, notes)
+
+
+def _cracks(run: Results) -> list[dict[str, str]]:
+    """Returns the columns of the cracks of each mode and interface."""
+    roles = {"damaged": DAMAGED, "broken": BROKEN, "extent": DAMAGED_EXTENT}
+    return [{"mode": mode, "interface": interface}
+            | {name: column.name for name, role in roles.items() for column in run.facts.of_role(role, mode=mode)
+               if column.interface == interface}
+            for mode, interfaces in run.facts.crack_modes.items() for interface in interfaces]
 
 
 def rows_of_frames(run: Results) -> list[int]:

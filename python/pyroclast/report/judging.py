@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ..stored.heated import Heated
 from ..stored.results import Results
+from ..stored.run_facts import ResultFacts, RunFacts
 
 GOOD, DOUBT, BAD = "good", "doubt", "bad"
 _LEVELS = (GOOD, DOUBT, BAD)  # from good to bad
@@ -27,30 +28,25 @@ class _Headline(NamedTuple):
     """A result that a reader looks for first."""
 
     result: str
-    label: str
-    unit: str
-    factor: float
-    digits: int
     mark: str = ""  # of the curve, see `marks`
     platen: str = ""  # how the platen is held where the result says something; "": anyhow
 
 
 _HEADLINES = (
-    _Headline("E_GPa", "E", "GPa", 1.0, 1),
-    _Headline("f_c_MPa", "f_c", "MPa", 1.0, 1, "peak"),
-    _Headline("strain_at_peak", "strain at the peak", "10⁻³", 1e3, 2, "peak"),
-    _Headline("strain_ic", "ε_ic", "10⁻³", 1e3, 2),
-    _Headline("load_level", "load level", "of f_c", 1.0, 2),
-    _Headline("load_stress_MPa", "stress while heated", "MPa", 1.0, 1, platen="force"),
-    _Headline("critical_temperature_degC", "critical temperature", "°C", 1.0, 0, "end"),
-    _Headline("highest_temperature_degC", "highest temperature", "°C", 1.0, 0),
-    _Headline("largest_thrust_MPa", "largest thrust", "MPa", 1.0, 1, "peak", "fixed"),
+    _Headline("E_GPa"),
+    _Headline("f_c_MPa", "peak"),
+    _Headline("strain_at_peak", "peak"),
+    _Headline("strain_ic"),
+    _Headline("load_level"),
+    _Headline("load_stress_MPa", platen="force"),
+    _Headline("critical_temperature_degC", "end"),
+    _Headline("highest_temperature_degC"),
+    _Headline("largest_thrust_MPa", "peak", "fixed"),
 )
 _MINOR = ("steps", "unbalanced_ratio", "exchanges", "cycles")
-_UNITS = {"_K_s": ("K/s", 1.0), "_N_m": ("N/m", 1.0), "_J_m2": ("J/m²", 1.0), "_GPa": ("GPa", 1.0),
-          "_MPa": ("MPa", 1.0), "_Pa": ("MPa", 1e-6), "_N": ("kN", 1e-3), "_J": ("J", 1.0), "_m2": ("cm²", 1e4),
-          "_m": ("mm", 1e3), "_s": ("s", 1.0), "_degC": ("°C", 1.0), "_K": ("K", 1.0)}
-"""Units in which results that a deck asks for are shown, and factors to these, by ends of names, longer ones first."""
+_SHOWN = {"1": ("", 1.0), "1e-3": ("10⁻³", 1e3), "J/m2": ("J/m²", 1.0), "Pa": ("MPa", 1e-6), "N": ("kN", 1e-3),
+          "m2": ("cm²", 1e4), "m": ("mm", 1e3), "degC": ("°C", 1.0)}
+"""Units of results as a page shows them, and the factor to that; others are shown as they are."""
 
 
 @dataclass(frozen=True)
@@ -132,12 +128,14 @@ def cards(run: Results) -> list[Card]:
     found: dict[str, Card] = {}
     for stage in run.stages:
         reasons = stage_verdict(stage)
-        for card in _of_stage(stage, reasons, whole):
+        for card in _of_stage(run.facts, stage, reasons, whole):
             found.pop(card.label, None)  # the later one stands later
             found[card.label] = card
     if unmeasured := _unmeasured_strength(run, whole):
         found[unmeasured.label] = unmeasured
-    order = {headline.label: i for i, headline in enumerate(_HEADLINES)} | {STRENGTH: -1}
+    known = run.facts.results
+    order = {known[headline.result].label: i for i, headline in enumerate(_HEADLINES) if headline.result in known}
+    order[STRENGTH] = -1
     place = {label: i for i, label in enumerate(found)}
     asked = _asked(run)
 
@@ -161,8 +159,8 @@ def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
         return None
     if hot.restrained:
         said = "the platens held the specimen in place while it was heated"
-    elif hot.load_stress_MPa:
-        said = f"{'held' if hot.critical_temperature is None else 'failed under'} {hot.load_stress_MPa:.3g} MPa"
+    elif hot.load_stress:
+        said = f"{'held' if hot.critical_temperature is None else 'failed under'} {hot.load_stress:.3g} MPa"
         loads = [results for results in run.stage_results if results.get("f_c_of_level_MPa")]
         if hot.load_level and loads:
             said += f" = {hot.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
@@ -179,40 +177,28 @@ def _asked(run: Results) -> list[str]:
     return [str(result.get("name")) for result in asked if result.get("kind") != "given"]
 
 
-def _of_stage(stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> Iterator[Card]:
+def _of_stage(facts: RunFacts, stage: dict[str, Any], own: list[Reason], whole: list[Reason]) -> Iterator[Card]:
     results = stage.get("results", {})
     known = {headline.result: headline for headline in _HEADLINES
              if headline.platen in ("", results.get("platen", headline.platen))}
     leads = any(name in known for name in results)
     for name, value in results.items():
-        headline = known.get(name) or (None if leads else _own_headline(name, results))
-        if headline is None:
+        about = facts.results.get(name, ResultFacts(name, "1", name, "", "test", None, "1"))
+        is_number = not isinstance(value, bool) and isinstance(value, (int, float))
+        if name not in known and (leads or not is_number or name in _MINOR or about.about):
             continue
-        because = results.get(f"{name.rpartition('_')[0] or name}_none_because") or results.get(f"{name}_none_because")
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        because = results.get(facts.text_about(name, "reason")) or results.get("none_because")
+        if not is_number:
             if because:
-                yield Card(headline.label, "–", "", BAD, str(because))
+                yield Card(about.label, "–", "", BAD, str(because))
             continue
         reasons = own + whole
         level = worst(reasons)
         said = next((reason.text for reason in reasons if reason.level == level), "the stage came to its end")
-        yield Card(headline.label, _number(headline.factor * value, headline.digits), headline.unit, level, said,
-                   headline.mark, headline.factor * value)
+        unit, factor = _SHOWN.get(about.shown_in, (about.shown_in, 1.0))
+        yield Card(about.label, _number(factor * value, about.digits), unit, level, said,
+                   known[name].mark if name in known else "", factor * value)
 
 
-def _own_headline(name: str, results: dict[str, Any]) -> _Headline | None:
-    """Returns the headline of a result that a deck asked for by a name of its own. A time goes with another result, and
-    the largest value of a record with its peak.
-    """
-    value = results[name]
-    if name in _MINOR or name.endswith("_time_s") or isinstance(value, bool) or not isinstance(value, (int, float)):
-        return None
-    if name.startswith("largest_") and name.replace("largest_", "peak_", 1) in results:
-        return None
-    ending = next((end for end in _UNITS if name.endswith(end)), "")
-    unit, factor = _UNITS.get(ending, ("", 1.0))
-    return _Headline(name, name[:len(name) - len(ending)], unit, factor, -1)
-
-
-def _number(value: float, digits: int) -> str:
-    return f"{value:.4g}" if digits < 0 else f"{value:.{digits}f}"
+def _number(value: float, digits: int | None) -> str:
+    return f"{value:.4g}" if digits is None else f"{value:.{digits}f}"

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..draw.progress import extent_of_cracks
 from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.results import Results
+from ..stored.run_facts import BROKEN, DAMAGED_EXTENT
 
 _CRACK_LENGTH = 1.0  # m, of damaged contacts
 _CRACK_SHARE = 0.01  # of the area of all contacts of a solid
@@ -40,10 +40,10 @@ def marks(run: Results, leading: np.ndarray | None, over: np.ndarray | None) -> 
     hot = Heated(run)
     found = []
     history = run.history
-    broken = _sum(run, "_broken")
+    broken = _sum(run, BROKEN)
     if broken is not None and (broken > 0).any():
         found.append(Mark("first", "first contact broken", int((broken > 0).argmax())))
-    extent = _sum(run, f"_{extent_of_cracks(run)[2]}")
+    extent = _sum(run, DAMAGED_EXTENT)
     if extent is not None and (asked := _least_extent(run)) is not None:
         least, label = asked
         if (extent >= least).any():
@@ -84,17 +84,16 @@ def _is_peak(run: Results, leading: np.ndarray, row: int) -> bool:
 
 def _least_extent(run: Results) -> tuple[float, str] | None:
     """Returns the length [m], of a solid area [m²], of damaged contacts that is marked, and how; None: not known."""
-    if extent_of_cracks(run)[0] == "Length":
+    if run.facts.dimension == 2:
         return _CRACK_LENGTH, "1 m of contacts damaged"
     if not run.has_fields:
         return None
     return _CRACK_SHARE * float(run.mesh.contacts.extent.sum()), "1 % of the contact area damaged"
 
 
-def _sum(run: Results, ending: str) -> np.ndarray | None:
-    """Returns the sum (rows,) over all modes and interfaces; None where the history has no such column."""
-    columns = [run.history[f"{mode}_{interface}{ending}"] for mode, interfaces in run.crack_modes.items()
-               for interface in interfaces if f"{mode}_{interface}{ending}" in run.history.names]
+def _sum(run: Results, role: str) -> np.ndarray | None:
+    """Returns the sum (rows,) over all modes and interfaces; None where no column has the role."""
+    columns = [run.history[column.name] for column in run.facts.of_role(role)]
     return np.nansum(columns, axis=0) if columns else None
 
 

@@ -21,6 +21,7 @@ from ..stored.frames import Frame
 from ..stored.heated import Heated
 from ..stored.mesh import Mesh
 from ..stored.results import Results
+from ..stored.run_facts import LOST
 from .packing import packed_floats, packed_steps, packed_whole
 
 MEET = 1e-9  # of the size of a body: points so near to each other are one
@@ -178,7 +179,7 @@ def exact_steps(run: Results, found: np.ndarray) -> np.ndarray:
 def about_body(run: Results) -> dict[str, Any]:
     """Returns names of materials, interfaces and modes of cracks."""
     mesh = run.mesh
-    modes = run.crack_modes if run.moves else {}
+    modes = run.facts.crack_modes if run.moves else {}
     return {"materials": [{"name": name, "bearing": i in mesh.blocks.bearing_materials}
                           for i, name in enumerate(mesh.blocks.materials)],
             "interfaces": [_said(name) for name in mesh.contacts.interfaces],
@@ -187,12 +188,13 @@ def about_body(run: Results) -> dict[str, Any]:
 
 def _packed_losses(run: Results, frames: list[Frame], lost: dict[str, np.ndarray]) -> dict[str, dict[str, Any]]:
     """Packs energies [J] (frames, contacts) over the thickness of the body, J/m; the history tells that thickness."""
-    there = [name for name in lost if f"dissipated_{name.removeprefix('lost_')}_J" in run.history.names]
+    columns = {f"lost_{column.of}": column.name for column in run.facts.of_role(LOST)}
+    there = [name for name in lost if name in columns]
     of_unit = sum(float(lost[name][-1].sum()) for name in there)
     if not of_unit > 0.0:
         return {}
     row = np.minimum(np.searchsorted(run.history["step"], frames[-1].step), run.history.rows - 1)
-    whole = sum(float(run.history[f"dissipated_{name.removeprefix('lost_')}_J"][row]) for name in there)
+    whole = sum(float(run.history[columns[name]][row]) for name in there)
     return {name: packed_steps(whole / of_unit * lost[name], _LOST_SHARE * whole) for name in there}
 
 
@@ -246,7 +248,7 @@ class _Reader:
             return
         yield "displacement", run.gridpoint_displacement(frame)[outline.gridpoint]
         yield from self._of_zones(self._folder / f"blocks_{frame.number:04d}.hdf")
-        damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
+        damages = {mode: run.contact_field(frame, f"{mode}_damage [1]") for mode in run.facts.crack_modes}
         for mode, damage in damages.items():
             yield f"damage_{mode}", damage
         if damages:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..draw import style
-from ..draw.progress import energies_out, extent_of_cracks
+from ..draw.progress import energies_out
 from ..draw.properties import panels, read_properties
 from ..errors import Error
 from ..stored.heated import Heated
@@ -75,7 +75,7 @@ def run_page(run: Results, reload_every: float | None = None) -> str:
                 stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
-                can_crack=bool(run.moves and run.crack_modes), has_properties=bool(data["properties"]))
+                can_crack=bool(run.moves and run.facts.crack_modes), has_properties=bool(data["properties"]))
 
 
 def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
@@ -89,7 +89,7 @@ def _tested(run: Results) -> str:
     """Returns how much a number of the run stands for: one specimen, of so many blocks."""
     blocks = run.summary.get("specimen", {}).get("blocks")
     count = f", {blocks:,} blocks" if isinstance(blocks, int) else ""
-    space = (", in space" if extent_of_cracks(run)[0] == "Area" else ", in the plane") if run.crack_modes else ""
+    space = (", in space" if run.facts.dimension == 3 else ", in the plane") if run.facts.crack_modes else ""
     seed = run.manifest.get("seed")
     return f"one specimen{f' (seed {seed})' if seed is not None else ''}{count}{space}"
 
@@ -133,8 +133,8 @@ def _steps(run: Results, body: dict[str, Any] | None) -> list[tuple[str, str]]:
              "creep_y": ("creep strains", 1.0, "")}
     found = [(label, f"{factor * body['steps'][name]:.3g} {unit}".strip())
              for name, (label, factor, unit) in names.items() if name in body["steps"]]
-    called = {column: label for column, label, *_ in energies_out(run)}
-    found += [(f"energies that contacts lost: {called[f'dissipated_{loss}_J']}", f"{step:.3g} J")
+    called = {column.of: column.label for column, *_ in energies_out(run)}
+    found += [(f"energies that contacts lost: {called[loss]}", f"{step:.3g} J")
               for name, step in body["steps"].items() if (loss := name.removeprefix("lost_")) != name]
     return [*found, ("damages", "1/127")] if body["modes"] else found
 

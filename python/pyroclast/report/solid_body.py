@@ -46,7 +46,7 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
     fine = FINE * float(np.ptp(point, axis=0).max())
     reader = _Reader(run, number, used, first)
     taken, columns, left_out = read_finite(reader.read, frames)
-    modes = list(run.crack_modes) if run.moves and taken else []
+    modes = list(run.facts.crack_modes) if run.moves and taken else []
     arrays = {"point": packed_steps(point, fine, 4), "point_first": packed_whole(first, 4),
               "triangle": packed_whole(triangle, 4), "outer": packed_whole(is_outer, 1),
               "material": packed_whole(_of_blocks(blocks, number), 1)}
@@ -228,7 +228,7 @@ class _Reader:
         xx, yy, zz, xy, yz, xz = (1e-6 * np.bincount(self._number, self._share * stress[:, i]) for i in range(6))
         principal = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1))
         found.update(stress_y=yy, stress_1=principal[:, 2], stress_2=principal[:, 0])
-        damages = {f"damage_{mode}": run.contact_field(frame, f"{mode}_damage [1]") for mode in run.crack_modes}
+        damages = {f"damage_{mode}": run.contact_field(frame, f"{mode}_damage [1]") for mode in run.facts.crack_modes}
         if damages:
             is_damaged = np.max(list(damages.values()), axis=0) > 0.0
             found.update(damages, crack_step=run.contact_field(frame, "crack_step [1]"),

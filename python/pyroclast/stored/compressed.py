@@ -17,10 +17,10 @@ from .results import Results, number_of, results_with
 
 @dataclass(frozen=True)
 class Compressed:
-    """What the last stage of a run did in which the body moves. Strain and stress are positive in compression.
+    """What the stage of a run did that is the test. Strain and stress are positive in compression.
 
         test = pyroclast.Compressed(pyroclast.read("runs/compression"))
-        plt.plot(test.strain, test.column("stress_MPa"))
+        plt.plot(test.strain, test.stress)
 
     It keeps nothing but the run: a run that goes on may be read further meanwhile.
     """
@@ -43,11 +43,12 @@ class Compressed:
 
     @property
     def rows(self) -> NDArray[np.bool_]:
-        """Rows (rows,) of that stage that have a stress."""
-        stage, is_there = self.run.history["stage"], np.isfinite(self.run.history["stress_MPa"])
-        self.run.history.known("stress_MPa")
-        rows: NDArray[np.bool_] = (stage == stage[is_there].max()) & is_there
-        return rows
+        """Rows (rows,) with a stress of the stage that is the test; before it, of the last stage that moves the body."""
+        column, test = self.run.facts.press("stress"), self.run.facts.test_stage
+        stage, is_there = self.run.history["stage"], np.isfinite(self.run.history[column])
+        self.run.history.known(column)
+        rows: NDArray[np.bool_] = (stage == (-1 if test is None else test)) & is_there
+        return rows if rows.any() else (stage == stage[is_there].max()) & is_there
 
     def column(self, name: str) -> Array:
         """Returns a column of the history, `rows` only."""
@@ -62,6 +63,11 @@ class Compressed:
         since = heated[-1] + 1 if heated.size else 0
         before: NDArray[np.bool_] = np.isin(self.run.history["stage"], stages) & (since <= row) & (row < first)
         return before
+
+    @property
+    def stress(self) -> Array:
+        """Stress [MPa] between the platens over `rows`."""
+        return self.column(self.run.facts.press("stress"))
 
     @property
     def strain_before(self) -> float:
@@ -105,25 +111,25 @@ class Compressed:
             if "stage_strain" in self.run.history:
                 before = float(self.strain[0] - self.column("stage_strain")[0])
             return at + before, strength
-        strain, stress = self.strain, self.column("stress_MPa")
+        strain, stress = self.strain, self.stress
         self.run.history.known("strain", self.rows)
         row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())
         if stress[row] <= 0.0:
             path = self.run.history.path
-            raise Error(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
+            raise Error(f"{path}: the stress is never positive; the specimen was not compressed")
         return float(strain[row]), float(stress[row])
 
     @property
     def strength_retained(self) -> float | None:
         """Largest stress after heating over the strength before; None where the summary does not tell that."""
         hot = Heated(self.run)
-        if hot.is_last or not hot.load_level or not hot.load_stress_MPa:
+        if hot.is_last or not hot.load_level or not hot.load_stress:
             return None
-        return self.peak[1] * hot.load_level / hot.load_stress_MPa
+        return self.peak[1] * hot.load_level / hot.load_stress
 
     @property
     def frames(self) -> list[Frame]:
         """Frames of the stage, their strain less `strain_before`, but those of unknown strain or stress."""
         last, before = self.run.history["stage"][self.rows].max(), self.strain_before
         return [replace(frame, strain=frame.strain - before) for frame in self.run.frames
-                if frame.stage == last and np.isfinite([frame.strain, frame.stress_MPa]).all()]
+                if frame.stage == last and np.isfinite([frame.strain, frame.stress]).all()]

@@ -223,7 +223,7 @@ def _of_frames(frames: list[Frame], moves: bool) -> dict[str, Variable]:
         "time": ([frame.time for frame in frames], "s"),
         "heating_time": ([frame.heating_time for frame in frames], "s"),
         "test_strain": ([frame.strain for frame in frames], "1"),
-        "test_stress": ([_PA * frame.stress_MPa for frame in frames], "Pa"),
+        "test_stress": ([_PA * frame.stress for frame in frames], "Pa"),
         "mean_temperature": ([frame.temperature for frame in frames], "degC"),
     }
     found: dict[str, Variable] = {"frame": (("frame",), [frame.number for frame in frames], {})}

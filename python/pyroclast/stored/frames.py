@@ -19,7 +19,7 @@ class Frame:
     step: int
     time: float  #: s
     strain: float  #: NaN where nothing moves
-    stress_MPa: float  #: likewise
+    stress: float  #: MPa; likewise
     temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
     heating_time: float | None = None  #: s since heating began; None when the run did not write it
 

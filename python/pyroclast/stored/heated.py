@@ -12,6 +12,7 @@ from ..errors import Error
 from .columns import Array
 from .frames import Frame
 from .results import Results, number_of, results_with
+from .run_facts import HEAT
 
 _UNIFORM = 1.0  # K
 
@@ -46,20 +47,20 @@ class Heated:
         return merged | {"critical_temperature_degC": failures[0]["critical_temperature_degC"] if failures else None}
 
     @property
-    def load_stress_MPa(self) -> float | None:
-        """Compressive stress kept meanwhile."""
+    def load_stress(self) -> float | None:
+        """Compressive stress kept meanwhile, MPa."""
         return number_of(self.run, self.results, "load_stress_MPa")
 
     @property
     def load_level(self) -> float | None:
-        """`load_stress_MPa` over the strength at 20 °C; None where that strength is not known."""
+        """`load_stress` over the strength at 20 °C; None where that strength is not known."""
         stages = self.run.stage_results
         heated = [number for number, results in enumerate(stages) if results.get("exchanges") is not None]
         if not heated:
             return None
         loads = [results for results in stages[:heated[0]] if "load_level" in results]
         level = number_of(self.run, loads[-1], "load_level") if loads else None
-        return 0.0 if level is None and self.load_stress_MPa == 0.0 else level
+        return 0.0 if level is None and self.load_stress == 0.0 else level
 
     @property
     def critical_temperature(self) -> float | None:
@@ -121,6 +122,11 @@ class Heated:
         return rows
 
     @property
+    def stress(self) -> Array:
+        """Stress [MPa] between the platens over `rows`."""
+        return self.column(self.run.facts.press("stress"))
+
+    @property
     def total_strain(self) -> Array:
         """Axial strain of the specimen's own ends over `rows`, positive in expansion, that of the load included. Platens
         without load may have left the ends.
@@ -154,8 +160,8 @@ class Heated:
         """Whether temperatures are drawn over the time: they differ within the specimen, or stand beside a reference."""
         if not self.uniform:
             return True
-        return "heat_stored_J" in self.run.history and any(table.over == "heating_time"
-                                                           for table in self.run.references.tables)
+        return bool(self.run.facts.of_role(HEAT)) and any(table.over == "heating_time"
+                                                          for table in self.run.references.tables)
 
     @property
     def timed(self) -> bool:

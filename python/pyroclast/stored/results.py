@@ -6,7 +6,6 @@ only `Heated.total_strain` is positive in expansion.
 
 from __future__ import annotations
 
-import re
 import sys
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +21,7 @@ from .files import MESH, GrowingTable, Lock, Table, Writer, is_number, read_arra
 from .frames import Frame, frames_of
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
+from .run_facts import PROBE, RunFacts
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -109,13 +109,9 @@ class Results:
         return self.history.to_pandas()
 
     @cached_property
-    def crack_modes(self) -> dict[str, list[str]]:
-        """Interfaces that can break, by the mode of their damage: "tension", "shear" or "mixed"."""
-        modes: dict[str, list[str]] = {}
-        for column in self.history.names:
-            if match := re.fullmatch(r"(tension|shear|mixed)_(.+)_broken", column):
-                modes.setdefault(match[1], []).append(match[2])
-        return modes
+    def facts(self) -> RunFacts:
+        """run.json: what the run is, and what each of its columns and results is."""
+        return RunFacts(self.folder / "run.json")
 
     @cached_property
     def summary(self) -> dict:
@@ -222,18 +218,17 @@ class Results:
     @property
     def moves(self) -> bool:
         """Whether there are mechanics; else the run is of heat conduction alone."""
-        return "unbalanced_ratio" in self.history.names
+        return self.facts.moves
 
     @property
     def has_platens(self) -> bool:
         """Whether the body stood between platens, so that the test has a stress and a strain."""
-        return "strain" in self.history.names
+        return self.facts.has_press
 
     @property
     def probes(self) -> dict[str, np.ndarray]:
         """Temperatures [°C] at the run's probes, (rows,) by name."""
-        return {match[1]: self.history[name] for name in self.history.names
-                if (match := re.fullmatch(r"probe_(\w+)_degC", name))}
+        return {column.of: self.history[column.name] for column in self.facts.of_role(PROBE)}
 
     @property
     def has_fields(self) -> bool:
@@ -333,7 +328,7 @@ class GrowingResults(Results):
     """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
 
     _table = GrowingTable
-    _LASTING = frozenset({"folder", "history", "mesh", "deck_text", "deck", "references", "parent"})
+    _LASTING = frozenset({"folder", "facts", "history", "mesh", "deck_text", "deck", "references", "parent"})
 
     def refresh(self) -> bool:
         """Takes in what was written since; returns whether the rows that were there are others or have become more."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import re
@@ -86,9 +85,9 @@ class Output:
         """Returns the number, and why there is none (NaN) or why it is in doubt; empty where nothing is against it. Not
         of functions.
         """
-        return self._of_history(folder) if self.of_history else self._of_summary(summary)
+        return self._of_history(folder) if self.of_history else self._of_summary(folder, summary)
 
-    def _of_summary(self, summary: dict[str, Any]) -> tuple[float, str]:
+    def _of_summary(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
         name = self.summary_name
         results = [s.get("results", {}) for s in summary.get("stages", []) if isinstance(s, dict)]
         with_it = [r for r in results if name in r]
@@ -98,8 +97,8 @@ class Output:
                 node = node.get(part) if isinstance(node, dict) else None
         own = with_it[-1] if with_it else summary
         if isinstance(node, (int, float)) and math.isfinite(node):
-            return float(node), str(own.get(_because(name, "doubtful")) or "")
-        return math.nan, str(own.get(_because(name, "none")) or f"the summary has no number called {name!r}")
+            return float(node), str(own.get(_text_about(folder, name, "doubt")) or "")
+        return math.nan, str(own.get(_text_about(folder, name, "reason")) or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
         from ..stored.files import Table  # numpy and h5py, which a task that takes no history does without
@@ -191,9 +190,11 @@ def with_plain_numbers(what: str) -> str:
         raise Error(f"{found[3]} does not belong to {found[2]}, which {error}") from None
 
 
-def _because(name: str, what: str) -> str:
-    """Returns the key of the summary that says why a number is missing or doubtful: of "f_c_MPa" "f_c_none_because"."""
-    return f"{re.sub(r'_(?:[A-Z][A-Za-z]*|degC|percent)$', '', name)}_{what}_because"
+def _text_about(folder: Path, result: str, kind: str) -> str:
+    """Returns the name of the result that is the "reason" or "doubt" of another, as run.json tells; empty without one."""
+    known = _json_in(folder / "run.json").get("results")
+    about = [each for each in known if isinstance(each, dict)] if isinstance(known, list) else []
+    return next((str(each.get("name")) for each in about if each.get("about") == result and each.get("of") == kind), "")
 
 
 def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
@@ -215,16 +216,15 @@ def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
     return float(column[row]), ""
 
 
-def column_names(history: Path) -> list[str]:
-    """Returns the names of a history's columns, from its first line."""
-    with open(history, newline="", encoding="utf-8") as file:
-        return next(csv.reader(file), [])
-
-
 def read_summary(folder: Path) -> dict[str, Any] | None:
     """Reads summary.json; None where there is none that is whole."""
+    return _json_in(folder / "summary.json") or None
+
+
+def _json_in(path: Path) -> dict[str, Any]:
+    """Reads an object, with the standard library alone; empty where there is none that is whole."""
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return None
-    return summary if isinstance(summary, dict) else None
+        return {}
+    return found if isinstance(found, dict) else {}

@@ -109,9 +109,8 @@ export class CurvePane {
     const {course, body} = this.scene,
       {about, arrays} = body,
       kinds = [];
-    for (const mode in course.about.modes)
-      for (const name of course.about.modes[mode])
-        if (course.column(`${mode}_${name}_broken`)[row] > 0) kinds.push([mode, name.replaceAll("_", "–")]);
+    for (const {mode, interface: name, broken: count} of course.about.cracks)
+      if (course.column(count)[row] > 0) kinds.push([mode, name.replaceAll("_", "–")]);
     const broken = (f, c, mode) => arrays[`damage_${mode}`].at(f, c) >= 1,
       step = course.column("step")[row],
       first = [];

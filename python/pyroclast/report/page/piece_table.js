@@ -2,7 +2,6 @@
 
 import {$, made, number, table} from "./elements.js";
 
-const STORED = ["energy_zones_J", "energy_contacts_J", "energy_kinetic_J"]; // and not lost
 
 export class PieceTable {
   constructor(scene) {
@@ -67,26 +66,20 @@ export class PieceTable {
 
   // How many contacts were damaged and broke in the piece, by mode and interface.
   get counts() {
-    const rows = [],
-      {modes, extent} = this.course.about;
-    for (const mode in modes)
-      for (const name of modes[mode]) {
-        const of = (what) => this.course.change(`${mode}_${name}_${what}`, this.scene.piece);
-        rows.push({
-          mode,
-          name: name.replaceAll("_", "–"),
-          damaged: of("damaged"),
-          broken: of("broken"),
-          extent: of(extent),
-        });
-      }
-    return rows;
+    const change = (column) => this.course.change(column, this.scene.piece);
+    return this.course.about.cracks.map(({mode, interface: name, damaged, broken, extent}) => ({
+      mode,
+      name: name.replaceAll("_", "–"),
+      damaged: change(damaged),
+      broken: change(broken),
+      extent: change(extent),
+    }));
   }
 
   // Changes of energies in the piece, J, the largest first.
   get energies() {
     return this.course.about.energy_out
-      .map(({column, label}) => ({column, label, value: this.course.change(column, this.scene.piece)}))
+      .map((e) => ({...e, value: this.course.change(e.column, this.scene.piece)}))
       .filter((e) => Math.abs(e.value) > 1e-12)
       .sort((p, q) => Math.abs(q.value) - Math.abs(p.value));
   }
@@ -110,7 +103,7 @@ export class PieceTable {
           ? `No contact broke; contacts were first damaged ${most("damaged")}`
           : "No contact broke or was first damaged",
     ];
-    const lost = this.energies.filter((e) => !STORED.includes(e.column) && e.value > 0),
+    const lost = this.energies.filter((e) => !e.is_held && e.value > 0),
       whole = lost.reduce((sum, e) => sum + e.value, 0),
       told = ({label, value}) => `${label} (${number(value)} J)`;
     if (lost.length) {
@@ -122,14 +115,14 @@ export class PieceTable {
           (rest.length ? `, then ${rest.map((e) => `${e.label} ${number(e.value)} J`).join(", ")}` : ""),
       );
     }
-    const stored = this.energies.filter((e) => STORED.includes(e.column)).reduce((sum, e) => sum + e.value, 0);
+    const stored = this.energies.filter((e) => e.is_held).reduce((sum, e) => sum + e.value, 0);
     const balance = `${number(this.work)} J was put in, ${number(Math.abs(stored))} J `;
     return `${said.join("; ")}. ${balance}${stored < 0 ? "came out of what was stored" : "was stored"}.`;
   }
 
   tellBroken(host) {
     const rows = this.counts,
-      unit = this.course.about.extent === "length_m" ? "mm" : "cm²",
+      unit = this.course.about.extent_unit === "m" ? "mm" : "cm²",
       factor = unit === "mm" ? 1e3 : 1e4;
     if (!rows.length) return;
     made("h4", `Contacts, ${this.scene.placeOf(...this.scene.piece)}`, host);
@@ -192,7 +185,7 @@ export class PieceTable {
   // A loss of contacts as the energies of the history are called.
   nameOfLoss(name) {
     const loss = name.replace("lost_", ""),
-      found = this.course.about.energy_out.find((e) => e.column === `dissipated_${loss}_J`);
+      found = this.course.about.energy_out.find((e) => !e.is_held && e.of === loss);
     return found ? found.label : loss;
   }
 }

@@ -133,7 +133,7 @@ export class Scene {
       said = [],
       isThere = (v) => v !== null && isFinite(v);
     if (isThere(f.strain)) said.push(`strain ${number(1e3 * f.strain, 3)}·10⁻³`);
-    if (isThere(f.stress_MPa)) said.push(`stress ${number(f.stress_MPa, 3)} MPa`);
+    if (isThere(f.stress)) said.push(`stress ${number(f.stress, 3)} MPa`);
     if (f.strain === null && y)
       said.push(`${y.label.replace(/ \[.*/, "")} ${number(this.course.of(y.id)[f.row])} ${unitOf(y.label)}`);
     if (f.temperature > 25 && !(f.strain === null && drawn === "temperature"))

@@ -88,19 +88,17 @@ export class Tabs {
   }
 
   drawCracks() {
-    const {modes, extent} = this.course.about,
-      yLabel = extent === "length_m" ? "length of damaged contacts [m]" : "area of damaged contacts [m²]";
+    const {cracks, extent_unit: unit} = this.course.about,
+      yLabel = unit === "m" ? "length of damaged contacts [m]" : "area of damaged contacts [m²]";
     const series = [];
-    for (const mode in modes)
-      modes[mode].forEach((name, k) =>
-        series.push({
-          name: `${mode}, ${name.replaceAll("_", "–")}`,
-          y: this.course.column(`${mode}_${name}_${extent}`),
-          colour: `var(--${mode})`,
-          dash: DASHES[k % 4],
-          width: 1.6,
-        }),
-      );
+    for (const {mode, interface: name, extent} of cracks)
+      series.push({
+        name: `${mode}, ${name.replaceAll("_", "–")}`,
+        y: this.course.column(extent),
+        colour: `var(--${mode})`,
+        dash: DASHES[cracks.filter((c) => c.mode === mode).findIndex((c) => c.interface === name) % 4],
+        width: 1.6,
+      });
     this.draw("crack_lengths", yLabel, {brushes: true}, {series, yLabel, from0: true});
     if (this.scene.body && !this.scene.body.about.solid) {
       this.drawRose();
@@ -177,7 +175,7 @@ export class Tabs {
   drawHeat() {
     const {course} = this,
       colours = ["var(--ink)", ...COLOURS],
-      probes = course.about.quantities.map((q) => q.id).filter((id) => id.startsWith("probe_"));
+      probes = course.about.quantities.map((q) => q.id).filter((id) => id.startsWith("probe "));
     const series = ["temperature", "temperature_min", "temperature_max", "gas", ...probes]
       .filter((id) => course.quantity(id))
       .map((id, k) => ({
