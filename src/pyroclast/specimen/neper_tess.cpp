@@ -263,6 +263,8 @@ File read(Words& words) {
     words.fail(fmt::format("{} cells and {} faces", *file.cell_count, file.faces.size()),
                "as many faces as cells");
   }
+  if (std::ranges::all_of(file.faces, [](const std::vector<int>& face) { return face.empty(); }))
+    words.fail("empty cells alone", "a face with vertices");
   return file;
 }
 
