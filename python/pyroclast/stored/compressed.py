@@ -48,7 +48,9 @@ class Compressed:
         stage, is_there = self.run.history["stage"], np.isfinite(self.run.history[column])
         self.run.history.known(column)
         rows: NDArray[np.bool_] = (stage == (-1 if test is None else test)) & is_there
-        return rows if rows.any() else (stage == stage[is_there].max()) & is_there
+        if not rows.any():
+            rows = (stage == stage[is_there].max()) & is_there
+        return rows
 
     def column(self, name: str) -> Array:
         """Returns a column of the history, `rows` only."""
