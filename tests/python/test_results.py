@@ -121,6 +121,32 @@ class HistoryOfResults(Case):
         self.assertTrue(self.results.moves)
 
 
+class Facts(Case):
+    def test_roles_find_columns_and_modes(self):
+        facts = self.results.facts
+        self.assertEqual(facts.press("stress"), "stress_MPa")
+        self.assertEqual([column.of for column in facts.of_role("energy.held")], ["zones", "contacts", "kinetic"])
+        self.assertEqual(facts.crack_modes, {mode: ["aggregate_mortar", "mortar_mortar"] for mode in ("tension", "shear")})
+        self.assertEqual(facts.text_about("f_c_MPa", "reason"), "f_c_none_because")
+        self.assertIsNone(facts.column("probe"))
+        with self.assertRaisesRegex(Error, "run.json: no column is the slip between platens"):
+            facts.press("slip")
+
+    def test_what_is_missing_or_of_another_kind_is_an_error_with_the_file(self):
+        path = self.folder / "run.json"
+        whole = json.loads(path.read_text())
+        for name, value in (("moves", 1), ("dimension", True), ("extent", {"name": "length"}), ("columns", {}),
+                            ("columns", [5]), ("columns", [{"name": "stage"}]), ("test_stage", "1"),
+                            ("results", [whole["results"][0] | {"digits": "1"}])):
+            path.write_text(json.dumps(whole | {name: value}))
+            facts = pyroclast.Results(self.folder).facts
+            with self.subTest(name, value=value), self.assertRaisesRegex(Error, f"run.json: '{name}'"):
+                getattr(facts, name)
+        path.unlink()
+        with self.assertRaisesRegex(Error, "run.json: is missing: .*run its deck.toml again"):
+            self.results.facts  # noqa: B018
+
+
 class FieldsOfFrames(Case):
     def test_they_have_the_names_of_the_files_and_units_beside_them(self):
         found = self.results.fields
