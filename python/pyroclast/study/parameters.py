@@ -51,19 +51,6 @@ class Distribution:
             return math.exp(math.log(low) + u * (math.log(high) - math.log(low)))
         return float(self._normal().ppf(min(max(u, 1e-9), 1.0 - 1e-9)))
 
-    def to_unit(self, value: Value) -> float:
-        """Returns the number of [0, 1] of a value, of countable ones the middle of its share; may lie outside."""
-        if self.kind == "choice":
-            return (self.choices.index(value) + 0.5) / len(self.choices)
-        number, low, high = float(value), self.numbers[0], self.numbers[1]
-        if self.kind == "integer":
-            return (number - low + 0.5) / (high - low + 1.0)
-        if self.kind == "uniform":
-            return (number - low) / (high - low)
-        if self.kind == "log_uniform":
-            return math.log(number / low) / math.log(high / low)
-        return float(self._normal().cdf(number))
-
     def _normal(self) -> Any:
         from scipy import stats  # takes longer than all else that a command of studies imports
 
