@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -106,8 +107,14 @@ inline std::string time(double seconds, const Layout& layout) {
 /// Of a record, s: its minutes have few digits enough for a time.
 inline constexpr double kLongest = 5e7;
 
-/// Whether a layout can write a record to the bit.
+/// Whether a layout can write a record to the bit. A clock that shows an hour or more in the first row is
+/// that of the day, and one that falls may have passed midnight.
 inline bool can_write(const Layout& layout, const Record& record) {
+  constexpr double kHour = 3600.0;
+  if (layout.time == Time::clock && !record.empty() &&
+      (record.front().first >= kHour ||
+       !std::ranges::is_sorted(record, {}, [](const auto& row) { return row.first; })))
+    return false;
   for (const auto& [t, T] : record) {
     if (layout.time == Time::seconds) continue;
     if (!(t >= 0.0 && t < kLongest)) return false;
