@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import cycle, islice
+from itertools import chain, cycle, islice
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ class Course:
 
 
 def loading_course(run: Results) -> Course:
-    """Takes the last stage, over strain."""
+    """Takes the test, over strain."""
     test = Compressed(run)
     return Course(run, test.rows, style.PER_MILLE * test.strain, style.STRAIN_LABEL, start=0.0)
 
@@ -217,9 +217,8 @@ def energies_in(run: Results) -> list[str]:
 def energies_out(run: Results) -> list[tuple[Column, str, str | None]]:
     """Returns the columns of energies that are held or lost, with colour and hatch."""
     held, lost = run.facts.of_role(HELD), run.facts.of_role(LOST)
-    styles = [*_LOST, *islice(cycle(_MORE_LOST), max(0, len(lost) - len(_LOST) - len(_DAMPED)))]
-    looks = [*_HELD[:len(held)], *styles[:max(0, len(lost) - len(_DAMPED))], *_DAMPED]
-    return [(column, *look) for column, look in zip(held + lost, looks)]
+    of_laws = islice(chain(_LOST, cycle(_MORE_LOST)), max(0, len(lost) - len(_DAMPED)))
+    return [(column, *look) for column, look in zip(held + lost, [*_HELD, *of_laws, *_DAMPED])]
 
 
 def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:

@@ -1,4 +1,4 @@
-"""A run whose last stage loads the body: the test itself."""
+"""The stage of a run that is its test."""
 
 from __future__ import annotations
 

@@ -10,7 +10,6 @@
 #include "pyroclast/base/characters.hpp"
 
 namespace pyroclast {
-namespace {}  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_previous(b.size() + 1);

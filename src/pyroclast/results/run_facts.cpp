@@ -2,7 +2,6 @@
 
 #include <set>
 #include <string>
-#include <variant>
 
 #include <nlohmann/json.hpp>
 

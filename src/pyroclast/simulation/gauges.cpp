@@ -131,14 +131,17 @@ constexpr auto kGas = std::to_array<ColumnOf<HeatSolver>>({
      [](const HeatSolver& h) { return *h.hottest_gas(); }},
 });
 
+double gap_extent(const S& s) {
+  return s.field().conduction()->gap_area() / s.model().thickness;
+}
+
 /// Extent of the contacts whose sides have temperatures of their own; the first is of plane bodies, the
 /// second of bodies in space.
 constexpr auto kGaps = std::to_array<ColumnOf<S>>({
     {"heat_gap_length_m", "m", ColumnRole::heat_flow, "gap_extent",
-     "length of the contacts whose sides have temperatures of their own, of a plane body",
-     [](const S& s) { return s.field().conduction()->gap_area() / s.model().thickness; }},
+     "length of the contacts whose sides have temperatures of their own, of a plane body", gap_extent},
     {"heat_gap_area_m2", "m2", ColumnRole::heat_flow, "gap_extent", "area of these contacts, of a solid",
-     [](const S& s) { return s.field().conduction()->gap_area() / s.model().thickness; }},
+     gap_extent},
 });
 
 const HeatSolver& solver_of(const Simulation& simulation) {
@@ -152,53 +155,34 @@ Gauge gap_gauge(const Model& model) {
           [own](const Simulation& s) { return std::vector<double>{kGaps[own].value(s)}; }};
 }
 
-ColumnRole energy_role(LedgerSide side) {
-  switch (side) {
-    case LedgerSide::put_in:
-      return ColumnRole::energy_put_in;
-    case LedgerSide::held:
-      return ColumnRole::energy_held;
-    case LedgerSide::lost:
-      return ColumnRole::energy_lost;
-    case LedgerSide::error:
-      return ColumnRole::energy_error;
-  }
-  return ColumnRole::own;
-}
+/// What a side of a ledger is called in meanings, and the roles of its columns.
+struct Side {
+  const char* words;
+  ColumnRole of_energy, of_heat;
+};
 
-ColumnRole heat_role(LedgerSide side) {
+Side words_of(LedgerSide side) {
   switch (side) {
     case LedgerSide::put_in:
-      return ColumnRole::heat_put_in;
+      return {"put in", ColumnRole::energy_put_in, ColumnRole::heat_put_in};
     case LedgerSide::held:
-      return ColumnRole::heat_held;
+      return {"held", ColumnRole::energy_held, ColumnRole::heat_held};
     case LedgerSide::lost:
-      return ColumnRole::heat_lost;
+      return {"lost", ColumnRole::energy_lost, ColumnRole::heat_lost};
     case LedgerSide::error:
-      return ColumnRole::heat_error;
+      return {"error", ColumnRole::energy_error, ColumnRole::heat_error};
   }
-  return ColumnRole::own;
+  return {"", ColumnRole::own, ColumnRole::own};
 }
 
 /// Returns the column of an entry of a ledger.
 /// \param of_what  "energy" or "heat"
+/// \param role     Side::of_energy or Side::of_heat
 template <class Ledger>
-Column column_of_entry(const LedgerEntry<Ledger>& entry, const char* of_what, ColumnRole role) {
-  const auto side = [](LedgerSide of) {
-    switch (of) {
-      case LedgerSide::put_in:
-        return "put in, ";
-      case LedgerSide::held:
-        return "held, ";
-      case LedgerSide::lost:
-        return "lost, ";
-      case LedgerSide::error:
-        return "error, ";
-    }
-    return "";
-  };
-  return {entry.column, "J",        fmt::format("{} {}{}", of_what, side(entry.side), entry.meaning),
-          role,         entry.name, entry.label};
+Column column_of_entry(const LedgerEntry<Ledger>& entry, const char* of_what, ColumnRole Side::*role) {
+  const Side side = words_of(entry.side);
+  return {entry.column, "J",        fmt::format("{} {}, {}", of_what, side.words, entry.meaning),
+          side.*role,   entry.name, entry.label};
 }
 
 /// Returns the column of an energy that contact laws or creep dissipate.
@@ -229,16 +213,14 @@ std::vector<Column> energy_columns(const std::vector<Column>& dissipated) {
   std::vector<Column> columns;
   for_each_energy(
       dissipated.size(),
-      [&](const auto& entry) {
-        columns.push_back(column_of_entry(entry, "energy", energy_role(entry.side)));
-      },
+      [&](const auto& entry) { columns.push_back(column_of_entry(entry, "energy", &Side::of_energy)); },
       [&](std::size_t i) { columns.push_back(dissipated[i]); });
   return columns;
 }
 
 std::vector<Column> heat_columns() {
   std::vector<Column> columns;
-  for (const auto& entry : kHeats) columns.push_back(column_of_entry(entry, "heat", heat_role(entry.side)));
+  for (const auto& entry : kHeats) columns.push_back(column_of_entry(entry, "heat", &Side::of_heat));
   return columns;
 }
 

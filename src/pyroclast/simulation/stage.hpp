@@ -141,8 +141,7 @@ struct Result {
   std::string meaning = {};
   int digits = kAnyDigits;
   std::string shown_in = {};
-  std::string about =
-      {};  ///< name of the result to which this one belongs; of a reason empty: the whole stage
+  std::string about = {};  ///< name of the result to which this one belongs; of a reason empty: the stage
 };
 
 /// Returns why a result has no value, or why it is in doubt: "E_none_because" of "E_GPa".
