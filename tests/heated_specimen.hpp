@@ -6,7 +6,7 @@
 
 #include "model/small_specimen.hpp"
 #include "phases.hpp"
-#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/acting/heat_conditions.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 /// A small specimen between platens and what it needs to be heated, for tests.

@@ -12,7 +12,7 @@
 #include "own_folder.hpp"
 #include "phases.hpp"
 #include "pyroclast/simulation/coupling.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 namespace {

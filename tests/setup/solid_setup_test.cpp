@@ -13,7 +13,7 @@
 #include "messages.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 namespace {

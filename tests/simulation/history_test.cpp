@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 #include <gtest/gtest.h>
 

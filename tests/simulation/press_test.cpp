@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/press.hpp"
+#include "pyroclast/simulation/acting/press.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/probe.hpp"
+#include "pyroclast/simulation/watching/probe.hpp"
 
 #include <string>
 #include <vector>

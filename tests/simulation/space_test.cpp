@@ -9,9 +9,9 @@
 #include "mechanics/bodies.hpp"
 #include "messages.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/simulation/loads.hpp"
-#include "pyroclast/simulation/probe.hpp"
-#include "pyroclast/simulation/supports.hpp"
+#include "pyroclast/simulation/acting/loads.hpp"
+#include "pyroclast/simulation/acting/supports.hpp"
+#include "pyroclast/simulation/watching/probe.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "heated_specimen.hpp"
 #include "known.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 #include "stages/small_runs.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "decks.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 /// Runs of a small prism, and what they give, for tests.
 namespace pyroclast {

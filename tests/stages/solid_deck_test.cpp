@@ -15,7 +15,7 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 #include "stages/small_runs.hpp"
 
 namespace pyroclast {

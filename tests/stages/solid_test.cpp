@@ -13,7 +13,7 @@
 #include "messages.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/results/field_files.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 #include "shake.hpp"
 #include "stages/small_runs.hpp"
 

@@ -18,7 +18,7 @@
 #include "messages.hpp"
 #include "own_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 #include "stages/small_runs.hpp"
 
 namespace pyroclast {

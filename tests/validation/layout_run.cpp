@@ -12,7 +12,7 @@
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 int main(int argc, char** argv) {
   using namespace pyroclast;

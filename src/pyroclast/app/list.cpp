@@ -13,7 +13,7 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/material/rocks.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 #include "pyroclast/stages/possible_columns.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sort_unique.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 namespace pyroclast::python {
 

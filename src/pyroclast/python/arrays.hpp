@@ -4,8 +4,8 @@
 
 #include <pybind11/numpy.h>
 
-#include "pyroclast/simulation/fields.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 namespace pyroclast::python {
 

@@ -11,7 +11,7 @@
 #include "pyroclast/results/checkpoint_file.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/results/history_file.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 namespace pyroclast {
 

@@ -8,8 +8,8 @@
 
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/text_file.hpp"
-#include "pyroclast/simulation/history.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 

@@ -11,7 +11,7 @@
 
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/hdf5_reader.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 namespace pyroclast {
 

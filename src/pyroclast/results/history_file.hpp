@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pyroclast/results/text_file.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pyroclast/results/text_file.hpp"
-#include "pyroclast/simulation/heated_line.hpp"
+#include "pyroclast/simulation/watching/heated_line.hpp"
 
 namespace pyroclast {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pyroclast/setup/read_references.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

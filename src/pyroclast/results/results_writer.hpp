@@ -11,7 +11,7 @@
 #include "pyroclast/results/profile_files.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/setup/setup.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

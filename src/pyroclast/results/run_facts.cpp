@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 namespace pyroclast {
 

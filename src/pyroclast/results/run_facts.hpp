@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

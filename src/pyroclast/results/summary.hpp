@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pyroclast/results/reference_distances.hpp"
-#include "pyroclast/simulation/soundness.hpp"
+#include "pyroclast/simulation/watching/soundness.hpp"
 
 namespace pyroclast {
 

@@ -8,7 +8,7 @@
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/material/jump_path.hpp"
 #include "pyroclast/plugin/find_law.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 

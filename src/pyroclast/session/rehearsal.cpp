@@ -7,8 +7,8 @@
 
 #include "pyroclast/base/clock.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/simulation/fields.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast {

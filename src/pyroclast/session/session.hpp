@@ -14,7 +14,7 @@
 #include "pyroclast/results/results_writer.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/session/deck_of_run.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

@@ -5,7 +5,7 @@
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/setup/read_space.hpp"
-#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/acting/heat_conditions.hpp"
 
 namespace pyroclast {
 

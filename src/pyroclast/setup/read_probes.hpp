@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/simulation/probe.hpp"
 #include "pyroclast/simulation/specimen_body.hpp"
+#include "pyroclast/simulation/watching/probe.hpp"
 
 namespace pyroclast {
 

@@ -5,7 +5,7 @@
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/read_space.hpp"
-#include "pyroclast/simulation/records.hpp"
+#include "pyroclast/simulation/watching/records.hpp"
 
 namespace pyroclast {
 

@@ -9,8 +9,8 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/model/model.hpp"
 #include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/acting/press.hpp"
 #include "pyroclast/simulation/moving_body.hpp"
-#include "pyroclast/simulation/press.hpp"
 #include "pyroclast/solid/polyhedra.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 

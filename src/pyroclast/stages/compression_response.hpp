@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
-#include "pyroclast/simulation/press.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/acting/press.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
 #include "pyroclast/stages/peak.hpp"
 
 namespace pyroclast {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "pyroclast/simulation/heat_flow.hpp"
+#include "pyroclast/simulation/loop/heat_flow.hpp"
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {

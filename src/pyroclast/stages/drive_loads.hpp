@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/simulation/acting/loads.hpp"
 #include "pyroclast/stages/drive_keys.hpp"
 
 namespace pyroclast {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
 
 /// Results of the program's own stages: each name, unit and meaning stands here once.
 namespace pyroclast::known {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pyroclast/simulation/column.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 #include "pyroclast/stages/drive_loads.hpp"
 
 namespace pyroclast {

@@ -1,7 +1,7 @@
 #include "pyroclast/stages/possible_columns.hpp"
 
-#include "pyroclast/simulation/exchange.hpp"
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/exchange.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 #include "pyroclast/stages/opening_control.hpp"
 
 namespace pyroclast {

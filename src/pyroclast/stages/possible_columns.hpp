@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pyroclast/simulation/column.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 
 namespace pyroclast {
 

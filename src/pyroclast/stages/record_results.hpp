@@ -7,8 +7,8 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/simulation/records.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
+#include "pyroclast/simulation/watching/records.hpp"
 #include "pyroclast/stages/peak.hpp"
 
 namespace pyroclast {

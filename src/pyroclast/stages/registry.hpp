@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/simulation/exchange.hpp"
-#include "pyroclast/simulation/records.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/loop/exchange.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
+#include "pyroclast/simulation/watching/records.hpp"
 
 namespace pyroclast {
 

@@ -11,7 +11,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
 #include "pyroclast/stages/compression_response.hpp"
 
 namespace pyroclast {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "pyroclast/simulation/column.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 
 namespace pyroclast {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "pyroclast/simulation/probe.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/watching/probe.hpp"
 
 namespace pyroclast {
 

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/exchange.hpp"
+#include "pyroclast/simulation/loop/exchange.hpp"
 
 #include <algorithm>
 #include <cmath>

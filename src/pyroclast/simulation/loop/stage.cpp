@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
 
 #include <algorithm>
 #include <array>

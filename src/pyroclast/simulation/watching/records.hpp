@@ -7,7 +7,7 @@
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/model/model.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 

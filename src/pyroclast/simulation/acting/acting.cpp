@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/acting.hpp"
+#include "pyroclast/simulation/acting/acting.hpp"
 
 #include "pyroclast/simulation/simulation.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/curve.hpp"
-#include "pyroclast/simulation/acting.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/acting/acting.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/records.hpp"
+#include "pyroclast/simulation/watching/records.hpp"
 
 #include <algorithm>
 #include <array>

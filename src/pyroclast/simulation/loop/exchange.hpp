@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "pyroclast/simulation/column.hpp"
-#include "pyroclast/simulation/press.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/acting/press.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 
 namespace pyroclast {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
-#include "pyroclast/simulation/column.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 
 namespace pyroclast {
 

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/column.hpp"
+#include "pyroclast/simulation/watching/column.hpp"
 
 #include <algorithm>
 

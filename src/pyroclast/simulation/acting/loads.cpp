@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/simulation/acting/loads.hpp"
 
 #include <algorithm>
 #include <array>

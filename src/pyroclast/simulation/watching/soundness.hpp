@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 namespace pyroclast {
 

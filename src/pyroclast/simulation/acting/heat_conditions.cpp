@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/acting/heat_conditions.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/fields.hpp"
+#include "pyroclast/simulation/watching/fields.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/gauges.hpp"
+#include "pyroclast/simulation/watching/gauges.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/soundness.hpp"
+#include "pyroclast/simulation/watching/soundness.hpp"
 
 #include <algorithm>
 #include <cmath>

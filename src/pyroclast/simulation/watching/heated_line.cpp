@@ -1,9 +1,9 @@
-#include "pyroclast/simulation/heated_line.hpp"
+#include "pyroclast/simulation/watching/heated_line.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/acting/heat_conditions.hpp"
 
 namespace pyroclast {
 

@@ -3,8 +3,8 @@
 #include <map>
 #include <string>
 
-#include "pyroclast/simulation/loads.hpp"
-#include "pyroclast/simulation/supports.hpp"
+#include "pyroclast/simulation/acting/loads.hpp"
+#include "pyroclast/simulation/acting/supports.hpp"
 
 namespace pyroclast {
 

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/probe.hpp"
+#include "pyroclast/simulation/watching/probe.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/supports.hpp"
+#include "pyroclast/simulation/acting/supports.hpp"
 
 #include <algorithm>
 #include <cmath>

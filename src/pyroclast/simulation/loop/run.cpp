@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/simulation/loop/run.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "pyroclast/simulation/gauges.hpp"
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/loop/stage.hpp"
 #include "pyroclast/simulation/simulation.hpp"
-#include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/simulation/watching/gauges.hpp"
+#include "pyroclast/simulation/watching/history.hpp"
 
 namespace pyroclast {
 
