@@ -154,7 +154,7 @@ void go_on(const Base& base, std::vector<std::string_view> edits) {
   Trial trial(base.deck);
   trial.run.visit_state(rows);
   int batches = 0;
-  trial.run.limit_batch(kStepsOfABatch);
+  cut_batches(trial.run, kStepsOfABatch);
   trial.run.between_batches([](Run&) {});
   trial.run.stop_when([&] { return ++batches > kBatches; });
   while (trial.run.next()) continue;

@@ -14,6 +14,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
+#include "thermal/advance.hpp"
 
 namespace pyroclast {
 namespace {
@@ -223,7 +224,7 @@ TEST(MakeConduction, TheOutlineIsTheSpecimensOwnUnderThePlatensToo) {
 double heated_area(const ModelOf<2>& body, const HeatedFaces& faces) {
   HeatConditions heat = heat_conditions({{faces, HeatFlux{Curve::constant(1.0)}, ""}});
   const auto conduction = make_conduction(body, alike_materials(), heat, {20.0, 100.0});
-  in_plane::conduction(*conduction).advance_to(1.0);
+  advance_to(*conduction, 1.0);
   return conduction->ledger().boundary.flux;
 }
 

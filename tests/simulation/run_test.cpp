@@ -93,7 +93,7 @@ TEST(Run, BatchesOfAnyLengthGiveTheSameHistory) {
     ASSERT_EQ(whole.run.outcome(), Outcome::completed);
     for (const int steps : {1, 7}) {
       Trial cut(text);
-      cut.run.limit_batch(steps);
+      cut_batches(cut.run, steps);
       cut.run.run();
       expect_same(whole.run.history(), cut.run.history());
     }
@@ -215,7 +215,7 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       const auto step = static_cast<std::int64_t>(0.5 * (all[middle - 1] + all[middle]));
       Trial broken_off(text), resumed(text);
       stop_at(broken_off.run, step);
-      broken_off.run.limit_batch(7);
+      cut_batches(broken_off.run, 7);
       broken_off.run.run();
       ASSERT_EQ(broken_off.run.outcome(), Outcome::stopped);
 
@@ -240,7 +240,6 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
 TEST(Run, NeedsAStage) {
   Trial trial(deck(kUniform + kSettle));
   EXPECT_THROW(pyroclast::Run(*trial.simulation, {}), Error);
-  EXPECT_THROW(trial.run.limit_batch(0), Error);
 }
 
 }  // namespace

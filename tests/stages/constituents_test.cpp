@@ -263,7 +263,7 @@ std::string with_mixed_mode(std::string text) {
 TEST(MixedModeInARun, GoesThroughAHotTestOfConcrete) {
   Trial trial(with_mixed_mode(hot_concrete()));
   StateCopy copy;
-  trial.run.limit_batch(70);
+  cut_batches(trial.run, 70);
   trial.run.stop_when(
       [&] { return trial.run.stage_number() == 1 && trial.simulation->field().mean() > 100.0; });
   while (trial.run.next()) {

@@ -636,7 +636,7 @@ TEST(States, ASlowCompressionHasOne) {
   Trial first(text), second(text);
   StateCopy copy;
   struct Enough {};
-  first.run.limit_batch(100);
+  cut_batches(first.run, 100);
   first.run.between_batches([&](pyroclast::Run& run) {
     if (run.last_begun_stage() != 1) return;
     copy.take([&](StateVisitor& visitor) { run.visit_state(visitor); });
@@ -692,7 +692,7 @@ TEST(States, EachStageGoesOnFromAnyLook) {
       return counted.run.history().row_count();
     }();
     Trial straight(texts[t]), in_pieces(texts[t]);
-    in_pieces.run.limit_batch(7);
+    cut_batches(in_pieces.run, 7);
     EXPECT_EQ(tell(in_pieces, 0), tell(straight, 0)) << t << ": where batches end changes no result";
     for (const double share : {0.3, 0.55, 0.9}) {
       const auto stop = static_cast<std::size_t>(share * static_cast<double>(looks));

@@ -167,6 +167,13 @@ struct Trial {
   Run run;
 };
 
+/// Ends each batch of a run after so many steps of the mechanics at most.
+inline void cut_batches(Run& run, int steps) {
+  if (run.simulation().moves())
+    run.call_at(run.simulation().motion().steps() + steps,
+                [steps](Run& again) { cut_batches(again, steps); });
+}
+
 /// A deck that was run to its end.
 struct Finished : Trial {
   explicit Finished(const std::string& text) : Trial(text) {

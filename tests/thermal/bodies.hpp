@@ -150,20 +150,6 @@ int node_at(const ModelOf<Dim>& model, const Conduction<Dim>& heat, const Vec<Di
   return nearest;
 }
 
-/// Nodes on the outline, each once.
-template <int Dim>
-std::vector<int> outline_nodes(const Conduction<Dim>& heat) {
-  std::vector<bool> seen(heat.temperature().size());
-  std::vector<int> nodes;
-  for (const auto& face : heat.outline())
-    for (int g : face.gridpoints) {
-      const int node = heat.nodes().of_gridpoint[g];
-      if (!seen[node]) nodes.push_back(node);
-      seen[node] = true;
-    }
-  return nodes;
-}
-
 inline HeatMaterial constant_material(double conductivity, double heat_capacity) {
   return {Curve::constant(conductivity), Curve::constant(heat_capacity)};
 }

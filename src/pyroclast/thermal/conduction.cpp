@@ -19,7 +19,7 @@ namespace pyroclast {
 namespace {
 
 /// Excess over the temperature range, as a fraction of its width, that can still be numerical where a given
-/// flux, a source or a gas outside the range may truly take the body out of it. (Zones of a random
+/// flux or a gas outside the range may truly take the body out of it. (Zones of a random
 /// tessellation in the standard fire of ISO 834 showed 0.00015.)
 constexpr double kDoubtfulExcess = 0.01;
 
@@ -137,7 +137,7 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   volume_ = total_volumes(shares);
   node_chunks_ = model_.gridpoint_chunks().of_some(nodes_.gridpoint);
   total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
-  for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_, &source_heat_})
+  for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_})
     field->assign(volume_.size(), 0.0);
   reach_.resize(volume_.size());
   shares_.resize(volume_.size());
@@ -266,17 +266,6 @@ void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const
 }
 
 template <int Dim>
-void Conduction<Dim>::prescribe_node(int node, const Curve& temperature) {
-  drop_trial();
-  require_curve_of_time(temperature, "prescribed temperature");
-  const int prescription = static_cast<int>(prescriptions_.size());
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
-    if (nodes_.of_gridpoint[g] == node) prescription_of_gridpoint_[g] = prescription;
-  prescriptions_.push_back(temperature);
-  prescription_.at(node) = prescription;
-}
-
-template <int Dim>
 void Conduction<Dim>::widen_temperature_range(const Interval& range) {
   drop_trial();
   checked(range);
@@ -323,26 +312,6 @@ void Conduction<Dim>::set_uniform_temperature(double temperature) {
 // ---- Running ---------------------------------------------------------------------------------------------
 
 template <int Dim>
-void Conduction<Dim>::advance_to(double end) {
-  drop_trial();
-  begin_run(end);
-  while (time() < end) complete_step(end);
-}
-
-template <int Dim>
-SteadyState Conduction<Dim>::advance_to_steady(double tolerance, double latest) {
-  require(tolerance > 0.0, "heat conduction", "the tolerance of the steady state [K/s]", tolerance,
-          "greater than 0");
-  drop_trial();
-  begin_run(latest);
-  while (time() < latest) {
-    complete_step(latest);
-    if (rate() < tolerance) return {true, rate()};
-  }
-  return {false, rate()};
-}
-
-template <int Dim>
 bool Conduction<Dim>::advance_step(double end, std::int64_t& stages) {
   if (trial_.under_way)
     require(end == trial_.end, "heat conduction", "the time to step towards [s]", end,
@@ -381,7 +350,7 @@ void Conduction<Dim>::begin_run(double end) {
     before_run_.enthalpy.push_back(state_.enthalpy[node]);
   }
   hold_prescribed();
-  Interval reach = source_ ? Interval() : boundary_.reach(time(), end);
+  Interval reach = boundary_.reach(time(), end);
   // Where nothing takes the exact solution out of the range, all excess is numerical.
   const double doubtful = kDoubtfulExcess * (grid_.range().upper - grid_.range().lower);
   const Interval wider{std::min(reach.lower, grid_.range().lower),
@@ -396,12 +365,6 @@ void Conduction<Dim>::begin_run(double end) {
   include(state_.bounds, reach);
   safe_step_ = range_limit(end).step;
   if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
-}
-
-template <int Dim>
-void Conduction<Dim>::complete_step(double end) {
-  std::int64_t stages = std::numeric_limits<std::int64_t>::max();
-  continue_step(end, stages);
 }
 
 /// Goes on with a step, or begins one, by at most `stages` stages, which it counts down; returns true when
@@ -479,7 +442,6 @@ void Conduction<Dim>::run_stage(const TimeStage& stage) {
   const double step = trial_.step;
   const Inflow inflow = compute_inflow(time() + stage.begin * step);
   trial_.heat.boundary.add(stage.weight * step, inflow.boundary);
-  trial_.heat.source += stage.weight * step * inflow.source;
   trial_.heat.prescribed -= stage.weight * step * inflow.held;
   read_prescriptions(time() + stage.end * step);
   update_nodes(stage);
@@ -494,13 +456,6 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   limits ? zones_.update_apart(trial_.temperature) : zones_.update(trial_.temperature);
   if (gaps_) gaps_->update(trial_.temperature);
   sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
-  if (source_) {
-    team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (auto node = begin; node < end; ++node)
-        source_heat_[node] = volume_[node] * source_(model_.position[nodes_.gridpoint[node]], time);
-    });
-    sum.source = chunked_sum(node_chunks_, [&](int node) { return source_heat_[node]; });
-  }
   if (limits) limit_flows(time);
   sum.held = chunked_sum(prescribed_chunks_, [&](int i) { return inflow(prescribed_[i]); });
   return sum;
@@ -523,8 +478,6 @@ void Conduction<Dim>::limit_flows(double time) {
       include(range, temperature);
       include(range, zones_.around(node, trial_.temperature));
       if (gaps_) gaps_->add_around(node, trial_.temperature, range);
-      if (source_heat_[node] > 0.0) include(range, std::numeric_limits<double>::infinity());
-      if (source_heat_[node] < 0.0) include(range, -std::numeric_limits<double>::infinity());
       const double step = trial_.limit;
       const double heat = state_.enthalpy[node] + trial_.increment[node] + step * inflow(node);
       const auto [coldest, hottest] = grid_.range();
@@ -560,8 +513,7 @@ bool Conduction<Dim>::oversteps() {
       include(range, before);
       include(range, zones_.around(node, trial_.temperature));
       if (gaps_) gaps_->add_around(node, trial_.temperature, range);
-      if (now < range.lower - kAllowedBeyond && source_heat_[node] >= 0.0) found = true;
-      if (now > range.upper + kAllowedBeyond && source_heat_[node] <= 0.0) found = true;
+      if (now < range.lower - kAllowedBeyond || now > range.upper + kAllowedBeyond) found = true;
     }
   });
   return found;
@@ -626,7 +578,6 @@ void Conduction<Dim>::accept_trial() {
   state_.rate = std::sqrt(squares / total_volume_);
   state_.largest_overshoot = std::max({state_.largest_overshoot, trial_.below, trial_.above});
   state_.ledger.boundary.add(1.0, trial_.heat.boundary);
-  state_.ledger.source += trial_.heat.source;
   state_.ledger.prescribed += trial_.heat.prescribed;
   state_.time += trial_.step;
   ++state_.steps;

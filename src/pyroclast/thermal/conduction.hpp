@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -29,12 +28,6 @@ struct HeatParameters {
   /// Resistance of contacts; empty: heat crosses all contacts without resistance.
   std::optional<GapHeat> gaps{};
   bool always_limits = false;  ///< true: limits flows in every step, needed or not, for tests
-};
-
-/// End of a run towards a steady state.
-struct SteadyState {
-  bool reached = false;
-  double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
 };
 
 /// State of a conduction at the end of its last completed step. The state and the parameters of the
@@ -66,14 +59,14 @@ struct HeatState {
 /// back and halved, down to the step that is stable whatever the temperatures.
 ///
 /// **Bounds.** Heat flows from hot to cold. So no temperature leaves those that the body had, that are
-/// prescribed and that the gases have (`bounds`), unless a given flux or a source takes it there. Zones with
+/// prescribed and that the gases have (`bounds`), unless a given flux takes it there. Zones with
 /// obtuse angles conduct some heat from cold to hot; next to a sharp front this takes a temperature beyond
 /// its neighbours. Such a step is done again with limited flows: flows from cold to hot are cut so that they
 /// bring no node beyond its neighbours (flux correction: Zalesak 1979; Kuzmin 2012). Any other step is
 /// linear, of second order, and the same to the bit as if there were no limits.
 ///
 /// At an end of the temperature range the temperature stays there while the node's heat waits, see
-/// `largest_overshoot`; so no curve is ever read outside the range. Where a given flux, a source or a gas
+/// `largest_overshoot`; so no curve is ever read outside the range. Where a given flux or a gas
 /// beyond the range could truly take the body out of that end, an excess of more than 1 % of the range is an
 /// Error.
 ///
@@ -82,10 +75,6 @@ struct HeatState {
 template <int Dim>
 class Conduction final : public HeatSolver {
  public:
-  /// Function for the heat generated at a point and time (s), W/m³. Several threads call it at once; it must
-  /// not throw.
-  using Source = std::function<double(const Vec<Dim>& position, double time)>;
-
   /// \param model      model, kept by reference; must outlive this object
   /// \param materials  by material of the model; blocks of a material without entry conduct no heat and are
   ///                   left out
@@ -114,12 +103,6 @@ class Conduction final : public HeatSolver {
   /// Prescribes the temperature (°C, over the time in s) of the nodes of faces; where two prescriptions meet,
   /// the later one holds.
   void prescribe_temperature(const std::vector<int>& faces, const Curve& temperature);
-  /// Prescribes the temperature of a node.
-  void prescribe_node(int node, const Curve& temperature);
-  void set_source(Source source) {
-    drop_trial();
-    source_ = std::move(source);
-  }
 
   /// Lets temperatures from now on come to the given range, °C, as well as to the present one. Earlier
   /// results do not depend on it. Throws Error when a material's curve does not cover the range.
@@ -143,20 +126,15 @@ class Conduction final : public HeatSolver {
   /// Sets the same temperature everywhere, °C.
   void set_uniform_temperature(double temperature);
 
-  /// Conducts heat to a time, s. Throws Error when a temperature leaves the range, naming the place.
-  void advance_to(double time);
   /// Takes one step towards a time, s, or goes on with the step that was begun, by at most `stages` stages,
   /// which it counts down. Returns whether the step is completed; until then `state` is as it was when the
-  /// step began. Where a call breaks a step off changes no bit. Throws Error as advance_to does, and when a
-  /// step towards another time is under way.
+  /// step began. Where a call breaks a step off changes no bit. Throws Error when a temperature leaves the
+  /// range, naming the place, and when a step towards another time is under way.
   bool advance_step(double end, std::int64_t& stages) override;
   /// Forgets the stages done of a step that is not completed; the next step does them again.
   void drop_trial() override;
   /// Returns the stages that take some tenths of a second on one thread, by the number of zones.
   std::int64_t stages_per_batch() const override;
-
-  /// Conducts heat until the rate falls below a tolerance, K/s, or to the latest time, s.
-  SteadyState advance_to_steady(double tolerance, double latest);
 
   HeatState state() const;
   /// Shows `state` to a visitor. A new state must come from the same body under the same conditions. The
@@ -181,7 +159,7 @@ class Conduction final : public HeatSolver {
   /// Returns the stable step of forward Euler at the present temperatures, safety included.
   HeatStepLimit step_limit() const override;
   /// Returns the range of the temperatures that the body had at first, that were prescribed since then and
-  /// that the gases had, °C; an end is infinite where a given flux or a source could take the body beyond it.
+  /// that the gases had, °C; an end is infinite where a given flux could take the body beyond it.
   /// Temperatures stay within the range to `kAllowedBeyond`.
   const Interval& bounds() const { return state_.bounds; }
 
@@ -196,7 +174,7 @@ class Conduction final : public HeatSolver {
   /// Inflow of heat, W; `held` flows into nodes whose temperature is prescribed.
   struct Inflow {
     HeatByKind boundary;
-    double source = 0.0, held = 0.0;
+    double held = 0.0;
   };
   /// Limits that keep a step within the bounds of heat.
   enum class Limits : std::uint8_t {
@@ -245,7 +223,6 @@ class Conduction final : public HeatSolver {
   void add_to_boundary(const Applied& applied);
   void place_prescriptions();
   void begin_run(double end);
-  void complete_step(double end);
   bool continue_step(double end, std::int64_t& stages);
   void begin_trial(double step, Limits limits);
   bool oversteps();
@@ -260,7 +237,7 @@ class Conduction final : public HeatSolver {
   double total_enthalpy() const;
   double excess(int node, double temperature, double enthalpy) const;
   double inflow(int node) const {
-    const double heat = zones_.inflow(node) + boundary_heat_[node] + source_heat_[node];
+    const double heat = zones_.inflow(node) + boundary_heat_[node];
     return gaps_ ? heat + gaps_->inflow(node) : heat;
   }
   void read_prescriptions(double time);
@@ -294,7 +271,6 @@ class Conduction final : public HeatSolver {
   std::vector<int> prescription_;  ///< prescription of each node, -1: free
 
   std::vector<Applied> applied_;
-  Source source_;
   std::vector<Curve> prescriptions_;
   std::vector<int> prescription_of_gridpoint_;  ///< prescription of each gridpoint, -1: free
   std::vector<int> prescribed_;                 ///< prescribed nodes, ascending
@@ -310,7 +286,7 @@ class Conduction final : public HeatSolver {
   /// Range of each node to which something may take it beyond its neighbours.
   std::vector<Interval> reach_;
   std::vector<typename ZoneConduction<Dim>::Uphill> shares_;
-  std::vector<double> boundary_heat_, source_heat_;  ///< heat into each node, W
+  std::vector<double> boundary_heat_;  ///< heat into each node, W
 };
 
 extern template class Conduction<2>;

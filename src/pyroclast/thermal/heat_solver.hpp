@@ -21,15 +21,14 @@ inline constexpr StateRule kTemperatures = state::within(absolute_zero - 1.0, 1e
 struct HeatLedger {
   HeatByKind boundary;
   double prescribed = 0.0;  ///< heat needed to hold the prescribed temperatures
-  double source = 0.0;
   double stored = 0.0;
 
-  double heat_in() const { return boundary.total() + prescribed + source; }
+  double heat_in() const { return boundary.total() + prescribed; }
   double error() const { return heat_in() - stored; }
   bool operator==(const HeatLedger&) const = default;
 };
 
-/// Entries in the order of the history's columns. No deck has a source.
+/// Entries in the order of the history's columns.
 inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
     {"stored", "heat_stored_J", LedgerSide::held, "stored", "in the body",
      [](const HeatLedger& h) { return h.stored; }},

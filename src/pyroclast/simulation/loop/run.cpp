@@ -217,12 +217,6 @@ void Run::call_at(std::int64_t step, std::function<void(Run&)> call) {
   calls_.emplace(step, std::move(call));
 }
 
-void Run::limit_batch(int most_steps) {
-  if (most_steps < 1)
-    throw Error(fmt::format("the steps of a batch are {}, but there must be at least 1", most_steps));
-  most_steps_ = std::min(most_steps_, most_steps);
-}
-
 std::vector<std::optional<double>> Run::measure() const {
   std::vector<std::optional<double>> row(history_.columns().size());
   const auto set = [&](const Column& column, double value) { row[history_.index(column.name)] = value; };

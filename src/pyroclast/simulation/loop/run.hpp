@@ -45,8 +45,6 @@ class Run {
   /// Sets a function that the run calls once, when the mechanics has done so many steps since its beginning.
   /// The batch ends there. Throws Error when that step is past, or nothing moves.
   void call_at(std::int64_t step, std::function<void(Run&)> call);
-  /// Bounds the steps of a batch further.
-  void limit_batch(int most_steps);
   /// Sets a function that the run calls between batches, and before it stops; the function may read or write
   /// the state.
   void between_batches(std::function<void(Run&)> call) { between_batches_ = std::move(call); }
@@ -117,7 +115,7 @@ class Run {
   std::function<bool()> stop_asked_ = [] { return false; };
   std::function<void(Run&)> between_batches_ = [](Run&) {};
   std::multimap<std::int64_t, std::function<void(Run&)>> calls_;  ///< functions to call, by step
-  int most_steps_;                                                ///< most steps of a batch
+  const int most_steps_;                                          ///< most steps of a batch
 
   std::int64_t stage_ = 0;
   bool has_started_ = false;

@@ -202,8 +202,9 @@ class Stage {
   virtual double held_stress() const { return 0.0; }
   /// Prepares supports and loads of the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;
-  /// Moves on by one batch: at most `most_steps` steps of the mechanics, or evaluations of the heat solver.
-  /// Returns true when a look is due. Where batches end changes no result.
+  /// Moves on by one batch: at most `most_steps` steps of the mechanics, or as many evaluations of the heat
+  /// solver as it takes at once (HeatSolver::stages_per_batch). Returns true when a look is due. Where
+  /// batches end changes no result.
   virtual bool advance(Simulation& simulation, int most_steps) = 0;
   /// Judges each look that `advance` asked for.
   virtual Verdict judge(Simulation& simulation) = 0;
