@@ -116,7 +116,7 @@ Conduction<Dim>::Conduction(const ModelOf<Dim>& model,
       outline_(pyroclast::outline(model, geometry_, conducts_)),
       zones_(model, geometry_, table_of_material_, tables_, *team_),
       store_(grid_, tables_, {}),
-      prescription_of_gridpoint_(model.position.size(), -1) {
+      prescriptions_(model.position.size()) {
   if (parameters_.gaps) gaps_.emplace(model, conducts_, *parameters_.gaps, grid_, *team_);
   set_nodes(join_through_contacts(model, conducts_));
   if (nodes_.count() == 0) throw Error("heat conduction: no block is of a material that conducts heat");
@@ -143,7 +143,7 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   shares_.resize(volume_.size());
   boundary_.clear();
   for (const Applied& applied : applied_) add_to_boundary(applied);
-  place_prescriptions();
+  prescriptions_.set_nodes(nodes_, node_chunks_);
 }
 
 template <int Dim>
@@ -235,15 +235,6 @@ void Conduction<Dim>::add_to_boundary(const Applied& applied) {
   boundary_.add(applied.condition, std::move(patches), node_chunks_);
 }
 
-/// Finds the prescription of each node. Where several hold its gridpoints, the latest holds the node.
-template <int Dim>
-void Conduction<Dim>::place_prescriptions() {
-  prescription_.assign(volume_.size(), -1);
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
-    if (const int node = nodes_.of_gridpoint[g]; node >= 0)
-      prescription_[node] = std::max(prescription_[node], prescription_of_gridpoint_[g]);
-}
-
 // ---- What acts on the body -------------------------------------------------------------------------------
 
 template <int Dim>
@@ -257,12 +248,11 @@ void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryConditi
 template <int Dim>
 void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const Curve& temperature) {
   drop_trial();
-  require_curve_of_time(temperature, "prescribed temperature");
-  const int prescription = static_cast<int>(prescriptions_.size());
+  std::vector<int> gridpoints;
   for (int face : faces)
-    for (int g : outline_.at(face).gridpoints) prescription_of_gridpoint_[g] = prescription;
-  prescriptions_.push_back(temperature);
-  place_prescriptions();
+    for (int g : outline_.at(face).gridpoints) gridpoints.push_back(g);
+  prescriptions_.add(gridpoints, temperature);
+  prescriptions_.set_nodes(nodes_, node_chunks_);
 }
 
 template <int Dim>
@@ -337,15 +327,10 @@ template <int Dim>
 void Conduction<Dim>::begin_run(double end) {
   require(end >= time(), "heat conduction", "the time to run to [s]", end, "no earlier than the present");
   boundary_.require_defined(time(), end);
-  require_prescriptions(end);
-  prescribed_.clear();
-  for (int node = 0; node < nodes_.count(); ++node)
-    if (prescription_[node] >= 0) prescribed_.push_back(node);
-  prescribed_chunks_ = node_chunks_.of_some(prescribed_);
-  held_at_.resize(prescriptions_.size());
-  read_prescriptions(time());
+  prescriptions_.require_within(grid_.range(), time(), end);
+  prescriptions_.read(time(), grid_.range());
   before_run_ = {true, state_.next_step, state_.ledger.prescribed, state_.bounds, {}, {}};
-  for (int node : prescribed_) {
+  for (int node : prescriptions_.nodes()) {
     before_run_.temperature.push_back(state_.temperature[node]);
     before_run_.enthalpy.push_back(state_.enthalpy[node]);
   }
@@ -358,11 +343,8 @@ void Conduction<Dim>::begin_run(double end) {
   constexpr double any = std::numeric_limits<double>::max();
   allowed_below_ = grid_.range().holds(wider.lower, absolute_zero) ? any : doubtful;
   allowed_above_ = grid_.range().holds(wider.upper, absolute_zero) ? any : doubtful;
-  for (const int node : prescribed_) {
-    const Curve& curve = prescriptions_[prescription_[node]];
-    include(reach, {curve.minimum(time(), end), curve.maximum(time(), end)});
-  }
   include(state_.bounds, reach);
+  include(state_.bounds, prescriptions_.reach(time(), end));
   safe_step_ = range_limit(end).step;
   if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
 }
@@ -443,7 +425,7 @@ void Conduction<Dim>::run_stage(const TimeStage& stage) {
   const Inflow inflow = compute_inflow(time() + stage.begin * step);
   trial_.heat.boundary.add(stage.weight * step, inflow.boundary);
   trial_.heat.prescribed -= stage.weight * step * inflow.held;
-  read_prescriptions(time() + stage.end * step);
+  prescriptions_.read(time() + stage.end * step, grid_.range());
   update_nodes(stage);
   ++trial_.stages_done;
 }
@@ -457,7 +439,7 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   if (gaps_) gaps_->update(trial_.temperature);
   sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
   if (limits) limit_flows(time);
-  sum.held = chunked_sum(prescribed_chunks_, [&](int i) { return inflow(prescribed_[i]); });
+  sum.held = prescriptions_.sum([&](int node) { return inflow(node); });
   return sum;
 }
 
@@ -472,7 +454,7 @@ void Conduction<Dim>::limit_flows(double time) {
     for (int node = static_cast<int>(begin); node < end; ++node) {
       shares_[node] = {1.0, 1.0};
       const auto uphill = zones_.uphill(node);
-      if (prescription_[node] >= 0 || (uphill.in == 0.0 && uphill.out == 0.0)) continue;
+      if (prescriptions_.hold(node) || (uphill.in == 0.0 && uphill.out == 0.0)) continue;
       const double temperature = trial_.temperature[node];
       Interval range = reach_[node];
       include(range, temperature);
@@ -501,7 +483,7 @@ bool Conduction<Dim>::oversteps() {
   std::atomic<bool> found{false};
   team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (int node = static_cast<int>(begin); node < end && !found; ++node) {
-      if (prescription_[node] >= 0) continue;
+      if (prescriptions_.hold(node)) continue;
       const double heat = state_.enthalpy[node];
       const double before = state_.temperature[node] + excess(node, state_.temperature[node], heat);
       const double now =
@@ -537,8 +519,8 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage) {
       const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
       double& temperature = trial_.temperature[node];
       double increment;
-      if (const int prescription = prescription_[node]; prescription >= 0) {
-        temperature = held_at_[prescription];
+      if (prescriptions_.hold(node)) {
+        temperature = prescriptions_.temperature(node);
         increment = store_.enthalpy(node, temperature) - enthalpy;
       } else {
         const double rate = inflow(node);
@@ -566,8 +548,7 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage) {
 
 template <int Dim>
 void Conduction<Dim>::accept_trial() {
-  trial_.heat.prescribed +=
-      chunked_sum(prescribed_chunks_, [&](int i) { return trial_.increment[prescribed_[i]]; });
+  trial_.heat.prescribed += prescriptions_.sum([&](int node) { return trial_.increment[node]; });
   for (int node = 0; node < nodes_.count(); ++node) state_.enthalpy[node] += trial_.increment[node];
   const double squares = chunked_sum(node_chunks_, [&](int node) {
     const double speed = (trial_.temperature[node] - state_.temperature[node]) / trial_.step;
@@ -596,10 +577,11 @@ template <int Dim>
 double Conduction<Dim>::trial_change() const {
   double largest = 0.0;
   for (int node = 0; node < nodes_.count(); ++node)
-    if (prescription_[node] < 0)
+    if (!prescriptions_.hold(node))
       largest = std::max(largest, std::abs(trial_.temperature[node] - state_.temperature[node]));
-  for (std::size_t i = 0; i < prescribed_.size(); ++i) {
-    const int node = prescribed_[i];
+  const auto& held = prescriptions_.nodes();
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const int node = held[i];
     const double start = before_run_.holds ? before_run_.temperature[i] : state_.temperature[node];
     largest = std::max(largest, std::abs(trial_.temperature[node] - start));
   }
@@ -620,21 +602,14 @@ void Conduction<Dim>::adapt_step() {
       std::min(cut_short ? std::max(state_.next_step, wanted) : wanted, parameters_.largest_step);
 }
 
-template <int Dim>
-void Conduction<Dim>::read_prescriptions(double time) {
-  const auto [lower, upper] = grid_.range();  // prescriptions miss the range by rounding at most
-  for (std::size_t i = 0; i < prescriptions_.size(); ++i)
-    held_at_[i] = std::clamp(prescriptions_[i](time), lower, upper);
-}
-
 /// Gives prescribed nodes their temperatures, and books the heat that the jump to them needs.
 template <int Dim>
 void Conduction<Dim>::hold_prescribed() {
-  const auto needed = [&](int node) { return store_.enthalpy(node, held_at_[prescription_[node]]); };
-  state_.ledger.prescribed += chunked_sum(
-      prescribed_chunks_, [&](int i) { return needed(prescribed_[i]) - state_.enthalpy[prescribed_[i]]; });
-  for (int node : prescribed_) {
-    state_.temperature[node] = held_at_[prescription_[node]];
+  const auto needed = [&](int node) { return store_.enthalpy(node, prescriptions_.temperature(node)); };
+  state_.ledger.prescribed +=
+      prescriptions_.sum([&](int node) { return needed(node) - state_.enthalpy[node]; });
+  for (int node : prescriptions_.nodes()) {
+    state_.temperature[node] = prescriptions_.temperature(node);
     state_.enthalpy[node] = needed(node);
   }
 }
@@ -645,9 +620,10 @@ void Conduction<Dim>::undo_begin(HeatState& state) const {
   state.next_step = before_run_.next_step;
   state.ledger.prescribed = before_run_.prescribed;
   state.bounds = before_run_.bounds;
-  for (std::size_t i = 0; i < prescribed_.size(); ++i) {
-    state.temperature[prescribed_[i]] = before_run_.temperature[i];
-    state.enthalpy[prescribed_[i]] = before_run_.enthalpy[i];
+  const auto& held = prescriptions_.nodes();
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    state.temperature[held[i]] = before_run_.temperature[i];
+    state.enthalpy[held[i]] = before_run_.enthalpy[i];
   }
 }
 
@@ -684,20 +660,6 @@ HeatStepLimit Conduction<Dim>::range_limit(double end) const {
 template <int Dim>
 HeatStepLimit Conduction<Dim>::step_limit() const {
   return present_limit(0.0);
-}
-
-template <int Dim>
-void Conduction<Dim>::require_prescriptions(double end) const {
-  for (const Curve& curve : prescriptions_) {
-    require_defined(curve, "prescribed temperature", time(), end);
-    const double least = curve.minimum(time(), end);
-    const double greatest = curve.maximum(time(), end);
-    if (!grid_.range().holds({least, greatest}, absolute_zero))
-      throw Error(
-          fmt::format("prescribed temperature ({}) goes from {} to {} degC, but the run's temperature range "
-                      "is {} to {} degC",
-                      curve.describe(), least, greatest, grid_.range().lower, grid_.range().upper));
-  }
 }
 
 template <int Dim>

@@ -12,6 +12,7 @@
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
 #include "pyroclast/thermal/heat_solver.hpp"
+#include "pyroclast/thermal/prescriptions.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 #include "pyroclast/thermal/zone_conduction.hpp"
@@ -207,7 +208,7 @@ class Conduction final : public HeatSolver {
     double next_step = 0.0;   ///< s
     double prescribed = 0.0;  ///< entry in the ledger, J
     Interval bounds;          ///< °C
-    /// Temperature, °C, and enthalpy, J, of the prescribed nodes, in the order of `prescribed_`.
+    /// Temperature, °C, and enthalpy, J, of the prescribed nodes, in the order of `prescriptions_`.
     std::vector<double> temperature, enthalpy;
   };
 
@@ -221,7 +222,6 @@ class Conduction final : public HeatSolver {
   void move_heat_to(ThermalNodes nodes);
   std::vector<std::vector<NodeShare>> gridpoint_shares() const;
   void add_to_boundary(const Applied& applied);
-  void place_prescriptions();
   void begin_run(double end);
   bool continue_step(double end, std::int64_t& stages);
   void begin_trial(double step, Limits limits);
@@ -240,12 +240,10 @@ class Conduction final : public HeatSolver {
     const double heat = zones_.inflow(node) + boundary_heat_[node];
     return gaps_ ? heat + gaps_->inflow(node) : heat;
   }
-  void read_prescriptions(double time);
   void hold_prescribed();
   void undo_begin(HeatState& state) const;
   HeatStepLimit present_limit(double step, double weight_of_boundary = 1.0) const;
   HeatStepLimit range_limit(double end) const;
-  void require_prescriptions(double end) const;
   [[noreturn]] void refuse_excess();
 
   const ModelOf<Dim>& model_;
@@ -268,14 +266,9 @@ class Conduction final : public HeatSolver {
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;
-  std::vector<int> prescription_;  ///< prescription of each node, -1: free
+  Prescriptions prescriptions_;
 
   std::vector<Applied> applied_;
-  std::vector<Curve> prescriptions_;
-  std::vector<int> prescription_of_gridpoint_;  ///< prescription of each gridpoint, -1: free
-  std::vector<int> prescribed_;                 ///< prescribed nodes, ascending
-  ChunkList prescribed_chunks_;
-  std::vector<double> held_at_;  ///< temperatures by prescription, °C
 
   HeatState state_;
   Trial trial_;
