@@ -7,6 +7,7 @@
 #include "model/small_specimen.hpp"
 #include "phases.hpp"
 #include "pyroclast/simulation/acting/heat_conditions.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 /// A small specimen between platens and what it needs to be heated, for tests.
@@ -62,6 +63,13 @@ inline HeatBoundaryCondition on(const std::string& part, HeatCondition condition
 
 inline Convection convection(double coefficient, Curve gas) {
   return {Curve::constant(coefficient), std::move(gas)};
+}
+
+/// The fire of ISO 834 on the left.
+inline HeatConditions fire_from_the_left() {
+  const Curve fire = fire_curves().at("iso834").curve;
+  return heat_conditions(
+      {on("left", convection(25.0, fire)), on("left", Radiation{Curve::constant(0.7), fire})});
 }
 
 /// The field of heat conditions on a body, for a run of `duration`, s.

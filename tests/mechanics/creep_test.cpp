@@ -28,14 +28,6 @@ ModelOf<3> block<3>() {
   return cubes(1, 0.01);
 }
 
-/// Nearly critical damping by velocity: what is left at rest is round-off.
-template <int Dim>
-MechanicsParameters settling(double steps = 40) {
-  auto p = quasi_static<Dim>(0.0);
-  p.viscous_damping = 3.0 / (steps * p.time_step);
-  return p;
-}
-
 constexpr int kToRest = 1500;  ///< steps
 
 /// All zones alike.

@@ -32,15 +32,6 @@ Elastic::Properties<double> stiff_contact(double softness, double length, double
   return p;
 }
 
-/// Damped by velocity alone, which leaves no force at rest; near critical for a body whose slowest vibration
-/// takes about twice that many steps.
-template <int Dim>
-MechanicsParameters settling(double steps) {
-  auto p = quasi_static<Dim>(0.0);
-  p.viscous_damping = 3.0 / (steps * p.time_step);
-  return p;
-}
-
 /// Lets gridpoints at these values of a coordinate not move along it.
 template <int Dim>
 void hold(Mechanics<Dim>& m, int component, std::initializer_list<double> at) {

@@ -14,6 +14,7 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
+#include "stages/result_of.hpp"
 
 namespace pyroclast {
 namespace {
@@ -186,9 +187,7 @@ TEST(SolidDeck, FormulasKnowADepthButNoThicknessOfACylinder) {
   pyroclast::Run run(*simulation, std::move(setup.stages));
   ASSERT_EQ(run.run(), Outcome::completed);
   const auto report = run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
-  const auto found = std::ranges::find(report.results, "X_m", &Result::name);
-  ASSERT_NE(found, report.results.end());
-  EXPECT_NEAR(std::get<double>(found->value), 0.08, 1e-12);
+  EXPECT_NEAR(number(report, "X_m"), 0.08, 1e-12);
   const std::string of_cylinder = message(with(of(cylinder()), "set = \"front\"", "set = \"bottom\""));
   expect_in("stages[0].results[0].formula", of_cylinder);
   expect_in("thickness", of_cylinder);

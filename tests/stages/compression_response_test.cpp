@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "known.hpp"
+#include "result_of.hpp"
 
 namespace pyroclast {
 namespace {
@@ -54,17 +55,6 @@ void go_on(CompressionCurve& curve, double to_stress, double over_strain) {
   }
 }
 
-Result::Value value(const StageReport& report, const std::string& name) {
-  for (const Result& result : report.results)
-    if (result.name == name) return result.value;
-  ADD_FAILURE() << "no result " << name;
-  return {};
-}
-
-double number(const StageReport& report, const std::string& name) {
-  return std::get<double>(value(report, name));
-}
-
 // Promise: f_c is the strength, not the hardening of a specimen that has failed. It is in doubt then, and so
 // is all that belongs to its peak; E is not.
 TEST(Response, WhatHardensBehindAFailureIsNoStrength) {
@@ -84,7 +74,7 @@ TEST(Response, WhatHardensBehindAFailureIsNoStrength) {
                                     "falls by more than 10 % and rises to 45.00 MPa at strain 0.01050"),
             std::string::npos);
   for (const char* name : {"f_c", "strain_at_peak", "strain_ic"})
-    EXPECT_EQ(value(report, std::string(name) + "_doubtful_because"), Result::Value(report.warnings[0]))
+    EXPECT_EQ(value_of(report, std::string(name) + "_doubtful_because"), Result::Value(report.warnings[0]))
         << name;
 }
 
@@ -97,7 +87,7 @@ TEST(Response, ARiseWithinFivePercentLeavesNoDoubt) {
     go_on(curve, 24e6, 5e-4);
     go_on(curve, stress, 2e-3);
     go_on(curve, 10e6, 2e-3);
-    return value(compression_report(curve), "f_c_doubtful_because");
+    return value_of(compression_report(curve), "f_c_doubtful_because");
   };
   EXPECT_EQ(back_to(20e6), Result::Value());
   EXPECT_EQ(back_to(31.4e6), Result::Value());
@@ -119,7 +109,7 @@ TEST(Response, AFallMustLast) {
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_NE(report.warnings[0].find("30.00 MPa by the first fall of 2 %, 36.00 MPa by one of 10 %"),
             std::string::npos);
-  EXPECT_EQ(value(report, "f_c_doubtful_because"), Result::Value(report.warnings[0]));
+  EXPECT_EQ(value_of(report, "f_c_doubtful_because"), Result::Value(report.warnings[0]));
 }
 
 /// Adds points that swing about a straight stretch, as where a wave runs to and fro.
@@ -173,10 +163,7 @@ TEST(Response, AMissingFallIsExplained) {
   go_on(curve, 28e6, 5e-4);
   go_on(curve, 60e6, 8e-3);
   const auto report = compression_report(curve);
-  const auto because =
-      std::ranges::find(report.results, "f_c_by_fall_of_10_percent_none_because", &Result::name);
-  ASSERT_NE(because, report.results.end());
-  EXPECT_EQ(std::get<std::string>(because->value),
+  EXPECT_EQ(std::get<std::string>(value_of(report, "f_c_by_fall_of_10_percent_none_because")),
             "the stress never fell by 10 % from above a third of f_c before the stage ended");
 }
 

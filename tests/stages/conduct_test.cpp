@@ -17,11 +17,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-HeatConditions fire_from_the_left() {
-  return heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
-                          on("left", Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
-}
-
 /// Heat alone in a small specimen.
 struct Conducted {
   Conducted(const HeatConditions& heat, const Conduct::Keys& keys, int blocks = 100)

@@ -8,6 +8,7 @@
 
 #include "known.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
+#include "result_of.hpp"
 #include "stages/small_runs.hpp"
 
 namespace pyroclast {
@@ -33,6 +34,10 @@ specimen::Specimen grid(double length, double depth, int columns, int rows) {
       phase.push_back(2 * i < columns ? 0 : 1);
     }
   return specimen::specimen_from({std::move(t), {"aggregate", "mortar"}, std::move(phase)});
+}
+
+specimen::Specimen bar_of_blocks() {
+  return grid(kLength, kDepth, 20, 1);
 }
 
 /// A body of two halves that can crack where they meet, and nowhere else. The specimen of the deck is
@@ -146,12 +151,10 @@ above = "50 um"
 TEST(ControlVerification, ABarSnapsBackAlongItsClosedForm) {
   constexpr double kLastOpening = 2.0 * kEnergy / kStrength;
   ASSERT_GT(kStrength * kLength / kYoung, kLastOpening);
-  pyroclast::Setup setup = pyroclast::read(bar("0.04 mm/s"));
-  const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-  pyroclast::Run run(*simulation, std::move(setup.stages));
-  EXPECT_EQ(run.run(), Outcome::completed);
-  const History& history = run.history();
-  const RowRange rows = run.courses()[0].rows;
+  const Finished r(bar("0.04 mm/s"), bar_of_blocks());
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const History& history = r.run.history();
+  const RowRange rows = r.run.courses()[0].rows;
   const auto load = history.values("load_N", rows), grip = history.values("grip_m", rows),
              work = history.values("energy_loading_J", rows), stretch = history.values("stretch_m", rows);
   const auto peak = std::ranges::max_element(load) - load.begin();
@@ -170,62 +173,46 @@ TEST(ControlVerification, ABarSnapsBackAlongItsClosedForm) {
     EXPECT_NEAR(grip[i], kLastOpening * (1.0 - left) + grip_at_peak * left, 0.03 * grip_at_peak)
         << stretch[i];
   }
-  const StageReport report = run.stages()[0]->report(history, rows, Outcome::completed);
+  const StageReport report = r.report(0);
   EXPECT_TRUE(report.warnings.empty()) << report.lines.back();
 }
 
 // Promise: where the pair takes the place of the loads, the run says so.
 TEST(Control, WarnsWhereThePairBearsTheTest) {
-  pyroclast::Setup setup = pyroclast::read(bar("2 mm/s"));
-  const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-  pyroclast::Run run(*simulation, std::move(setup.stages));
-  EXPECT_EQ(run.run(), Outcome::completed);
-  const StageReport report =
-      run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
+  const Finished r(bar("2 mm/s"), bar_of_blocks());
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const StageReport report = r.report(0);
   ASSERT_EQ(report.warnings.size(), 1U);
   EXPECT_NE(report.warnings[0].find("control of stretch: the largest load is"), std::string::npos);
 }
 
 // Promise: where the loads close the opening that they are to open, the run ends before numbers run away.
 TEST(Control, OfTheWrongSenseEndsTheRun) {
-  pyroclast::Setup setup =
-      pyroclast::read(with(bar("0.04 mm/s"), "direction = [1, 0]", "direction = [-1, 0]"));
-  const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-  pyroclast::Run run(*simulation, std::move(setup.stages));
-  EXPECT_EQ(run.run(), Outcome::control_lost);
-  const StageReport report =
-      run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::control_lost);
+  const Finished r(with(bar("0.04 mm/s"), "direction = [1, 0]", "direction = [-1, 0]"), bar_of_blocks());
+  EXPECT_EQ(r.run.outcome(), Outcome::control_lost);
+  const StageReport report = r.report(0);
   EXPECT_TRUE(std::ranges::any_of(report.warnings, [](const std::string& warning) {
     return warning.find("the control of stretch ran away") != std::string::npos;
   }));
   // the opening that ends it is that of the whole stage, 60 um
-  const auto stretch = run.history().values("stretch_m", run.courses()[0].rows);
+  const auto stretch = r.run.history().values("stretch_m", r.run.courses()[0].rows);
   EXPECT_LT(std::abs(stretch.back()), 1e-3);
 
   // an opening that ran away fulfils no condition, though it passes its value
   const std::string until =
       fmt::format("direction = [-1, 0]\n\n[[stages.until]]\nrecord = \"stretch\"\nbelow = \"{} m\"",
                   0.999 * stretch.back());
-  pyroclast::Setup ends = pyroclast::read(with(bar("0.04 mm/s"), "direction = [1, 0]", until.c_str()));
-  const auto again = make_simulation(ends, grid(kLength, kDepth, 20, 1));
-  EXPECT_EQ(pyroclast::Run(*again, std::move(ends.stages)).run(), Outcome::control_lost);
+  const Finished again(with(bar("0.04 mm/s"), "direction = [1, 0]", until.c_str()), bar_of_blocks());
+  EXPECT_EQ(again.run.outcome(), Outcome::control_lost);
 }
 
 // Promise: however fast the opening grows, the strength lies between the largest load and that with the pair.
 TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
   for (const char* rate : {"0.1 mm/s", "0.4 mm/s"}) {
-    pyroclast::Setup setup = pyroclast::read(bar(rate));
-    const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-    pyroclast::Run run(*simulation, std::move(setup.stages));
-    run.run();
-    const StageReport report =
-        run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
-    const auto number = [&](const std::string& name) {
-      return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
-    };
-    const double exact = kStrength * kDepth, with_pair = number("largest_load_with_control_N");
+    const StageReport report = Finished(bar(rate), bar_of_blocks()).report(0);
+    const double exact = kStrength * kDepth, with_pair = number(report, "largest_load_with_control_N");
     EXPECT_GT(with_pair, 0.998 * exact) << rate;
-    EXPECT_LT(with_pair / (1.0 + number("control_error_of_largest_load")), 1.002 * exact) << rate;
+    EXPECT_LT(with_pair / (1.0 + number(report, "control_error_of_largest_load")), 1.002 * exact) << rate;
   }
 }
 
@@ -235,15 +222,9 @@ TEST(Control, ThePairMayBeAsStiffAsTheErrorSays) {
   const auto stiffened = [](double stiffness) {
     return with(bar("0.04 mm/s"), "\"16 GN/m\"", fmt::format("\"{:.17g} N/m\"", stiffness));
   };
-  const auto run_of = [](pyroclast::Setup& setup, auto& simulation) {
-    simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-    return pyroclast::Run(*simulation, std::move(setup.stages));
-  };
-  std::unique_ptr<Simulation> simulation;
   double most = 0.0;
-  pyroclast::Setup too_stiff = pyroclast::read(stiffened(1e16));
   try {
-    run_of(too_stiff, simulation);
+    Trial(stiffened(1e16), bar_of_blocks());
   } catch (const Error& error) {
     const std::string text = error.what();
     const auto number = text.find("at most ");
@@ -253,10 +234,9 @@ TEST(Control, ThePairMayBeAsStiffAsTheErrorSays) {
   }
   ASSERT_GT(most, 16e9);
   for (const double share : {0.05, 0.2, 0.5, 0.95}) {
-    pyroclast::Setup setup = pyroclast::read(stiffened(share * most));
-    pyroclast::Run run = run_of(setup, simulation);
-    EXPECT_EQ(run.run(), Outcome::completed) << share;
-    const auto load = run.history().values("load_N", run.courses()[0].rows);
+    const Finished r(stiffened(share * most), bar_of_blocks());
+    EXPECT_EQ(r.run.outcome(), Outcome::completed) << share;
+    const auto load = r.run.history().values("load_N", r.run.courses()[0].rows);
     EXPECT_NEAR(*std::ranges::max_element(load), kStrength * kDepth, 0.05 * kStrength * kDepth) << share;
   }
 }
@@ -265,40 +245,35 @@ TEST(Control, ThePairMayBeAsStiffAsTheErrorSays) {
 TEST(Control, TheReportTellsThePairsPart) {
   constexpr double kForces = 100e3;  // of the stage, at a factor of 1
   for (const char* rate : {"0.04 mm/s", "0.15 mm/s", "0.4 mm/s", "2 mm/s"}) {
-    pyroclast::Setup setup = pyroclast::read(bar(rate));
-    const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
-    pyroclast::Run run(*simulation, std::move(setup.stages));
-    run.run();
-    const RowRange rows = run.courses()[0].rows;
-    const StageReport report = run.stages()[0]->report(run.history(), rows, Outcome::completed);
-    const auto number = [&](const std::string& name) {
-      return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
-    };
-    const auto factor = run.history().values("load_factor", rows),
-               pair = run.history().values("control_force_N", rows),
-               stretch = run.history().values("stretch_m", rows);
+    const Finished r(bar(rate), bar_of_blocks());
+    const History& history = r.run.history();
+    const RowRange rows = r.run.courses()[0].rows;
+    const StageReport report = r.report(0);
+    const auto factor = history.values("load_factor", rows), pair = history.values("control_force_N", rows),
+               stretch = history.values("stretch_m", rows);
     double largest_factor = 0.0, largest_pair = 0.0, work = 0.0;
     for (std::size_t i = 0; i < factor.size(); ++i) {
       largest_factor = std::max(largest_factor, std::abs(factor[i]));
       largest_pair = std::max(largest_pair, std::abs(pair[i]));
       if (i > 0) work += 0.5 * (pair[i] + pair[i - 1]) * (stretch[i] - stretch[i - 1]);
     }
-    const double peak = number("largest_load_factor") * kForces,
-                 with_pair = number("largest_load_with_control_N");
-    EXPECT_GE(number("largest_load_factor"), largest_factor);
-    EXPECT_NEAR(number("largest_load_factor"), largest_factor, 0.01 * largest_factor);
-    EXPECT_NEAR(number("control_force_over_peak") * peak, largest_pair, 1e-9 * largest_pair);
+    const double peak = number(report, "largest_load_factor") * kForces,
+                 with_pair = number(report, "largest_load_with_control_N");
+    EXPECT_GE(number(report, "largest_load_factor"), largest_factor);
+    EXPECT_NEAR(number(report, "largest_load_factor"), largest_factor, 0.01 * largest_factor);
+    EXPECT_NEAR(number(report, "control_force_over_peak") * peak, largest_pair, 1e-9 * largest_pair);
     EXPECT_GE(with_pair, peak);
-    EXPECT_NEAR(number("control_error_of_largest_load"), with_pair / peak - 1.0, 1e-12);
-    const double of_work = number("control_work_over_loading_work");
-    EXPECT_NEAR(of_work * number("loading_work_J"), std::abs(work), 0.1 * std::abs(work) + 1e-3);
+    EXPECT_NEAR(number(report, "control_error_of_largest_load"), with_pair / peak - 1.0, 1e-12);
+    const double of_work = number(report, "control_work_over_loading_work");
+    EXPECT_NEAR(of_work * number(report, "loading_work_J"), std::abs(work), 0.1 * std::abs(work) + 1e-3);
     ASSERT_EQ(report.lines.size(), 1U);
-    EXPECT_EQ(report.lines[0], fmt::format("control of stretch: the largest load is {:.4g} N, and {:.4g} N "
-                                           "with the force of the pair beside this ({:+.2g} %); the pair "
-                                           "bore up to {:.2g} % of that load, and did {:.2g} % of the work",
-                                           peak, with_pair, 100.0 * number("control_error_of_largest_load"),
-                                           100.0 * number("control_force_over_peak"), 100.0 * of_work));
-    const bool is_much = std::max(number("control_error_of_largest_load"), of_work) > 0.05;
+    EXPECT_EQ(report.lines[0],
+              fmt::format("control of stretch: the largest load is {:.4g} N, and {:.4g} N "
+                          "with the force of the pair beside this ({:+.2g} %); the pair "
+                          "bore up to {:.2g} % of that load, and did {:.2g} % of the work",
+                          peak, with_pair, 100.0 * number(report, "control_error_of_largest_load"),
+                          100.0 * number(report, "control_force_over_peak"), 100.0 * of_work));
+    const bool is_much = std::max(number(report, "control_error_of_largest_load"), of_work) > 0.05;
     EXPECT_EQ(report.warnings.size(), is_much ? 1U : 0U) << rate;
   }
 }
@@ -306,7 +281,7 @@ TEST(Control, TheReportTellsThePairsPart) {
 /// Bent until almost nothing of its crack is left: the mouth opens by a hundred times what parts a face.
 TEST(ControlVerification, TheWorkThatBreaksABeamIsTheFractureEnergyOfItsSection) {
   constexpr double kSpan = 0.4, kHeight = 0.1;
-  pyroclast::Setup setup = pyroclast::read(halves_deck(R"DECK(
+  const Finished r(halves_deck(R"DECK(
 [[sets]]
 name = "left_foot"
 nearest = ["0 mm", "0 mm"]
@@ -358,12 +333,11 @@ factor = { table = [["0 s", 0.05], ["3 s", 0.05], ["6 s", 1], ["12 s", 1]] }
 [[stages.until]]
 record = "mouth"
 above = "4.8 mm"
-)DECK"));
-  const auto simulation = make_simulation(setup, grid(kSpan, kHeight, 8, 10));
-  pyroclast::Run run(*simulation, std::move(setup.stages));
-  EXPECT_EQ(run.run(), Outcome::completed);
-  const History& history = run.history();
-  const RowRange rows = run.courses()[0].rows;
+)DECK"),
+                   grid(kSpan, kHeight, 8, 10));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const History& history = r.run.history();
+  const RowRange rows = r.run.courses()[0].rows;
   const auto load = history.values("load_N", rows), deflection = history.values("deflection_m", rows),
              ledger = history.values("energy_loading_J", rows);
   double work = 0.0;

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "copy_state.hpp"
 #include "messages.hpp"
-#include "pyroclast/base/state_copy.hpp"
 #include "stages/drives.hpp"
 
 /// What a drive asks for at any moment: loads over loads along their ramps, conditions at their bounds,
@@ -129,9 +129,7 @@ TEST(DriveLoads, WhatWasThereBeforeIsKeptInAState) {
   Trial whole(text), first(text), second(text);
   const auto expected = loads_of(whole, 1);
   while (first.run.stage_number() < 1 || first.run.progress() < 0.3) first.run.next();
-  StateCopy copy;
-  copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
-  copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+  copy_state(first.run, second.run);
   const auto told = loads_of(second, 1);
   ASSERT_GE(told.size(), 5u);
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -330,9 +328,7 @@ TEST(DriveControl, AStateHoldsWhatIsReported) {
   for (const std::size_t stop : {std::size_t{2}, looks / 3, looks / 2, looks - 2}) {
     Trial first(text), second(text);
     while (first.run.history().row_count() < stop) first.run.next();
-    StateCopy copy;
-    copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
-    copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+    copy_state(first.run, second.run);
     const auto [others, other_lines] = told(second);
     ASSERT_EQ(others.size(), results.size());
     for (std::size_t i = 0; i < results.size(); ++i) {

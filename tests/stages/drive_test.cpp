@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "copy_state.hpp"
 #include "in_plane.hpp"
 #include "known.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
-#include "pyroclast/base/state_copy.hpp"
 #include "stages/drives.hpp"
 
 namespace pyroclast {
@@ -507,9 +507,7 @@ TEST(Drive, GoesOnToTheBitFromAStateOnItsWay) {
   for (const std::size_t stop : {std::size_t{3}, looks / 2, looks - 3}) {
     Trial first(text), second(text);
     while (first.run.history().row_count() < stop) first.run.next();
-    StateCopy copy;
-    copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
-    copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+    copy_state(first.run, second.run);
     EXPECT_EQ(second.run.run(), outcome);
     ASSERT_EQ(second.run.history().row_count(), looks);
     for (std::size_t row = 0; row < looks; ++row)

@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "copy_state.hpp"
 #include "pyroclast/base/state_copy.hpp"
+#include "result_of.hpp"
 
 /// Numbers that a stage makes of its records, of histories made by hand.
 namespace pyroclast::record_results_test {
@@ -41,16 +43,6 @@ std::vector<RecordPeak> peaks_of(std::initializer_list<std::pair<double, std::ve
   return peaks;
 }
 
-std::optional<double> number(const std::vector<Result>& results, const std::string& name) {
-  const auto found = std::ranges::find(results, name, &Result::name);
-  if (found == results.end()) {
-    ADD_FAILURE() << "no result " << name;
-    return std::nullopt;
-  }
-  const auto* value = std::get_if<double>(&found->value);
-  return value ? std::optional(*value) : std::nullopt;
-}
-
 /// Load falls from -50 N at 1 s, pull from 3 MPa at 2 s; the way only grows.
 std::vector<RecordPeak> known_peaks() {
   return peaks_of({{0.5, {-20.0, 1e6, 1e-3}},
@@ -61,7 +53,8 @@ std::vector<RecordPeak> known_peaks() {
 
 std::optional<double> one(const RecordResult& asked, const std::vector<RecordPeak>& peaks,
                           const History& history, RowRange rows) {
-  return number(record_results(kRecords, peaks, {asked}, {}, history, rows), asked.name);
+  const auto results = record_results(kRecords, peaks, {asked}, {}, history, rows);
+  return is_none(results, asked.name) ? std::nullopt : std::optional(number(results, asked.name));
 }
 
 // Promise: a peak is told with its sign, in the unit of its column, and with its time; so is the largest.
@@ -71,11 +64,11 @@ TEST(RecordResults, PeakAndLargestOfEachRecord) {
   EXPECT_EQ(number(results, "peak_load_time_s"), 101.0);
   EXPECT_EQ(number(results, "largest_load_N"), -50.0);
   EXPECT_EQ(number(results, "largest_load_time_s"), 101.0);
-  EXPECT_DOUBLE_EQ(number(results, "peak_pull_MPa").value(), 3.0);
+  EXPECT_DOUBLE_EQ(number(results, "peak_pull_MPa"), 3.0);
   EXPECT_EQ(number(results, "peak_pull_time_s"), 102.0);
-  EXPECT_DOUBLE_EQ(number(results, "largest_pull_MPa").value(), 3.0);
-  EXPECT_EQ(number(results, "peak_way_m"), std::nullopt);
-  EXPECT_EQ(number(results, "peak_way_time_s"), std::nullopt);
+  EXPECT_DOUBLE_EQ(number(results, "largest_pull_MPa"), 3.0);
+  EXPECT_TRUE(is_none(results, "peak_way_m"));
+  EXPECT_TRUE(is_none(results, "peak_way_time_s"));
   EXPECT_EQ(number(results, "largest_way_m"), 6e-3);
   EXPECT_EQ(number(results, "largest_way_time_s"), 103.0);
   const auto before = record_results(kRecords, {}, {}, {}, history_of({}), {});
@@ -170,11 +163,11 @@ TEST(RecordResults, AFormulaKnowsWhatCameBefore) {
   const auto results =
       record_results(kRecords, known_peaks(), asked, {.thickness = 0.1, .weight = 30.0}, history_of({}), {});
   EXPECT_EQ(number(results, "force_N"), -50.0);
-  EXPECT_DOUBLE_EQ(number(results, "kilo_kN_m").value(), -0.5);
-  EXPECT_DOUBLE_EQ(number(results, "twice").value(), -970.0);
-  EXPECT_EQ(number(results, "none_m"), std::nullopt);
-  EXPECT_EQ(number(results, "of_none"), std::nullopt);
-  EXPECT_EQ(number(results, "infinite"), std::nullopt);
+  EXPECT_DOUBLE_EQ(number(results, "kilo_kN_m"), -0.5);
+  EXPECT_DOUBLE_EQ(number(results, "twice"), -970.0);
+  EXPECT_TRUE(is_none(results, "none_m"));
+  EXPECT_TRUE(is_none(results, "of_none"));
+  EXPECT_TRUE(is_none(results, "infinite"));
   EXPECT_EQ(lines_of(asked, results),
             (std::vector<std::string>{"force -50 N", "kilo -0.5 kN/m", "twice -970", "none: none",
                                       "of_none: none", "infinite: none"}));
@@ -221,8 +214,7 @@ TEST(RecordResults, TheStateOfAPeakIsAllOfIt) {
   EXPECT_EQ(second.largest_time(), 101.0);
   BodyFigures body{.thickness = 0.25, .weight = 12.0}, other;
   copy = {};
-  copy.take([&](StateVisitor& visitor) { body.visit_state(visitor); });
-  copy.put([&](StateVisitor& visitor) { other.visit_state(visitor); });
+  copy_state(body, other);
   EXPECT_EQ(other.thickness, 0.25);
   EXPECT_EQ(other.weight, 12.0);
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "copy_state.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/stages/compress.hpp"
 #include "pyroclast/stages/conduct.hpp"
@@ -17,6 +18,7 @@
 #include "pyroclast/stages/heat.hpp"
 #include "pyroclast/stages/load.hpp"
 #include "pyroclast/stages/settle.hpp"
+#include "result_of.hpp"
 #include "stages/drives.hpp"
 
 /// What stages report of histories that are made by hand, when they give up, and what they foretell.
@@ -32,27 +34,6 @@ History history_of(const std::map<std::string, std::vector<double>>& columns) {
     for (const auto& [name, values] : columns) history.set(name, values.at(row));
   }
   return history;
-}
-
-const Result::Value& value_of(const StageReport& report, const std::string& name) {
-  static const Result::Value none;
-  const auto found = std::ranges::find(report.results, name, &Result::name);
-  if (found == report.results.end()) {
-    ADD_FAILURE() << "no result " << name;
-    return none;
-  }
-  return found->value;
-}
-
-double number(const StageReport& report, const std::string& name) {
-  const Result::Value& value = value_of(report, name);
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return static_cast<double>(*count);
-  if (const auto* real = std::get_if<double>(&value)) return *real;
-  return std::nan("");
-}
-
-bool is_none(const StageReport& report, const std::string& name) {
-  return std::holds_alternative<std::monostate>(value_of(report, name));
 }
 
 Forecast forecast(const std::string& text, int stage) {
@@ -698,9 +679,7 @@ TEST(States, EachStageGoesOnFromAnyLook) {
       const auto stop = static_cast<std::size_t>(share * static_cast<double>(looks));
       Trial again(texts[t]), first(texts[t]), second(texts[t]);
       while (first.run.history().row_count() < stop) first.run.next();
-      StateCopy copy;
-      copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
-      copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+      copy_state(first.run, second.run);
       const Told expected = tell(again, stop), told = tell(second, stop);
       EXPECT_EQ(told.rows, expected.rows) << t << ", look " << stop << " of " << looks;
       EXPECT_EQ(told.frames, expected.frames) << t << ", look " << stop << " of " << looks;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "decks.hpp"
@@ -161,6 +162,11 @@ struct Trial {
       : setup(pyroclast::read(text, kinds)),
         simulation(make_simulation(setup)),
         run(*simulation, std::move(setup.stages)) {}
+  /// On a body that is there already.
+  Trial(const std::string& text, MadeSpecimen body)
+      : setup(pyroclast::read(text)),
+        simulation(make_simulation(setup, std::move(body))),
+        run(*simulation, std::move(setup.stages)) {}
 
   Setup setup;
   std::unique_ptr<Simulation> simulation;
@@ -176,7 +182,8 @@ inline void cut_batches(Run& run, int steps) {
 
 /// A deck that was run to its end.
 struct Finished : Trial {
-  explicit Finished(const std::string& text) : Trial(text) {
+  template <class... Body>
+  explicit Finished(const std::string& text, Body&&... body) : Trial(text, std::forward<Body>(body)...) {
     while (run.next())
       if (run.frame_is_due()) frames.push_back(last("temperature_degC"));
   }

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "pyroclast/base/random.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/model.hpp"
 #include "pyroclast/thermal/conduction.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
 
 /// Bodies of blocks joined by contacts, for the tests of this room.
 namespace pyroclast {
@@ -150,8 +152,30 @@ int node_at(const ModelOf<Dim>& model, const Conduction<Dim>& heat, const Vec<Di
   return nearest;
 }
 
+inline HeatParameters heat_parameters(const Interval& range, double initial, double largest_change = 10.0,
+                                      double largest_step = 1e3) {
+  return {.temperature_range = range,
+          .initial_temperature = initial,
+          .scheme = HeatScheme::super_time_stepping,
+          .safety = 0.9,
+          .largest_change = largest_change,
+          .largest_step = largest_step};
+}
+
 inline HeatMaterial constant_material(double conductivity, double heat_capacity) {
   return {Curve::constant(conductivity), Curve::constant(heat_capacity)};
+}
+
+/// Concrete of EN 1992-1-2 with a moisture content, %; one of 3 % has a high peak.
+inline HeatMaterial moist_concrete(double moisture = 3.0) {
+  return {builtin_curves().at("en1992_conductivity_upper").curve,
+          en1992_specific_heat(moisture) * builtin_curves().at("en1992_density").curve * 2300.0};
+}
+
+inline void expose_to_fire(Conduction<2>& heat, const std::vector<int>& faces) {
+  const Curve fire = fire_curves().at("iso834").curve;
+  heat.apply(faces, Convection{Curve::constant(25.0), fire});
+  heat.apply(faces, Radiation{Curve::constant(0.7), fire});
 }
 
 }  // namespace pyroclast

@@ -14,10 +14,10 @@
 
 #include "advance.hpp"
 #include "bodies.hpp"
+#include "copy_state.hpp"
 #include "known.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
@@ -52,14 +52,10 @@ GapHeat air_and_radiation() {
           .split_below = 1e4};
 }
 
-HeatParameters parameters(std::optional<GapHeat> gaps, double initial = 20.0) {
-  return {.temperature_range = {20.0, 1200.0},
-          .initial_temperature = initial,
-          .scheme = HeatScheme::super_time_stepping,
-          .safety = 0.9,
-          .largest_change = 20.0,
-          .largest_step = 1e4,
-          .gaps = std::move(gaps)};
+HeatParameters parameters(std::optional<GapHeat> gaps) {
+  auto p = heat_parameters({20.0, 1200.0}, 20.0, 20.0, 1e4);
+  p.gaps = std::move(gaps);
+  return p;
 }
 
 /// Of every contact: open where the predicate says so of its place, else intact.
@@ -245,15 +241,8 @@ TEST(GapConductionVerification, ASlabWithACrackHeatsAsInOneDimension) {
 
 // ---- Limits ----------------------------------------------------------------------------------------------
 
-HeatMaterial moist_concrete() {
-  return {builtin_curves().at("en1992_conductivity_upper").curve,
-          en1992_specific_heat(3.0) * builtin_curves().at("en1992_density").curve * 2300.0};
-}
-
 void expose_to_fire(Conduction<2>& heat) {
-  const auto left = heat.faces(on_plane<2>(0, 0.0, 1e-9));
-  heat.apply(left, Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
-  heat.apply(left, Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve});
+  pyroclast::expose_to_fire(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
 }
 
 ModelOf<2> irregular() {
@@ -457,9 +446,7 @@ TEST(GapConduction, GoesOnToTheBitFromAStateWithSplitNodes) {
   advance_to(*first, 200.0);
   std::int64_t stages = 3;
   EXPECT_FALSE(first->advance_step(300.0, stages));
-  StateCopy copy;
-  copy.take([&](StateVisitor& visitor) { first->visit_state(visitor); });
-  copy.put([&](StateVisitor& visitor) { second->visit_state(visitor); });
+  copy_state(*first, *second);
   for (auto* heat : {first.get(), second.get()}) {
     advance_to(*heat, 300.0);
     heat->set_gaps(hairs(model, 0.0));

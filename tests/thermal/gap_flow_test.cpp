@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "copy_state.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/gap_conduction.hpp"
 
@@ -308,9 +308,7 @@ TEST(GapFlow, ItsStateIsItsGaps) {
   first.set({0.75, 0.0});
   first.set({1.0, 0.0});
   first.set({0.75, 0.0});  // between: parted, for it came from below
-  StateCopy copy;
-  copy.take([&](StateVisitor& visitor) { first.gaps.visit_state(visitor); });
-  copy.put([&](StateVisitor& visitor) { second.gaps.visit_state(visitor); });
+  copy_state(first.gaps, second.gaps);
   EXPECT_EQ(second.gaps.parts(), first.gaps.parts());
   EXPECT_EQ(second.gaps.parts()[0], 1);
   const std::vector<double> even(static_cast<std::size_t>(first.model.gridpoint_count()), 20.0);

@@ -21,12 +21,7 @@ constexpr double kSafety = 0.9;
 constexpr double kRounding = 1e-9;  // of the tables of properties
 
 HeatParameters parameters(double initial, double largest_change) {
-  return {.temperature_range = {0.0, 1200.0},
-          .initial_temperature = initial,
-          .scheme = HeatScheme::super_time_stepping,
-          .safety = kSafety,
-          .largest_change = largest_change,
-          .largest_step = 1e3};
+  return heat_parameters({0.0, 1200.0}, initial, largest_change);
 }
 
 Curve over_temperature(std::vector<double> temperatures, std::vector<double> values) {

@@ -28,11 +28,6 @@ std::vector<bool> in_platen(const ModelOf<2>& model) {
   return result;
 }
 
-HeatConditions fire_from_the_left() {
-  return heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
-                          on("left", Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
-}
-
 double largest_change(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));

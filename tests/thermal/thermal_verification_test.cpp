@@ -28,12 +28,7 @@ double nafems_t4(int refinement) {
   const ModelOf<2> model =
       plane_body({.blocks = {6 * refinement, 10 * refinement}, .size = {0.6, 1.0}, .jitter = 0.0});
   Conduction<2> heat(model, {constant_material(52.0, 1e6)},
-                     {.temperature_range = {-10.0, 110.0},
-                      .initial_temperature = 0.0,
-                      .scheme = HeatScheme::super_time_stepping,
-                      .safety = 0.9,
-                      .largest_change = 20.0,
-                      .largest_step = 3000.0});
+                     heat_parameters({-10.0, 110.0}, 0.0, 20.0, 3000.0));
   heat.prescribe_temperature(heat.faces(on_plane<2>(1, 0.0, 1e-9)), Curve::constant(100.0));
   const Convection air{Curve::constant(750.0), Curve::constant(0.0)};
   heat.apply(heat.faces(on_plane<2>(0, 0.6, 1e-9)), air);
@@ -58,12 +53,7 @@ TEST(ThermalVerification, NafemsT4ConvectsAtTheEdgesOfAPlate) {
 TEST(ThermalVerification, NafemsT2RadiatesFromTheEndOfABar) {
   const ModelOf<2> model = bar(0.1, 10);
   Conduction<2> heat(model, {constant_material(55.6, 7850.0 * 460.0)},
-                     {.temperature_range = {0.0, 1000.0 + absolute_zero},
-                      .initial_temperature = 500.0,
-                      .scheme = HeatScheme::super_time_stepping,
-                      .safety = 0.9,
-                      .largest_change = 50.0,
-                      .largest_step = 100.0});
+                     heat_parameters({0.0, 1000.0 + absolute_zero}, 500.0, 50.0, 100.0));
   heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(1000.0 + absolute_zero));
   heat.apply(heat.faces(on_plane<2>(0, 0.1, 1e-9)),
              Radiation{Curve::constant(0.98), Curve::constant(300.0 + absolute_zero)});
@@ -77,12 +67,7 @@ TEST(ThermalVerification, NafemsT2RadiatesFromTheEndOfABar) {
 TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
   const ModelOf<2> model = bar(0.1, 20);
   Conduction<2> heat(model, {constant_material(35.0, 7200.0 * 440.5)},
-                     {.temperature_range = {-20.0, 120.0},
-                      .initial_temperature = 0.0,
-                      .scheme = HeatScheme::super_time_stepping,
-                      .safety = 0.9,
-                      .largest_change = 2.0,
-                      .largest_step = 1.0});
+                     heat_parameters({-20.0, 120.0}, 0.0, 2.0, 1.0));
   heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(0.0));
   heat.prescribe_temperature(
       heat.faces(on_plane<2>(0, 0.1, 1e-9)),
@@ -103,12 +88,7 @@ TEST(ThermalVerification, ARectangleThatConvectsFollowsTheProductOfTwoWalls) {
   // A quarter, with its planes of symmetry at x = 0 and y = 0.
   const ModelOf<2> model = plane_body({.blocks = {30, 60}, .size = {half_width, half_height}, .jitter = 0.2});
   Conduction<2> heat(model, {constant_material(conductivity, capacity)},
-                     {.temperature_range = {initial, gas},
-                      .initial_temperature = initial,
-                      .scheme = HeatScheme::super_time_stepping,
-                      .safety = 0.9,
-                      .largest_change = 2.0,
-                      .largest_step = 100.0});
+                     heat_parameters({initial, gas}, initial, 2.0, 100.0));
   const Convection air{Curve::constant(h), Curve::constant(gas)};
   heat.apply(heat.faces(on_plane<2>(0, half_width, 1e-9)), air);
   heat.apply(heat.faces(on_plane<2>(1, half_height, 1e-9)), air);
@@ -191,23 +171,14 @@ class FiniteVolumeWall {
 };
 
 TEST(ThermalVerification, AWallInAFireFollowsFiniteVolumes) {
-  const Curve conductivity = builtin_curves().at("en1992_conductivity_upper").curve;
-  const Curve capacity = en1992_specific_heat(1.5) * builtin_curves().at("en1992_density").curve * 2300.0;
+  const HeatMaterial concrete = moist_concrete(1.5);
   const Curve fire = fire_curves().at("iso834").curve;
   constexpr double thickness = 0.06;
-  FiniteVolumeWall reference(thickness, 120, conductivity, capacity, fire);
+  FiniteVolumeWall reference(thickness, 120, concrete.conductivity, concrete.heat_capacity, fire);
 
   const ModelOf<2> model = plane_body({.blocks = {40, 3}, .size = {thickness, 0.0045}, .jitter = 0.2});
-  Conduction<2> heat(model, {HeatMaterial{conductivity, capacity}},
-                     {.temperature_range = {20.0, 1200.0},
-                      .initial_temperature = 20.0,
-                      .scheme = HeatScheme::super_time_stepping,
-                      .safety = 0.9,
-                      .largest_change = 5.0,
-                      .largest_step = 60.0});
-  const auto exposed = heat.faces(on_plane<2>(0, 0.0, 1e-9));
-  heat.apply(exposed, Convection{Curve::constant(25.0), fire});
-  heat.apply(exposed, Radiation{Curve::constant(0.7), fire});
+  Conduction<2> heat(model, {concrete}, heat_parameters({20.0, 1200.0}, 20.0, 5.0, 60.0));
+  expose_to_fire(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
   double worst = 0.0;
   for (double time : {600.0, 1800.0, 3600.0}) {
     advance_to(heat, time);
