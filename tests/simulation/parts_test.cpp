@@ -1,8 +1,9 @@
-// Each chunk's part is made alone, from its own blocks and those that touch it, and must do what the chunk
-// does in the whole body: the layout, the forces of every step and the sums, to the bit. So no part of a body
-// needs to know the whole.
+// The part of each rank is made from its own chunks and the blocks that touch them, and must do what these
+// chunks do in the whole body: the layout, the forces of every step and the sums, to the bit. So no part of a
+// body needs to know the whole.
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,19 +14,18 @@
 #include <gtest/gtest.h>
 
 #include "in_plane.hpp"
-#include "part_of_body.hpp"
 #include "pyroclast/mechanics/cracks.hpp"
+#include "pyroclast/model/part.hpp"
 #include "pyroclast/simulation/acting/loads.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
+#include "ranks_in_threads.hpp"
 #include "stages/small_runs.hpp"
 #include "thermal/advance.hpp"
 
 namespace pyroclast {
 namespace {
-
-using parts::Part;
 
 constexpr int kBlocksOfAPart = 8;
 
@@ -55,44 +55,46 @@ std::string heated_deck(const std::string& kinematics) {
               "mass = \"scaled\"\ngravity = \"9.81 m/s2\"\nkinematics = \"" + kinematics + "\"");
 }
 
-/// A part and its body.
+/// The same things of the whole, in the order of a part.
+template <class T>
+std::vector<T> some_of(const std::vector<T>& all, const std::vector<int>& numbers) {
+  std::vector<T> some;
+  for (const int number : numbers) some.push_back(all[number]);
+  return some;
+}
+
+/// A part of a rank and its body.
 struct OfPart {
-  OfPart(Part<2> of, const Whole& whole)
-      : part(std::move(of)),
-        mechanics(part.model, whole.densities, parts::properties_in(part, whole.properties),
-                  whole.setup.moving->mechanics) {}
-  Part<2> part;
+  OfPart(ModelOf<2> of, const Whole& whole)
+      : model(std::move(of)),
+        mechanics(model, whole.densities, properties(whole.properties), whole.setup.moving->mechanics) {}
+
+  BodyProperties properties(const BodyProperties& of_whole) const {
+    BodyProperties own;
+    own.contacts = of_whole.contacts;
+    own.zones = some_of(of_whole.zones, model.part->zone);
+    own.of_contact = some_of(of_whole.of_contact, model.part->contact);
+    if (!of_whole.creep.empty()) own.creep = some_of(of_whole.creep, model.part->zone);
+    return own;
+  }
+  /// Places of own chunks in the part.
+  std::vector<int> own_chunks() const {
+    std::vector<int> own;
+    for (int c = 0; c < model.chunks().count(); ++c)
+      if (!model.chunks().is_foreign(c)) own.push_back(c);
+    return own;
+  }
+
+  ModelOf<2> model;
   Mechanics<2> mechanics;
 };
 
-std::vector<std::unique_ptr<OfPart>> bodies_of(const Whole& whole) {
-  std::vector<std::unique_ptr<OfPart>> bodies;
-  for (Part<2>& part : parts::all_parts(whole.model()))
-    bodies.push_back(std::make_unique<OfPart>(std::move(part), whole));
-  return bodies;
-}
-
-bool is_own(const Part<2>& part, int gridpoint) {
-  const ChunkList chunks = part.model.gridpoint_chunks();
-  return gridpoint >= chunks[part.chunk] && gridpoint < chunks[part.chunk + 1];
-}
-
-/// Gives every part what its neighbours did with their own gridpoints.
-void exchange(std::vector<std::unique_ptr<OfPart>>& bodies, int gridpoints) {
-  std::vector<Vec<2>> displacement(gridpoints), velocity(gridpoints);
-  for (const auto& body : bodies)
-    for (int g = 0; g < body->part.model.gridpoint_count(); ++g)
-      if (is_own(body->part, g)) {
-        displacement[body->part.gridpoint[g]] = body->mechanics.read().displacement(g);
-        velocity[body->part.gridpoint[g]] = body->mechanics.read().velocity(g);
-      }
-  for (const auto& body : bodies)
-    for (int g = 0; g < body->part.model.gridpoint_count(); ++g)
-      if (!is_own(body->part, g)) {
-        const int slot = body->mechanics.body().layout.gridpoint_slot[g];
-        body->mechanics.body().state.displacement[slot] = displacement[body->part.gridpoint[g]];
-        set_vector<2>(body->mechanics.body().state.velocity, slot, velocity[body->part.gridpoint[g]]);
-      }
+/// Calls `f(part)` on each rank, a thread of its own.
+void on_ranks(int count, const Whole& whole, const std::function<void(OfPart&)>& f) {
+  RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
+    OfPart part(part_of(whole.model(), ranks, ranks_of_chunks(whole.model(), count)), whole);
+    f(part);
+  });
 }
 
 /// Holds the lower platen and pulls the upper one up and aside.
@@ -105,10 +107,11 @@ void drive(Mechanics<2>& mechanics, const std::vector<int>& bottom, const std::v
 
 constexpr int kSteps = 600;
 
-void expect_same_layout(const Whole& whole, const OfPart& of, int chunk) {
+/// \param own  place of an own chunk in the part
+void expect_same_layout(const Whole& whole, const OfPart& of, int own) {
   const Layout<2>&there = whole.mechanics->body().layout, &here = of.mechanics.body().layout;
-  const Part<2>& part = of.part;
-  const int own = part.chunk;
+  const PartOfBody& part = *of.model.part;
+  const int chunk = part.chunk[own];
   const auto first_slot = [](const Layout<2>& layout, int of_chunk) {
     return slot_of(layout.bundles[layout.chunks.bundles[of_chunk]].first_pack, 0);
   };
@@ -140,15 +143,14 @@ void expect_same_layout(const Whole& whole, const OfPart& of, int chunk) {
 }
 
 void expect_same_state(const Whole& whole, const OfPart& of) {
-  const Part<2>& part = of.part;
-  const ChunkList chunks = part.model.gridpoint_chunks();
-  for (int g = chunks[part.chunk]; g < chunks[part.chunk + 1]; ++g) {
+  const PartOfBody& part = *of.model.part;
+  for (auto [g, last] = of.model.gridpoint_chunks().own(); g < last; ++g) {
     const int there = part.gridpoint[g];
     ASSERT_EQ(of.mechanics.read().displacement(g), whole.mechanics->read().displacement(there)) << there;
     ASSERT_EQ(of.mechanics.read().velocity(g), whole.mechanics->read().velocity(there)) << there;
     ASSERT_EQ(of.mechanics.read().force(g), whole.mechanics->read().force(there)) << there;
   }
-  for (int c = 0; c < part.model.contact_count(); ++c) {
+  for (int c = 0; c < of.model.contact_count(); ++c) {
     const ContactState here = of.mechanics.read().contact(c),
                        there = whole.mechanics->read().contact(part.contact[c]);
     ASSERT_EQ(here.internals, there.internals) << part.contact[c];
@@ -192,6 +194,12 @@ std::vector<Reading> readings(const std::vector<CrackKind>& kinds) {
   return all;
 }
 
+std::vector<std::string> names_of(const std::vector<CrackKind>& kinds) {
+  std::vector<std::string> names;
+  for (const CrackKind& kind : kinds) names.push_back(kind.name);
+  return names;
+}
+
 class Parts : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kinematics, Parts, testing::Values("small", "finite"),
                          [](const auto& kinematics) { return kinematics.param; });
@@ -199,61 +207,34 @@ INSTANTIATE_TEST_SUITE_P(Kinematics, Parts, testing::Values("small", "finite"),
 TEST_P(Parts, DoWhatTheirChunksDoInTheWhole) {
   const Whole whole(heated_deck(GetParam()));
   const ModelOf<2>& model = whole.model();
-  auto bodies = bodies_of(whole);
-  ASSERT_GT(bodies.size(), 7U);
+  const int chunks = model.chunks().count();
+  ASSERT_GT(chunks, 7);
   drive(*whole.mechanics, model.set("bottom_platen_support"), model.set("top_platen_support"));
-  for (const auto& body : bodies)
-    drive(body->mechanics, parts::set_in(body->part, model.set("bottom_platen_support")),
-          parts::set_in(body->part, model.set("top_platen_support")));
   whole.mechanics->advance(kSteps);
-  for (int step = 0; step < kSteps; ++step) {
-    for (const auto& body : bodies) body->mechanics.advance(1);
-    if (step + 1 < kSteps) exchange(bodies, model.gridpoint_count());
-  }
   const auto kinds = crack_kinds(whole.mechanics->body());
   std::int64_t damaged = 0;
   for (const CrackCount& count : count_cracks(whole.mechanics->body(), kinds).of_kind)
     damaged += count.damaged;
   EXPECT_GT(damaged, model.contact_count() / 10);
   EXPECT_LT(damaged, model.contact_count());
+  const auto readings_of = [&](const ModelOf<2>& of, const Mechanics<2>& mechanics) {
+    const GridpointSet set = gridpoint_set(of, of.set("specimen"));
+    std::vector<double> numbers;
+    for (const Reading& reading : readings(kinds)) numbers.push_back(reading.read(mechanics, set));
+    return numbers;
+  };
+  const std::vector<double> of_whole = readings_of(model, *whole.mechanics);
 
-  for (int chunk = 0; chunk < static_cast<int>(bodies.size()); ++chunk) {
-    SCOPED_TRACE(testing::Message() << "chunk " << chunk);
-    expect_same_layout(whole, *bodies[chunk], chunk);
-    expect_same_state(whole, *bodies[chunk]);
-  }
-  for (const Reading& reading : readings(kinds)) {
-    const auto set_of = [&](const ModelOf<2>& of, std::vector<int> set) {
-      return gridpoint_set(of, std::move(set));
-    };
-    double sum = 0.0;
-    for (const auto& body : bodies)
-      sum += reading.read(body->mechanics,
-                          set_of(body->part.model, parts::set_in(body->part, model.set("specimen"))));
-    EXPECT_EQ(sum, reading.read(*whole.mechanics, set_of(model, model.set("specimen")))) << reading.name;
-  }
-}
-
-// Means of a part are those of its own gridpoints.
-TEST(Parts, MeansAreOfOwnGridpoints) {
-  const Whole whole(heated_deck("small"));
-  int with_specimen = 0;
-  for (const auto& body : bodies_of(whole)) {
-    const Part<2>& part = body->part;
-    body->mechanics.advance(20);
-    const GridpointSet all = gridpoint_set(part.model, parts::set_in(part, whole.model().set("specimen")));
-    Vec<2> sum{};
-    int own = 0;
-    for (const int g : all.gridpoints)
-      if (is_own(part, g)) {
-        sum += body->mechanics.read().displacement(g);
-        ++own;
-      }
-    if (own == 0) continue;  // a platen
-    ++with_specimen;
-    EXPECT_EQ(body->mechanics.totals().mean_displacement(all), sum * (1.0 / own));
-  }
-  EXPECT_GT(with_specimen, 5);
+  for (const int count : {chunks, 3})  // ranks of one chunk, and of several
+    on_ranks(count, whole, [&](OfPart& part) {
+      EXPECT_EQ(names_of(crack_kinds(part.mechanics.body())), names_of(kinds));
+      drive(part.mechanics, part.model.set("bottom_platen_support"), part.model.set("top_platen_support"));
+      part.mechanics.advance(kSteps / 2);
+      part.mechanics.advance(kSteps - kSteps / 2);
+      for (const int chunk : part.own_chunks()) expect_same_layout(whole, part, chunk);
+      expect_same_state(whole, part);
+      EXPECT_EQ(readings_of(part.model, part.mechanics), of_whole);
+    });
 }
 
 // Constraints and ties have one order, whatever the order in which they were made.
@@ -335,54 +316,28 @@ TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
   advance_to(*whole, kHeatStep);
   ASSERT_EQ(whole->work().steps, 1);
   ASSERT_EQ(whole->work().stages, 1);
-  const double total = whole->state().stored_at_start, area = whole->gaps()->area();
-  HeatByKind sums;
-  double stored_at_start = 0.0, gap_area = 0.0;
-  int nodes = 0;
-  for (Part<2>& part : parts::all_parts(model, joined.of_gridpoint)) {
-    if (part.model.is_of_bearing(part.model.chunk_blocks[part.chunk])) continue;
-    const auto heat = conduction_of(part.model, parts::some_of(gaps, part.contact));
-    set_field(*heat, part.model, start);
+  EXPECT_GT(whole->gaps()->area(), 0.0);
+  EXPECT_GT(whole->ledger().boundary.flux, 0.0);
+  constexpr int kRanks = 5;
+  std::atomic<int> nodes{0};
+  RanksInThreads::run(kRanks, [&](const std::shared_ptr<Ranks>& ranks) {
+    const ModelOf<2> part = part_of(model, ranks, ranks_of_chunks(model, kRanks), joined.of_gridpoint);
+    const auto heat = conduction_of(part, some_of(gaps, part.part->contact));
+    set_field(*heat, part, start);
     advance_to(*heat, kHeatStep);
     ASSERT_EQ(heat->work().stages, 1);
-    stored_at_start += heat->state().stored_at_start;
-    gap_area += heat->gaps()->area();
-    sums.add(1.0, heat->ledger().boundary);
+    EXPECT_EQ(heat->state().stored_at_start, whole->state().stored_at_start);
+    EXPECT_EQ(heat->gaps()->area(), whole->gaps()->area());
+    EXPECT_EQ(heat->ledger().boundary, whole->ledger().boundary);
     for (int node = 0; node < heat->nodes().count(); ++node) {
       const int g = heat->nodes().gridpoint[node];
-      if (!is_own(part, g)) continue;
+      if (!part.gridpoint_chunks().is_own(g)) continue;
       ++nodes;
       EXPECT_EQ(heat->temperature()[node],
-                whole->temperature()[whole->nodes().of_gridpoint[part.gridpoint[g]]]);
+                whole->temperature()[whole->nodes().of_gridpoint[part.part->gridpoint[g]]]);
     }
-  }
+  });
   EXPECT_EQ(nodes, whole->nodes().count());
-  EXPECT_GT(area, 0.0);
-  EXPECT_EQ(stored_at_start, total);
-  EXPECT_EQ(gap_area, area);
-  EXPECT_GT(sums.flux, 0.0);
-  EXPECT_EQ(sums, whole->ledger().boundary);
-}
-
-// The mean of a part's field is that of its own zones.
-TEST(PartsOfHeat, MeansAreOfOwnZones) {
-  const Whole made(heated_deck("small"));
-  const ModelOf<2>& model = made.model();
-  const auto joined = join_through_contacts(model, {true, true, false});
-  for (Part<2>& part : parts::all_parts(model, joined.of_gridpoint)) {
-    if (part.model.is_of_bearing(part.model.chunk_blocks[part.chunk])) continue;
-    auto heat = conduction_of(part.model, std::vector<ContactGap>(part.model.contacts.size()));
-    set_field(*heat, part.model, start);
-    const TemperatureField field(part.model, std::move(heat));
-    const auto volume = zone_geometry(part.model).volume;
-    const ChunkList zones = part.model.zone_chunks();
-    double own = 0.0, heat_of_own = 0.0;
-    for (int z = zones[part.chunk]; z < zones[part.chunk + 1]; ++z) {
-      own += volume[z];
-      heat_of_own += volume[z] * field.zones()[z];
-    }
-    EXPECT_EQ(field.mean(), heat_of_own / own);
-  }
 }
 
 }  // namespace

@@ -14,15 +14,6 @@
 namespace pyroclast {
 namespace {
 
-/// A prism whose aggregate grows away from its mortar in a fire on its left.
-std::string hot_deck(const std::string& cracks) {
-  std::string text = with(deck(kSettle + kExpose, "\"6e-5 1/K\"") + kHeatedFace,
-                          "rate = \"10 K/min\", to = \"70", "rate = \"100 K/min\", to = \"620");
-  for (int material = 0; material < 2; ++material)
-    text = with(text, "conductivity = \"40 W/(m K)\"", "conductivity = \"4 W/(m K)\"");
-  return with(text, "exchange_increment = \"5 K\"", "exchange_increment = \"40 K\"") + cracks;
-}
-
 const std::string kCracks = "[heat.cracks]\n";
 
 /// All cells of the columns that a history without cracks has.

@@ -243,7 +243,7 @@ TEST(GapFlow, ARowIsBoundedByItsSteepestContact) {
     Gaps g(pair(), law, {15.0, 1000.0});
     g.set({1.0, width});
     std::vector<double> rows(static_cast<std::size_t>(g.nodes.count()), 7.0);
-    g.gaps.add_row_bound(coldest, g.sides(0.01, left, right), rows);
+    g.gaps.add_row_bound({coldest, std::max(left, right)}, g.sides(0.01, left, right), rows);
     double at_gap = 0.0;
     for (int node = 0; node < g.nodes.count(); ++node) {
       if (g.is_at_gap(node, 0.01)) at_gap = rows[node] - 7.0;
@@ -279,7 +279,7 @@ TEST(GapFlow, JoinedContactsAddNoBound) {
   Gaps g(pair(), bridges_alone(4e4));
   g.set({0.0, 0.0});
   std::vector<double> rows(static_cast<std::size_t>(g.nodes.count()), 3.0);
-  g.gaps.add_row_bound(20.0, std::vector<double>(rows.size(), 50.0), rows);
+  g.gaps.add_row_bound({20.0, 50.0}, std::vector<double>(rows.size(), 50.0), rows);
   EXPECT_TRUE(std::ranges::all_of(rows, [](double r) { return r == 3.0; }));
   EXPECT_EQ(g.gaps.area(), 0.0);
 }

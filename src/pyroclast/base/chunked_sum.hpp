@@ -4,17 +4,20 @@
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/ranks.hpp"
+
 namespace pyroclast {
 
-/// Chunks of a list of items: chunk i holds the items from [i] up to [i + 1]. Where the list belongs to a
-/// part of a body, some chunks are foreign: another part sums their items.
+/// Chunks of a list of items: chunk i holds the items from [i] up to [i + 1]. Where several ranks hold a
+/// body, the list is of one part, and chunks that belong to other ranks are foreign. The own ones follow each
+/// other, and ranks hold them in the order of the whole.
 class ChunkList {
  public:
   ChunkList() = default;
   /// \param begins      begin of each chunk, and the end of the last
   /// \param is_foreign  by chunk; empty: none is
-  explicit ChunkList(std::vector<int> begins, std::vector<bool> is_foreign = {})
-      : begins_(std::move(begins)), is_foreign_(std::move(is_foreign)) {}
+  explicit ChunkList(std::vector<int> begins, std::vector<bool> is_foreign = {}, Ranks& ranks = one_rank())
+      : begins_(std::move(begins)), is_foreign_(std::move(is_foreign)), ranks_(&ranks) {}
 
   int count() const { return begins_.empty() ? 0 : static_cast<int>(begins_.size()) - 1; }
   /// Returns the begin of a chunk, for `count()` the end of the list.
@@ -23,16 +26,27 @@ class ChunkList {
   bool is_foreign(int chunk) const {
     return !is_foreign_.empty() && is_foreign_[static_cast<std::size_t>(chunk)];
   }
-  /// Returns the number of items in chunks that are not foreign.
-  int own_items() const {
-    int items = 0;
-    for (int chunk = 0; chunk < count(); ++chunk)
-      if (!is_foreign(chunk)) items += (*this)[chunk + 1] - (*this)[chunk];
-    return items;
+  Ranks& ranks() const { return *ranks_; }
+
+  /// Returns the begin and the end of the items in own chunks.
+  std::pair<int, int> own() const {
+    int first = 0, last = count();
+    while (first < last && is_foreign(first)) ++first;
+    while (last > first && is_foreign(last - 1)) --last;
+    return count() == 0 ? std::pair{0, 0} : std::pair{(*this)[first], (*this)[last]};
+  }
+  bool is_own(int item) const {
+    const auto [first, last] = own();
+    return item >= first && item < last;
+  }
+  /// Returns the number of items on all ranks, each counted by its owner: a collective.
+  int whole_count(CallPlace at = CallPlace::here()) const {
+    const auto [first, last] = own();
+    return static_cast<int>(ranks_->sum(last - first, at));
   }
 
   /// Returns the same chunks of another list.
-  ChunkList of(std::vector<int> begins) const { return ChunkList(std::move(begins), is_foreign_); }
+  ChunkList of(std::vector<int> begins) const { return ChunkList(std::move(begins), is_foreign_, *ranks_); }
 
   /// Returns the same chunks of a list of some of the items, in their order.
   /// \param place  returns the place in this list of item i of the other one, ascending
@@ -55,31 +69,54 @@ class ChunkList {
  private:
   std::vector<int> begins_;
   std::vector<bool> is_foreign_;
+  Ranks* ranks_ = &one_rank();
 };
 
-/// Sums over the items of a body: every sum over a body is taken by this function. It adds item by item
-/// within a chunk and then chunk by chunk, always in this order. So the sum depends on how the body is cut
-/// into chunks, but neither on the number of threads or ranks nor on how blocks are bundled within a chunk of
-/// gridpoints, zones or contacts. Of a part of a body it adds the part's own chunks.
+/// Sums over the items of a body: every sum over a body is taken by this function or the next. It adds item
+/// by item within a chunk and then chunk by chunk, always in this order. So the sum depends on how the body
+/// is cut into chunks, but neither on the number of threads or ranks nor on how blocks are bundled within a
+/// chunk of gridpoints, zones or contacts. Each rank adds its own chunks; all get the sum of the whole: a
+/// collective.
 ///
-/// \tparam Sum  a number, or any type that starts as {} and takes += of its own kind
+/// \tparam Sum  a number, or any plain type that starts as {} and takes += of its own kind
 /// \param add   called as `add(item, sum)`; adds the contribution of an item to the sum of its chunk
 template <class Sum, class Add>
-Sum chunked_sum(const ChunkList& chunks, Add add) {
-  Sum total{};
+Sum chunked_sum(const ChunkList& chunks, Add add, CallPlace at = CallPlace::here()) {
+  std::vector<Sum> of_chunk;
+  of_chunk.reserve(static_cast<std::size_t>(chunks.count()));
   for (int chunk = 0; chunk < chunks.count(); ++chunk) {
     if (chunks.is_foreign(chunk)) continue;
-    Sum sum{};
+    Sum& sum = of_chunk.emplace_back();
     for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sum);
-    total += sum;
   }
+  if (chunks.ranks().count() > 1) of_chunk = chunks.ranks().collect(of_chunk, at);
+  Sum total{};
+  for (const Sum& sum : of_chunk) total += sum;
   return total;
 }
 
 /// Sums the values of the items.
 template <class Value>
-double chunked_sum(const ChunkList& chunks, Value value) {
-  return chunked_sum<double>(chunks, [&](int item, double& sum) { sum += value(item); });
+double chunked_sum(const ChunkList& chunks, Value value, CallPlace at = CallPlace::here()) {
+  return chunked_sum<double>(
+      chunks, [&](int item, double& sum) { sum += value(item); }, at);
+}
+
+/// Takes several sums at a time: `add(item, sums)` adds to some of `count` sums.
+template <class Sum, class Add>
+std::vector<Sum> chunked_sums(const ChunkList& chunks, std::size_t count, Add add,
+                              CallPlace at = CallPlace::here()) {
+  std::vector<Sum> of_chunk;
+  for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+    if (chunks.is_foreign(chunk)) continue;
+    of_chunk.resize(of_chunk.size() + count);
+    const std::span<Sum> sums(of_chunk.data() + (of_chunk.size() - count), count);
+    for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sums);
+  }
+  if (chunks.ranks().count() > 1) of_chunk = chunks.ranks().collect(of_chunk, at);
+  std::vector<Sum> totals(count);
+  for (std::size_t i = 0; i < of_chunk.size(); ++i) totals[i % count] += of_chunk[i];
+  return totals;
 }
 
 }  // namespace pyroclast

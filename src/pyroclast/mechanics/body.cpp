@@ -46,7 +46,8 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
   place_model();
   place_internals();
   mean_height = chunked_sum(layout.chunks.zones, [&](int z) { return 1.0 / norm(geometry.gradient[z][0]); }) /
-                layout.chunks.zones.own_items();
+                layout.chunks.zones.whole_count();
+  gridpoints_of_whole = layout.chunks.gridpoints.whole_count();
 }
 
 template <int Dim>
@@ -117,17 +118,22 @@ void Body<Dim>::place_model() {
 /// there are no others.
 template <int Dim>
 double Body<Dim>::block_size() const {
-  double volume = 0.0, whole = 0.0;
-  int blocks = 0;
-  for (int b = 0; b < model.block_count(); ++b) {
+  struct Sums {
+    double volume = 0.0, blocks = 0.0, volume_of_all = 0.0, all = 0.0;
+    void operator+=(const Sums& o) {
+      volume += o.volume;
+      blocks += o.blocks;
+      volume_of_all += o.volume_of_all;
+      all += o.all;
+    }
+  };
+  const auto sums = chunked_sum<Sums>(layout.chunks.blocks, [&](int b, Sums& sum) {
     double of_block = 0.0;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) of_block += geometry.volume[z];
-    whole += of_block;
-    if (model.is_of_bearing(b)) continue;
-    volume += of_block;
-    ++blocks;
-  }
-  const double mean = blocks > 0 ? volume / blocks : whole / model.block_count();
+    const bool counts = !model.is_of_bearing(b);
+    sum += {counts ? of_block : 0.0, counts ? 1.0 : 0.0, of_block, 1.0};
+  });
+  const double mean = sums.blocks > 0.0 ? sums.volume / sums.blocks : sums.volume_of_all / sums.all;
   return Dim == 2 ? std::sqrt(mean / model.thickness) : std::cbrt(mean);
 }
 

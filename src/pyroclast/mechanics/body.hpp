@@ -150,6 +150,7 @@ struct Body {
   std::vector<double> mass;          ///< mass of each gridpoint that moves, kg
   std::vector<double> stiffness;     ///< k_gp of each gridpoint, N/m
   double mean_height = 0.0;          ///< mean height of zones, m
+  int gridpoints_of_whole = 0;       ///< gridpoints of the whole body, where this is a part
   double least_force = 0.0;          ///< sum over all gridpoints, N; a smaller sum of forces counts as none
   double real_mass = 0.0, moving_mass = 0.0;  ///< kg
 

@@ -105,6 +105,8 @@ void Constraints<Dim>::release(int gridpoint, int component) {
 
 template <int Dim>
 void Constraints<Dim>::tie(std::vector<int> gridpoints, int component) {
+  std::erase_if(gridpoints, [&](int g) { return !body_.layout.chunks.gridpoints.is_own(g); });
+  if (gridpoints.empty()) return;  // another rank moves the block
   std::sort(gridpoints.begin(), gridpoints.end());
   TieOfBundle tie{body_.first_bundle_of(body_.layout.bundle_of(gridpoints.front())), component, {}};
   double mass = 0.0, momentum = 0.0;

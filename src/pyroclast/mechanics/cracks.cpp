@@ -18,12 +18,23 @@ const char* name_of_mode(Remembers damage) {
 
 namespace {
 
-/// Returns the law of an interface, by its first contact; null where no contact has the interface.
+/// Returns the law of each interface, by its first contact; null where no contact has the interface.
 template <int Dim>
-const LawTable* law_of_interface(const Body<Dim>& body, int interface) {
+std::vector<const LawTable*> laws_of_interfaces(const Body<Dim>& body) {
   const auto& contacts = body.model.contacts;
-  const auto first = std::ranges::find(contacts, interface, &Contact<Dim>::interface);
-  return first == contacts.end() ? nullptr : &body.law_of(static_cast<int>(first - contacts.begin()));
+  std::vector<const LawTable*> laws;
+  for (int i = 0; i < static_cast<int>(body.model.interface_names.size()); ++i) {
+    const auto first = std::ranges::find(contacts, i, &Contact<Dim>::interface);
+    double place =
+        -1.0;  // a part may lack the contacts of an interface; its list of laws is that of the whole
+    if (first != contacts.end())
+      place = static_cast<double>(
+          std::ranges::find(body.laws, &body.law_of(static_cast<int>(first - contacts.begin()))) -
+          body.laws.begin());
+    place = body.model.ranks().largest(place);
+    laws.push_back(place < 0.0 ? nullptr : body.laws[static_cast<std::size_t>(place)]);
+  }
+  return laws;
 }
 
 /// Returns the bit of a contact point that a mode has damaged; `broken_by` returns that of a broken one.
@@ -89,14 +100,14 @@ std::vector<std::uint8_t> damages(const Body<Dim>& body) {
   return bits;
 }
 
+/// Sums over contacts: their count for one kind of crack, their openings for all kinds together.
 struct CrackSums {
-  std::vector<CrackCount> of_kind;
+  CrackCount count;
   double opening = 0.0;  ///< sum of openings times extents over contacts damaged in tension or mixed mode
   double extent = 0.0;   ///< sum of the extents of these contacts
 
   void operator+=(const CrackSums& other) {
-    of_kind.resize(std::max(of_kind.size(), other.of_kind.size()));
-    for (std::size_t k = 0; k < other.of_kind.size(); ++k) of_kind[k] += other.of_kind[k];
+    count += other.count;
     opening += other.opening;
     extent += other.extent;
   }
@@ -122,8 +133,7 @@ void CrackCount::operator+=(const CrackCount& other) {
 template <int Dim>
 std::vector<CrackKind> crack_kinds(const Body<Dim>& body) {
   const auto& names = body.model.interface_names;
-  std::vector<const LawTable*> laws;
-  for (int i = 0; i < static_cast<int>(names.size()); ++i) laws.push_back(law_of_interface(body, i));
+  const auto laws = laws_of_interfaces(body);
   std::vector<CrackKind> kinds;
   for (const Remembers damage : kCrackModes)
     for (int i = 0; i < static_cast<int>(names.size()); ++i)
@@ -144,7 +154,8 @@ Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds) 
   for (std::size_t k = 0; k < kinds.size(); ++k)
     of_interface[kinds[k].interface].push_back({k, mode_of(kinds[k].damage)});
   const std::vector<std::uint8_t> bits_of_slots = damages(body);
-  auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
+  // the last sums are those of all kinds
+  const auto add = [&](int i, std::span<CrackSums> sums) {
     const int c = layout.contacts_by_chunk[i];
     const std::uint8_t bits = bits_of_slots[layout.contact_slot[c]];
     if (bits == 0) return;
@@ -153,16 +164,18 @@ Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds) 
     bool apart = false;
     for (const auto [kind, mode] : of_interface[contact.interface]) {
       if ((bits & damaged_by(mode)) == 0) continue;
-      sum.of_kind.resize(kinds.size());
-      sum.of_kind[kind].add((bits & broken_by(mode)) != 0, extent);
+      sums[kind].count.add((bits & broken_by(mode)) != 0, extent);
       apart = apart || kinds[kind].damage != Remembers::shear_damage;
     }
     if (!apart) return;
-    sum.opening += std::max(0.0, read.opening(c) + read.remembered(c, Remembers::closure)) * extent;
-    sum.extent += extent;
-  });
-  sums.of_kind.resize(kinds.size());
-  return {std::move(sums.of_kind), sums.extent > 0.0 ? sums.opening / sums.extent : 0.0};
+    sums.back().opening += std::max(0.0, read.opening(c) + read.remembered(c, Remembers::closure)) * extent;
+    sums.back().extent += extent;
+  };
+  const auto sums = chunked_sums<CrackSums>(layout.chunks.contacts, kinds.size() + 1, add);
+  Cracks cracks;
+  for (std::size_t k = 0; k < kinds.size(); ++k) cracks.of_kind.push_back(sums[k].count);
+  if (sums.back().extent > 0.0) cracks.mean_opening = sums.back().opening / sums.back().extent;
+  return cracks;
 }
 
 template <int Dim>

@@ -149,12 +149,11 @@ enum class Per : std::uint8_t {
   entry  ///< entry of the array's own list; other arrays name the entries
 };
 
-/// Owners that hold the entries where chunks have several owners, such as the ranks of a cluster.
-enum class HeldBy : std::uint8_t {
-  owner,  ///< owner of the chunk
-  /// Owner of the chunk, and owners of chunks that touch it: they read its gridpoints, or owe it forces.
-  owner_and_halo,
-  all  ///< every owner: the entries are few, and the same everywhere
+/// Moments at which an array's numbers of gridpoints travel to other ranks, which read them, see Halo.
+enum class Travels : std::uint8_t {
+  never,
+  each_step,
+  each_call  ///< after the last step of a call: no step reads them of foreign gridpoints
 };
 
 /// Description of an array. Memory, traffic, checkpoints and copies of a body follow from the lists of
@@ -164,7 +163,7 @@ struct ArrayInfo {
   Per per;
   Touched read = Touched::none, written = Touched::none;
   Lasts lasts = Lasts::made;
-  HeldBy held_by = HeldBy::owner;
+  Travels travels = Travels::never;
 };
 
 /// Calls `f(ArrayInfo, array...)` for each array of a list; several lists of the same kind go side by side.

@@ -97,12 +97,14 @@ template <int Dim>
 TimeStepLimit Masses<Dim>::real_mass_limit() const {
   // Local damping multiplies a force that opposes motion by up to 1 + lambda, which acts as stiffness.
   TimeStepLimit limit{std::numeric_limits<double>::infinity(), 0};
-  for (std::size_t g = 0; g < body_.stiffness.size(); ++g) {
+  const auto [first, last] = body_.layout.chunks.gridpoints.own();
+  for (int g = first; g < last; ++g) {
     const double step =
         body_.parameters.safety * 2.0 *
         std::sqrt(body_.gravity_mass[g] / (body_.stiffness[g] * (1.0 + body_.parameters.local_damping)));
-    if (step < limit.step) limit = {step, static_cast<int>(g)};
+    if (step < limit.step) limit = {step, g};
   }
+  limit.step = body_.model.ranks().least(limit.step);
   return limit;
 }
 

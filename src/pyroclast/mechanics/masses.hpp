@@ -9,7 +9,7 @@ namespace pyroclast {
 /// Stable step and the gridpoint that sets it.
 struct TimeStepLimit {
   double step = 0.0;  ///< s
-  int gridpoint = 0;
+  int gridpoint = 0;  ///< gridpoint that sets it; where several ranks hold the body, the strictest of a part
 };
 
 /// Masses of a body, and the stiffness on which scaled masses and stable steps rest.

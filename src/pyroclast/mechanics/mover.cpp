@@ -10,6 +10,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
   Body<Dim>& body = *body_;
   const StepPasses<Dim>& passes = body.step.passes;
   const bool measure = pass != Pass::move;
+  const bool moves_with_others = pass != Pass::measure && !halo_.is_empty();
   const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
     for_each_law(s, first, last, [&](const PackFunctions<Dim>& law, int begin, int end) {
       law.update(s, begin, end, measured);
@@ -44,10 +45,15 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
                                  worker.scratch.data());
         }
         is_crowded = body.team->barrier();
+        if (!moves_with_others) continue;
+        is_crowded = false;  // ranks take as many steps as the others
+        if (thread == 0) halo_.exchange(body.arrays, Travels::each_step);
+        body.team->barrier();
       }
       if (thread == 0) moved = taken;
     });
   }
+  if (moves_with_others && measure) halo_.exchange(body.arrays, Travels::each_call);
 }
 
 template class Mover<2>;

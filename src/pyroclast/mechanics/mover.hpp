@@ -3,15 +3,17 @@
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/mechanics/halo.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
 
 namespace pyroclast {
 
-/// Mover of a body: takes its steps, shared out to threads. No other part of mechanics knows of threads.
+/// Mover of a body: takes its steps, shared out to threads, and lets displacements travel between ranks. No
+/// other part of mechanics knows of threads.
 template <int Dim>
 class Mover {
  public:
-  explicit Mover(Body<Dim>& body) : body_(&body) {}
+  explicit Mover(Body<Dim>& body) : body_(&body), halo_(body.model, body.layout) {}
 
   /// Takes a number of sweeps over faces and bundles, of one kind.
   void sweep(int steps, Pass pass);
@@ -24,6 +26,7 @@ class Mover {
   };
 
   Body<Dim>* body_;
+  Halo<Dim> halo_;
   std::vector<Worker> workers_;  ///< workers by thread
 };
 

@@ -150,13 +150,14 @@ struct StateArrays {
   template <class F, class... S>
   static void each(F&& f, S&... s) {
     f(ArrayInfo{"position", Per::gridpoint_pack, Touched::alike}, s.position...);
-    f(ArrayInfo{"velocity", Per::gridpoint_pack, Touched::all, Touched::all, Lasts::kept}, s.velocity...);
+    f(ArrayInfo{"velocity", Per::gridpoint_pack, Touched::all, Touched::all, Lasts::kept, Travels::each_call},
+      s.velocity...);
     f(ArrayInfo{"force", Per::gridpoint_pack, Touched::combined, Touched::all, Lasts::kept}, s.force...);
     f(ArrayInfo{"stiffness", Per::gridpoint_slot}, s.stiffness...);
     f(ArrayInfo{"gathered_position", Per::gridpoint_slot, Touched::gathered}, s.gathered_position...);
     f(ArrayInfo{"from_last", Per::gridpoint_slot, Touched::all}, s.from_last...);
     f(ArrayInfo{"displacement", Per::gridpoint_slot, Touched::all, Touched::all, Lasts::kept,
-                HeldBy::owner_and_halo},
+                Travels::each_step},
       s.displacement...);
     f(ArrayInfo{"step_over_mass", Per::gridpoint_slot, Touched::all}, s.step_over_mass...);
     f(ArrayInfo{"real_mass", Per::gridpoint_slot, Touched::all}, s.real_mass...);
@@ -170,11 +171,9 @@ struct StateArrays {
     f(ArrayInfo{"crack_step", Per::point_slot_or_idle, Touched::none, Touched::none, Lasts::kept},
       s.crack_step...);
     f(ArrayInfo{"losing", Per::point_pack_or_idle, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
-    f(ArrayInfo{"contact_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
-                HeldBy::owner_and_halo},
+    f(ArrayInfo{"contact_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step},
       s.contact_force...);  // read where it is summed
-    f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
-                HeldBy::owner_and_halo},
+    f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step},
       s.turning_force...);
     f(ArrayInfo{"corner_force", Per::entry, Touched::all, Touched::all, Lasts::a_step}, s.corner_force...);
     f(ArrayInfo{"part_force", Per::entry, Touched::none, Touched::none, Lasts::a_step}, s.part_force...);

@@ -41,34 +41,46 @@ void append(std::vector<IndexRange>& ranges, int i) {
     ranges.push_back({i, i + 1});
 }
 
-/// Returns the bundles of each thread: ranges that cost about the same.
+/// Returns the bundles of each thread: ranges of own ones that cost about the same.
 template <int Dim>
 std::vector<IndexRange> bundle_ranges(const Layout<Dim>& layout, int threads) {
   std::vector<IndexRange> ranges(threads);
-  const int bundles = static_cast<int>(layout.bundles.size());
+  const auto [first, last] = layout.chunks.bundles.own();
   double total = 0.0, taken = 0.0;
-  for (const Bundle& bundle : layout.bundles) total += cost(bundle);
-  int b = 0;
+  for (int i = first; i < last; ++i) total += cost(layout.bundles[i]);
+  int b = first;
   for (int t = 0; t < threads; ++t) {
     ranges[t].first = b;
-    while (b < bundles && (t + 1 == threads || taken < total * (t + 1) / threads))
+    while (b < last && (t + 1 == threads || taken < total * (t + 1) / threads))
       taken += cost(layout.bundles[b++]);
     ranges[t].last = b;
   }
   return ranges;
 }
 
-/// Returns the first part whose corner forces a thread computes; all have about as many zones to do.
+/// Returns the parts among some bundles.
+template <int Dim>
+IndexRange parts_among(const Layout<Dim>& layout, int first_bundle, int last_bundle) {
+  const auto before = [&](int bundle) {
+    return static_cast<int>(std::ranges::lower_bound(layout.parts, bundle) - layout.parts.begin());
+  };
+  return {before(first_bundle), before(last_bundle)};
+}
+
+/// Returns the first of the own parts whose corner forces a thread computes; all have about as many zones to
+/// do.
 template <int Dim>
 int first_part(const Layout<Dim>& layout, int thread, int threads) {
+  const auto [first_bundle, last_bundle] = layout.chunks.bundles.own();
+  const IndexRange own = parts_among(layout, first_bundle, last_bundle);
   int zone_packs = 0, before = 0;
-  for (const int part : layout.parts) zone_packs += layout.bundles[part].zone_packs();
-  for (int i = 0; i < static_cast<int>(layout.parts.size()); ++i) {
+  for (int i = own.first; i < own.last; ++i) zone_packs += layout.bundles[layout.parts[i]].zone_packs();
+  for (int i = own.first; i < own.last && thread < threads; ++i) {
     if (static_cast<std::int64_t>(before) * threads >= static_cast<std::int64_t>(zone_packs) * thread)
       return i;
     before += layout.bundles[layout.parts[i]].zone_packs();
   }
-  return static_cast<int>(layout.parts.size());
+  return own.last;
 }
 
 }  // namespace
@@ -82,17 +94,16 @@ std::vector<Share> share_out(const Layout<Dim>& layout, int threads) {
     const auto mine = [&](int bundle) { return bundle >= ranges[t].first && bundle < ranges[t].last; };
     std::vector<int> packs;
     for (int r = 0; r < layout.face_packs(); ++r) {
-      if (!mine(touched[r].last)) continue;
-      if (mine(touched[r].first))
+      // where the later bundle is of another rank, the thread of the own one takes the faces
+      const int later = layout.chunks.bundles.is_own(touched[r].last) ? touched[r].last : touched[r].first;
+      if (!mine(later)) continue;
+      if (mine(touched[r].first) && mine(touched[r].last))
         packs.push_back(r);
       else
         append(shares[t].crossing, r);
     }
-    const auto parts_before = [&](int bundle) {
-      return static_cast<int>(std::ranges::lower_bound(layout.parts, bundle) - layout.parts.begin());
-    };
     shares[t].corner_parts = {first_part(layout, t, threads), first_part(layout, t + 1, threads)};
-    shares[t].moved_parts = {parts_before(ranges[t].first), parts_before(ranges[t].last)};
+    shares[t].moved_parts = parts_among(layout, ranges[t].first, ranges[t].last);
     auto& strides = shares[t].strides;
     std::size_t next = 0;
     for (int b = ranges[t].first; b < ranges[t].last; ++b) {

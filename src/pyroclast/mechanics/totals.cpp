@@ -13,7 +13,7 @@ template <int Dim>
 Vec<Dim> Totals<Dim>::mean_displacement(const GridpointSet& set) const {
   const auto sum = chunked_sum<Vec<Dim>>(
       set.chunks, [&](int i, Vec<Dim>& total) { total += read_.displacement(set.gridpoints[i]); });
-  return sum * (1.0 / set.chunks.own_items());
+  return sum * (1.0 / set.whole_count);
 }
 
 template <int Dim>
@@ -142,7 +142,7 @@ template <int Dim>
 double Totals<Dim>::mean_unbalanced_force() const {
   return chunked_sum(body_.layout.chunks.bundles,
                      [&](int b) { return body_.state.bundle_sums[b].unbalanced; }) /
-         body_.layout.chunks.gridpoints.own_items();
+         body_.gridpoints_of_whole;
 }
 
 template <int Dim>
@@ -160,7 +160,7 @@ template <int Dim>
 double Totals<Dim>::largest_relative_jump() const {
   double largest = 0.0;
   for (const FaceSums& sums : body_.state.face_sums) largest = std::max(largest, sums.jump);
-  return largest;
+  return body_.model.ranks().largest(largest);
 }
 
 template class Totals<2>;

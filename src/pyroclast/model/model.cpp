@@ -77,6 +77,13 @@ void Model::cut_into_chunks(int most_blocks) {
   for (int block = 0; block < block_count(); ++block) put_into_chunk(block, most_blocks);
 }
 
+ChunkList Model::chunks() const {
+  if (!part) return ChunkList(chunk_blocks);
+  std::vector<bool> is_foreign;
+  for (const int rank : part->rank_of_chunk) is_foreign.push_back(rank != part->ranks->me());
+  return ChunkList(chunk_blocks, std::move(is_foreign), *part->ranks);
+}
+
 ChunkList Model::chunks_of(const std::vector<int>& of_block) const {
   std::vector<int> begins;
   for (const int block : chunk_blocks) begins.push_back(of_block[block]);
@@ -181,7 +188,8 @@ GridpointContacts gridpoint_contacts(const Model& model) {
 GridpointSet gridpoint_set(const Model& model, std::vector<int> gridpoints) {
   std::sort(gridpoints.begin(), gridpoints.end());
   ChunkList chunks = model.gridpoint_chunks().of_some(gridpoints);
-  return {std::move(gridpoints), std::move(chunks)};
+  const int count = chunks.whole_count();
+  return {std::move(gridpoints), std::move(chunks), count};
 }
 
 ContactsByChunk contacts_by_chunk(const Model& model) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +43,16 @@ struct PlaneOfSymmetry {
   std::string set() const { return side + "_symmetry"; }
 };
 
+/// Place of a part in the body of which one rank holds it: its own chunks, and of others the blocks that its
+/// own ones touch. See part_of.
+struct PartOfBody {
+  std::shared_ptr<Ranks> ranks;
+  std::vector<int> rank_of_chunk;  ///< rank that owns each chunk of the part
+  // numbers in the whole of the part's items
+  std::vector<int> chunk, block, gridpoint, zone, contact;
+  int zones_of_whole = 0;
+};
+
 /// Body of deformable blocks, as flat arrays. It holds geometry only: no state, no material parameters.
 ///
 /// Every block owns its gridpoints and zones, which stand together in the arrays. Consecutive blocks make a
@@ -60,8 +71,6 @@ struct Model {
   std::vector<int> block_zones{0};       ///< zones of block i: [i] to [i + 1]
   std::vector<int> block_material;       ///< index into material_names
   std::vector<int> chunk_blocks{0};      ///< blocks of chunk i: [i] to [i + 1]
-  std::vector<bool> foreign_chunks;      ///< chunks that other parts of the body own; empty: none
-  int zones_of_whole = 0;                ///< zones of the body of which this is a part; 0 for a whole body
   std::vector<int> face_contacts{0};     ///< contacts of shared face i: [i] to [i + 1]
 
   std::vector<std::string> material_names;
@@ -74,6 +83,8 @@ struct Model {
   std::map<std::string, std::vector<int>, std::less<>> contact_sets;  ///< contacts of each set, by name
 
   std::vector<PlaneOfSymmetry> symmetry;
+
+  std::shared_ptr<const PartOfBody> part;  ///< null for a whole body
 
   virtual int dimension() const = 0;  ///< Returns 2 or 3.
   /// Returns the place of a gridpoint in the reference configuration, m.
@@ -98,7 +109,7 @@ struct Model {
   }
 
   // The next functions return the chunks of the lists of blocks, gridpoints and zones.
-  ChunkList chunks() const { return ChunkList(chunk_blocks, foreign_chunks); }
+  ChunkList chunks() const;
   ChunkList gridpoint_chunks() const { return chunks_of(block_gridpoints); }
   ChunkList zone_chunks() const { return chunks_of(block_zones); }
 
@@ -107,7 +118,9 @@ struct Model {
   int gridpoint_count() const { return block_gridpoints.back(); }
   int zone_count() const { return block_zones.back(); }
   /// Returns the zones of the whole body, also of a part of it.
-  int whole_zone_count() const { return zones_of_whole > 0 ? zones_of_whole : zone_count(); }
+  int whole_zone_count() const { return part ? part->zones_of_whole : zone_count(); }
+  /// Returns the ranks that hold the body.
+  Ranks& ranks() const { return part ? *part->ranks : one_rank(); }
   int contact_count() const { return face_contacts.back(); }
   int face_count() const { return static_cast<int>(face_contacts.size()) - 1; }
 
@@ -169,8 +182,10 @@ inline constexpr int kBlocksOfAChunk = 1024;
 struct GridpointSet {
   std::vector<int> gridpoints;
   ChunkList chunks;
+  int whole_count = 0;  ///< gridpoints of the set in the whole body
 };
 
+/// Makes a set: a collective.
 GridpointSet gridpoint_set(const Model& model, std::vector<int> gridpoints);
 
 /// Contacts of a body chunk by chunk: a contact between two chunks belongs to the earlier one.

@@ -486,21 +486,23 @@ DeckSchema deck_schema(const StageRegistry& kinds) {
   return survey_deck([&](const Deck& deck) { read_setup(deck, {}, kinds); });
 }
 
-std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team,
+                                            std::shared_ptr<Ranks> ranks) {
   if (!team) team = std::make_shared<Team>();
   MadeSpecimen specimen = make_checked_specimen(setup.specimen, team.get(), !setup.heat.uniform);
-  return make_simulation(setup, std::move(specimen), std::move(team));
+  return make_simulation(setup, std::move(specimen), std::move(team), std::move(ranks));
 }
 
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen specimen,
-                                            std::shared_ptr<Team> team) {
+                                            std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks) {
   if (!team) team = std::make_shared<Team>();
   if (phases(specimen) != specimen::phases(setup.specimen))
     throw Error(fmt::format("the specimen's phases are {}, but the deck has {}",
                             fmt::join(phases(specimen), ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.block_materials, setup.sets,
-                                      setup.heat, setup.probes, setup.records, setup.moving, std::move(team));
+                                      setup.heat, setup.probes, setup.records, setup.moving, std::move(team),
+                                      std::move(ranks));
 }
 
 double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts) {

@@ -69,12 +69,15 @@ DeckSchema deck_schema(const StageRegistry& kinds = {});
 
 /// Makes specimen, model, field and mechanics. Throws Error when they cannot be made, see Simulation and
 /// make_checked_specimen.
-/// \param team  threads of the run; without a team the calling thread works alone
-std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr);
+/// \param team   threads of the run; without a team the calling thread works alone
+/// \param ranks  ranks that hold the body, each of which calls this; null: one
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr,
+                                            std::shared_ptr<Ranks> ranks = nullptr);
 /// Makes model, field and mechanics of a specimen that is made already. It has the phases of the deck, and
 /// the sides that the deck names.
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen specimen,
-                                            std::shared_ptr<Team> team = nullptr);
+                                            std::shared_ptr<Team> team = nullptr,
+                                            std::shared_ptr<Ranks> ranks = nullptr);
 
 /// Returns the block size that a deck foresees, m; where the tessellation is read from a file, the size at
 /// which t_b holds.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/part.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
 
 namespace pyroclast {
@@ -46,6 +47,42 @@ std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
   return model;
 }
 
+/// Returns the part of a body that this rank holds; the whole body where there is one rank.
+std::unique_ptr<Model> part(std::unique_ptr<Model> whole, std::shared_ptr<Ranks> ranks,
+                            const HeatConditions& heat, const std::vector<BlockMaterial>& block_materials) {
+  if (!ranks || ranks->count() == 1) return whole;
+  std::vector<int> nodes;
+  if (!heat.uniform) {
+    std::vector<bool> conducts;
+    for (const BlockMaterial& material : block_materials) conducts.push_back(!material.is_of_bearing);
+    nodes = with_dimension(*whole, [&](const auto& of_dimension) {
+      return join_through_contacts(of_dimension, conducts).of_gridpoint;
+    });
+  }
+  return part_of(*whole, std::move(ranks), nodes);
+}
+
+/// Returns the gap of each contact of a part as its owner has it: a part has contacts between foreign blocks,
+/// which do not move here.
+std::vector<ContactGap> of_owners(const Model& part, const std::vector<ContactGap>& gaps) {
+  struct OfContact {
+    int contact;
+    ContactGap gap;
+  };
+  std::vector<OfContact> own;
+  const ContactsByChunk by_chunk = contacts_by_chunk(part);
+  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i) {
+    const int contact = by_chunk.contacts[i];
+    own.push_back({part.part->contact[contact], gaps[contact]});
+  }
+  auto all = part.ranks().collect(own);
+  std::ranges::sort(all, {}, &OfContact::contact);
+  std::vector<ContactGap> result;
+  for (const int contact : part.part->contact)
+    result.push_back(std::ranges::lower_bound(all, contact, {}, &OfContact::contact)->gap);
+  return result;
+}
+
 SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<BlockMaterial>& block_materials) {
   if (numbers.fraction.size() > block_materials.size())
     throw Error(fmt::format("the specimen has shares of {} phases, but there are {} materials of blocks",
@@ -77,18 +114,19 @@ Simulation::Simulation(MadeSpecimen specimen, double thickness,
                        const std::vector<BlockMaterial>& block_materials,
                        const std::vector<SetParameters>& sets, const HeatConditions& heat,
                        const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-                       const std::optional<MovingBody>& moving, std::shared_ptr<Team> team)
+                       const std::optional<MovingBody>& moving, std::shared_ptr<Team> team,
+                       std::shared_ptr<Ranks> ranks)
     : Simulation(make_body(specimen, thickness, sets, moving), block_materials, heat, probes, records, moving,
-                 std::move(team)) {
+                 std::move(team), std::move(ranks)) {
   specimen_ = std::move(specimen);
 }
 
 Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& block_materials,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
                        const std::vector<RecordParameters>& records, const std::optional<MovingBody>& moving,
-                       std::shared_ptr<Team> team)
+                       std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
-      model_(required(std::move(body.model))),
+      model_(part(required(std::move(body.model)), std::move(ranks), heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
@@ -163,7 +201,10 @@ const char* Simulation::coupling_of_heat() const {
 }
 
 void Simulation::show_cracks_to_heat() {
-  if (cracks_hinder_heat()) field_.set_gaps(contact_gaps(*model_, heat_.cracks->gaps, motion_.get()));
+  if (!cracks_hinder_heat()) return;
+  auto gaps = contact_gaps(*model_, heat_.cracks->gaps, motion_.get());
+  if (model_->ranks().count() > 1) gaps = of_owners(*model_, gaps);
+  field_.set_gaps(std::move(gaps));
 }
 
 void Simulation::set_materials(ConcreteMaterials materials) {
@@ -215,27 +256,43 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
                         int axis) {
   const auto volumes = model.zone_volumes();
   const auto blocks = zone_blocks(model);
-  double volume = 0.0, compliance = 0.0;
-  for (int z = 0; z < model.zone_count(); ++z) {
-    if (model.is_of_bearing(blocks[z])) continue;
-    volume += volumes[z];
-    compliance += volumes[z] / materials.block_materials[model.block_material[blocks[z]]].young(temperature);
-  }
-  for (int i = 0; i < model.contact_count(); ++i) {
-    const Joint& c = model.joint(i);
+  struct ShareOfItem {
+    int number;  // of the zone or contact in the whole
+    double volume, compliance;
+  };
+  std::vector<ShareOfItem> of_zones, of_contacts;
+  for (auto [z, last] = model.zone_chunks().own(); z < last; ++z)
+    if (!model.is_of_bearing(blocks[z])) {
+      const BlockMaterial& material = materials.block_materials[model.block_material[blocks[z]]];
+      of_zones.push_back({z, volumes[z], volumes[z] / material.young(temperature)});
+    }
+  const ContactsByChunk by_chunk = contacts_by_chunk(model);
+  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i) {
+    const int number = by_chunk.contacts[i];
+    const Joint& c = model.joint(number);
     if (model.is_of_bearing(c)) continue;
     const ContactMaterial& contact = materials.contacts[c.interface];
     auto k = contact.at(temperature).stiffness();
     const double factor = contact.stiffness_between(c.block_size);
     k.normal *= factor;
     k.shear *= factor;
-    const Vec<3> n = model.normal(i);
+    const Vec<3> n = model.normal(number);
     const double normal = n[axis] * n[axis];  // traction over stress, along the normal
     double tangential = 0.0;                  // and along the face, squared
     for (int other = 0; other < 3; ++other)
       if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
-    compliance += c.area * (normal * normal / k.normal + tangential / k.shear);
+    of_contacts.push_back({model.part ? model.part->contact[number] : number, 0.0,
+                           c.area * (normal * normal / k.normal + tangential / k.shear)});
   }
+  of_zones = model.ranks().collect(of_zones);
+  of_contacts = model.ranks().collect(of_contacts);
+  std::ranges::sort(of_contacts, {}, &ShareOfItem::number);
+  double volume = 0.0, compliance = 0.0;
+  for (const auto* shares : {&of_zones, &of_contacts})
+    for (const ShareOfItem& share : *shares) {
+      volume += share.volume;
+      compliance += share.compliance;
+    }
   return volume / compliance;
 }
 

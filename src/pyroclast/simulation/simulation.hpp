@@ -43,18 +43,21 @@ class Simulation {
   /// \param records       records; those of motion only where something moves
   /// \param moving        empty where nothing moves: then there are no platens and no mechanics
   /// \param team          threads of the run
+  /// \param ranks         ranks that hold the body, each of which makes a simulation; null: one
   ///
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
   /// probe lies outside.
   Simulation(MadeSpecimen specimen, double thickness, const std::vector<BlockMaterial>& block_materials,
              const std::vector<SetParameters>& sets, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team);
+             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team,
+             std::shared_ptr<Ranks> ranks = nullptr);
   /// Takes a body that was made elsewhere. Its model has the bearings, interfaces and chunks already, so
   /// those of `moving` are not used. Throws Error as above, and for a body that is none.
   Simulation(SpecimenBody body, const std::vector<BlockMaterial>& block_materials, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
-             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team);
+             const std::optional<MovingBody>& moving, std::shared_ptr<Team> team,
+             std::shared_ptr<Ranks> ranks = nullptr);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

@@ -89,13 +89,14 @@ std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& sha
 /// Returns the strictest step of all nodes. By Gershgorin's theorem no rate of decay exceeds the largest row
 /// sum over capacity.
 template <class Capacity>
-HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity capacity) {
+HeatStepLimit strictest(const std::vector<double>& rows, double safety, const ChunkList& nodes,
+                        Capacity capacity) {
   HeatStepLimit limit{std::numeric_limits<double>::infinity(), 0};
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    const int node = static_cast<int>(n);
-    const double step = safety * 2.0 * capacity(node) / rows[n];
+  for (auto [node, last] = nodes.own(); node < last; ++node) {
+    const double step = safety * 2.0 * capacity(node) / rows[node];
     if (step < limit.step) limit = {step, node};
   }
+  limit.step = nodes.ranks().least(limit.step);
   return limit;
 }
 
@@ -119,7 +120,8 @@ Conduction<Dim>::Conduction(const ModelOf<Dim>& model,
       prescriptions_(model.position.size()) {
   if (parameters_.gaps) gaps_.emplace(model, conducts_, *parameters_.gaps, grid_, *team_);
   set_nodes(join_through_contacts(model, conducts_));
-  if (nodes_.count() == 0) throw Error("heat conduction: no block is of a material that conducts heat");
+  if (!model.ranks().any(nodes_.count() > 0))
+    throw Error("heat conduction: no block is of a material that conducts heat");
   state_.temperature_range = parameters.temperature_range;
   set_uniform_temperature(parameters.initial_temperature);
 }
@@ -136,6 +138,7 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   store_ = NodeEnthalpy(grid_, tables_, shares);
   volume_ = total_volumes(shares);
   node_chunks_ = model_.gridpoint_chunks().of_some(nodes_.gridpoint);
+  halo_ = NodeHalo(model_, nodes_, node_chunks_);
   total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
   for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_})
     field->assign(volume_.size(), 0.0);
@@ -150,9 +153,10 @@ template <int Dim>
 void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
   if (!gaps_) throw Error("heat conduction: nothing says how heat crosses gaps");
   drop_trial();
-  if (!gaps_->set_gaps(std::move(gaps), gridpoint_temperatures(grid_.range().lower))) return;
+  const bool changes = gaps_->set_gaps(std::move(gaps), gridpoint_temperatures(grid_.range().lower));
+  if (!model_.ranks().any(changes)) return;
   auto nodes = join_through_contacts(model_, conducts_, gaps_->parts());
-  if (nodes.of_gridpoint != nodes_.of_gridpoint) move_heat_to(std::move(nodes));
+  if (model_.ranks().any(nodes.of_gridpoint != nodes_.of_gridpoint)) move_heat_to(std::move(nodes));
 }
 
 /// Moves the heat to other nodes: each gridpoint takes its share of its node's heat along. Heat that waits at
@@ -160,6 +164,7 @@ void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
 template <int Dim>
 void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
   constexpr int kNone = -1, kSeveral = -2;
+  halo_.spread(state_.enthalpy);  // an own node may have been a foreign one
   const ThermalNodes before = nodes_;
   const HeatState was = state_;
   const auto shares = gridpoint_shares();
@@ -193,6 +198,7 @@ void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
     state_.temperature[node] = was.temperature[old];
     if (size[node] == size_before[old]) state_.enthalpy[node] = was.enthalpy[old];
   }
+  halo_.spread(state_.temperature);  // of a foreign node a part may lack gridpoints
 }
 
 /// Returns the share of each gridpoint: an equal part of every zone, all of the material of its block.
@@ -263,7 +269,7 @@ void Conduction<Dim>::widen_temperature_range(const Interval& range) {
   const Interval wider{std::min(present.lower, range.lower), std::max(present.upper, range.upper)};
   if (wider == present) return;
   std::vector<int> waiting;  // nodes whose heat beyond the present range now comes to where it belongs
-  for (int node = 0; node < nodes_.count(); ++node)
+  for (auto [node, last] = node_chunks_.own(); node < last; ++node)
     if (excess(node, state_.temperature[node], state_.enthalpy[node]) != 0.0) waiting.push_back(node);
   grid_ = TemperatureGrid(wider);
   for (auto& table : tables_) table.extend(grid_);
@@ -272,6 +278,7 @@ void Conduction<Dim>::widen_temperature_range(const Interval& range) {
   state_.temperature_range = wider;
   for (int node : waiting)
     state_.temperature[node] = store_.temperature(node, state_.enthalpy[node], state_.temperature[node]);
+  halo_.spread(state_.temperature);
 }
 
 template <int Dim>
@@ -291,6 +298,7 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
   state_.ledger = {};
   state_.bounds = nothing();
   for (const double t : temperature) include(state_.bounds, t);
+  state_.bounds = {model_.ranks().least(state_.bounds.lower), model_.ranks().largest(state_.bounds.upper)};
   state_.limits = false;
 }
 
@@ -371,6 +379,7 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
       if (stages <= 0) return false;
       run_stage(trial_.stages[trial_.next_stage]);
     }
+    agree_on_trial();
     const bool smallest = trial_.step <= safe_step_;
     const double half = std::max(0.5 * trial_.step, safe_step_);
     if (!smallest && trial_.change > parameters_.largest_change) {
@@ -388,6 +397,19 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
   accept_trial();
   if (trial_.step == remaining) state_.time = end;
   return true;
+}
+
+/// Takes the largest changes of all ranks for those of the trial.
+template <int Dim>
+void Conduction<Dim>::agree_on_trial() {
+  if (model_.ranks().count() == 1) return;
+  for (const auto& [change, below, above, left_out] : model_.ranks().collect(
+           std::vector{std::array{trial_.change, trial_.below, trial_.above, trial_.left_out}})) {
+    trial_.change = std::max(trial_.change, change);
+    trial_.below = std::max(trial_.below, below);
+    trial_.above = std::max(trial_.above, above);
+    trial_.left_out = std::max(trial_.left_out, left_out);
+  }
 }
 
 /// Returns the scheme of a trial. With limits that is forward Euler, which oversteps no bounds, where they
@@ -447,12 +469,14 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
 /// and beyond the temperatures that act on it from outside.
 template <int Dim>
 void Conduction<Dim>::limit_flows(double time) {
+  const auto [first_own, last_own] = node_chunks_.own();
   std::fill(reach_.begin(), reach_.end(), nothing());
   boundary_.add_reach(time, reach_);
   const auto share = [](double room, double heat) { return heat <= room ? 1.0 : std::max(room, 0.0) / heat; };
   team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (int node = static_cast<int>(begin); node < end; ++node) {
       shares_[node] = {1.0, 1.0};
+      if (node < first_own || node >= last_own) continue;
       const auto uphill = zones_.uphill(node);
       if (prescriptions_.hold(node) || (uphill.in == 0.0 && uphill.out == 0.0)) continue;
       const double temperature = trial_.temperature[node];
@@ -472,6 +496,7 @@ void Conduction<Dim>::limit_flows(double time) {
     }
   });
   const auto capacity = [&](int node) { return store_.least_capacity(node, trial_.temperature[node]); };
+  halo_.spread(shares_);
   trial_.left_out = std::max(trial_.left_out, zones_.add_uphill(shares_, capacity));
 }
 
@@ -481,8 +506,9 @@ bool Conduction<Dim>::oversteps() {
   std::fill(reach_.begin(), reach_.end(), nothing());
   for (const double t : {time(), time() + trial_.step}) boundary_.add_reach(t, reach_);
   std::atomic<bool> found{false};
-  team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (int node = static_cast<int>(begin); node < end && !found; ++node) {
+  const auto [first_own, last_own] = node_chunks_.own();
+  team_->share(last_own - first_own, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (int node = first_own + static_cast<int>(begin); node < first_own + end && !found; ++node) {
       if (prescriptions_.hold(node)) continue;
       const double heat = state_.enthalpy[node];
       const double before = state_.temperature[node] + excess(node, state_.temperature[node], heat);
@@ -498,7 +524,7 @@ bool Conduction<Dim>::oversteps() {
       if (now < range.lower - kAllowedBeyond || now > range.upper + kAllowedBeyond) found = true;
     }
   });
-  return found;
+  return model_.ranks().any(found);
 }
 
 /// Returns how far beyond the range a node at one of its ends would be, K, see NodeEnthalpy; 0 for other
@@ -513,9 +539,10 @@ template <int Dim>
 void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   const bool first = stage.begin == 0.0;
   std::atomic<double> largest_change{trial_.change}, most_below{0.0}, most_above{0.0};
-  team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const auto [first_own, last_own] = node_chunks_.own();
+  team_->share(last_own - first_own, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double change = 0.0, below = 0.0, above = 0.0;
-    for (int node = static_cast<int>(begin); node < end; ++node) {
+    for (int node = first_own + static_cast<int>(begin); node < first_own + end; ++node) {
       const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
       double& temperature = trial_.temperature[node];
       double increment;
@@ -544,6 +571,7 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   trial_.change = largest_change;
   trial_.below = most_below;
   trial_.above = most_above;
+  halo_.spread(trial_.temperature);
 }
 
 template <int Dim>
@@ -576,7 +604,7 @@ void Conduction<Dim>::accept_trial() {
 template <int Dim>
 double Conduction<Dim>::trial_change() const {
   double largest = 0.0;
-  for (int node = 0; node < nodes_.count(); ++node)
+  for (auto [node, last] = node_chunks_.own(); node < last; ++node)
     if (!prescriptions_.hold(node))
       largest = std::max(largest, std::abs(trial_.temperature[node] - state_.temperature[node]));
   const auto& held = prescriptions_.nodes();
@@ -585,7 +613,7 @@ double Conduction<Dim>::trial_change() const {
     const double start = before_run_.holds ? before_run_.temperature[i] : state_.temperature[node];
     largest = std::max(largest, std::abs(trial_.temperature[node] - start));
   }
-  return largest;
+  return model_.ranks().largest(largest);
 }
 
 /// Chooses the next step so that the largest change stays a little below what is allowed.
@@ -640,10 +668,12 @@ HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_bound
   for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
   boundary_.add_slope(time(), time() + step, hottest, weight_of_boundary, rows);
   if (gaps_) {
-    const double coldest = *std::ranges::min_element(state_.temperature) - parameters_.largest_change;
-    gaps_->add_row_bound(std::max(coldest, grid_.range().lower), hottest, rows);
+    const double coldest = model_.ranks().least(*std::ranges::min_element(state_.temperature));
+    gaps_->add_row_bound({std::max(coldest - parameters_.largest_change, grid_.range().lower),
+                          model_.ranks().largest(*std::ranges::max_element(hottest))},
+                         hottest, rows);
   }
-  return strictest(rows, parameters_.safety,
+  return strictest(rows, parameters_.safety, node_chunks_,
                    [&](int node) { return store_.least_capacity(node, state_.temperature[node]); });
 }
 
@@ -653,8 +683,9 @@ HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();
   const std::vector<double> hottest(rows.size(), grid_.range().upper);
   boundary_.add_slope(time(), end, hottest, 1.0, rows);
-  if (gaps_) gaps_->add_row_bound(grid_.range().lower, hottest, rows);
-  return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
+  if (gaps_) gaps_->add_row_bound(grid_.range(), hottest, rows);
+  return strictest(rows, parameters_.safety, node_chunks_,
+                   [&](int node) { return store_.least_capacity(node); });
 }
 
 template <int Dim>

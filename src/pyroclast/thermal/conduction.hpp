@@ -12,6 +12,7 @@
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
 #include "pyroclast/thermal/heat_solver.hpp"
+#include "pyroclast/thermal/node_halo.hpp"
 #include "pyroclast/thermal/prescriptions.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
@@ -225,6 +226,7 @@ class Conduction final : public HeatSolver {
   void begin_run(double end);
   bool continue_step(double end, std::int64_t& stages);
   void begin_trial(double step, Limits limits);
+  void agree_on_trial();
   bool oversteps();
   void limit_flows(double time);
   HeatScheme trial_scheme(Limits limits, double ratio) const;
@@ -263,6 +265,7 @@ class Conduction final : public HeatSolver {
   NodeEnthalpy store_;
   std::vector<double> volume_;  ///< volume of each node, m³
   ChunkList node_chunks_;
+  NodeHalo halo_;
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;

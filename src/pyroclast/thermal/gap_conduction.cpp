@@ -166,10 +166,10 @@ void GapConduction<Dim>::add_around(int node, const std::vector<double>& tempera
 }
 
 template <int Dim>
-void GapConduction<Dim>::add_row_bound(double coldest, const std::vector<double>& hottest,
+void GapConduction<Dim>::add_row_bound(const Interval& temperatures, const std::vector<double>& hottest,
                                        std::vector<double>& rows) const {
   if (crossings_.empty()) return;
-  const double gas = greatest_gas(coldest, *std::ranges::max_element(hottest));
+  const double gas = greatest_gas(temperatures.lower, temperatures.upper);
   for (const Crossing& x : crossings_) {
     const double steepest = model_.contacts[x.contact].area *
                             law_.steepest(gaps_[x.contact], gas, std::max(hottest[x.a], hottest[x.b]));

@@ -51,9 +51,10 @@ class GapConduction {
   void add_around(int node, const std::vector<double>& temperature, Interval& range) const;
 
   /// Adds to each node a bound of the sum of |conductance| over its row of the assembled matrix, W/K.
-  /// \param coldest  bound of all temperatures, °C
-  /// \param hottest  bound of each node's temperature, °C
-  void add_row_bound(double coldest, const std::vector<double>& hottest, std::vector<double>& rows) const;
+  /// \param temperatures  bounds of all temperatures, °C
+  /// \param hottest       bound of each node's temperature, °C
+  void add_row_bound(const Interval& temperatures, const std::vector<double>& hottest,
+                     std::vector<double>& rows) const;
 
   /// Returns the conductance of each contact, W/(m² K), at temperatures of the gridpoints, °C; 0 where the
   /// contact is closed to heat.

@@ -25,6 +25,10 @@ void Prescriptions::set_nodes(const ThermalNodes& nodes, const ChunkList& chunks
   for (int node = 0; node < nodes.count(); ++node)
     if (hold(node)) nodes_.push_back(node);
   chunks_ = chunks.of_some(nodes_);
+  acting_.clear();
+  for (int i = 0; i < static_cast<int>(curves_.size()); ++i)
+    if (chunks.ranks().any(std::ranges::any_of(nodes_, [&](int node) { return of_node_[node] == i; })))
+      acting_.push_back(i);
 }
 
 void Prescriptions::read(double time, const Interval& range) {
@@ -47,10 +51,7 @@ void Prescriptions::require_within(const Interval& range, double begin, double e
 
 Interval Prescriptions::reach(double begin, double end) const {
   Interval reach = nothing();
-  for (const int node : nodes_) {
-    const Curve& curve = curves_[of_node_[node]];
-    include(reach, {curve.minimum(begin, end), curve.maximum(begin, end)});
-  }
+  for (const int i : acting_) include(reach, {curves_[i].minimum(begin, end), curves_[i].maximum(begin, end)});
   return reach;
 }
 

@@ -17,7 +17,7 @@ class Prescriptions {
   /// Prescribes a temperature (°C, over the time in s) to gridpoints, and so to nodes once they are set.
   /// Throws Error when the curve is not one of time.
   void add(const std::vector<int>& gridpoints, const Curve& temperature);
-  /// Finds the prescription of each node.
+  /// Finds the prescription of each node: a collective.
   void set_nodes(const ThermalNodes& nodes, const ChunkList& chunks);
 
   /// Reads the temperatures at a time, s; they miss the range by rounding at most.
@@ -43,6 +43,7 @@ class Prescriptions {
   std::vector<double> held_at_;              ///< temperatures by curve, °C
   std::vector<int> of_gridpoint_, of_node_;  ///< index of the curve, -1: free
   std::vector<int> nodes_;
+  std::vector<int> acting_;  ///< indices of the curves that hold a node, on any rank
   ChunkList chunks_;
 };
 

@@ -125,7 +125,7 @@ bool TemperatureField::advance(std::int64_t stages) {
     const double foreseen = fastest_ > 0.0 ? now + (largest_change - change) / fastest_ : until;
     if (!conduction_->advance_step(foreseen > now ? std::min(foreseen, until) : until, stages)) return false;
     fastest_ = conduction_->largest_change() / (conduction_->time() - now);
-    advance_.change = largest_difference(begin, conduction_->temperature());
+    advance_.change = model_.ranks().largest(largest_difference(begin, conduction_->temperature()));
     if (conduction_->rate() < steady_rate) break;
     if (stages == 0) return false;
   }
@@ -186,6 +186,8 @@ void TemperatureField::update() {
     minimum_ = std::min(minimum_, gridpoints_[g]);
     maximum_ = std::max(maximum_, gridpoints_[g]);
   }
+  minimum_ = model_.ranks().least(minimum_);
+  maximum_ = model_.ranks().largest(maximum_);
   if (is_uniform()) mean_ = minimum_;  // without the rounding of a mean
 }
 

@@ -13,7 +13,10 @@ ZoneConduction<Dim>::ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometr
                                     const std::vector<int>& table_of_material,
                                     const std::vector<HeatTable>& tables, Team& team)
     : tables_(tables), team_(team) {
+  const auto [first_own, last_own] = model.chunks().own();
   for (int b = 0; b < model.block_count(); ++b) {
+    if (b == first_own) own_begin_ = zone_count();
+    if (b == last_own) own_end_ = zone_count();
     const int table = table_of_material[model.block_material[b]];
     if (table < 0) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
@@ -27,6 +30,7 @@ ZoneConduction<Dim>::ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometr
       row_.push_back(row);
     }
   }
+  if (last_own == model.block_count()) own_end_ = zone_count();
   heat_.resize(zones_.size());
   uphill_.resize(zones_.size());
 }

@@ -107,6 +107,7 @@ class ZoneConduction {
   Team& team_;
   int node_count_ = 0;
   std::vector<Zone> zones_;
+  int own_begin_ = 0, own_end_ = 0;  ///< zones of own chunks; nodes of others may lack zones here
   std::vector<std::array<int, Dim + 1>> gridpoints_;  ///< gridpoints of each zone
   std::vector<std::array<double, Dim + 1>> row_;      ///< sums of |conductance| at unit conductivity, m
   std::vector<std::array<double, Dim + 1>> heat_;     ///< heat into each corner, W
@@ -154,7 +155,7 @@ double ZoneConduction<Dim>::add_uphill(const std::vector<Uphill>& shares, Capaci
             flow > 0.0 ? std::min(shares[a].in, shares[b].out) : std::min(shares[a].out, shares[b].in);
         heat_[z][i] += share * flow;
         heat_[z][j] -= share * flow;
-        if (share < 1.0)
+        if (share < 1.0 && z >= own_begin_ && z < own_end_)
           most = std::max(most, (1.0 - share) * std::abs(flow) / std::min(capacity(a), capacity(b)));
       });
     }

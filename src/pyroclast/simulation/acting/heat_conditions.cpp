@@ -100,6 +100,10 @@ Box<Dim> bounding_box(const std::vector<OutlineFace<Dim>>& outline, const ModelO
         box.low[d] = std::min(box.low[d], model.position[g][d]);
         box.high[d] = std::max(box.high[d], model.position[g][d]);
       }
+  for (int d = 0; d < Dim; ++d) {
+    box.low[d] = model.ranks().least(box.low[d]);
+    box.high[d] = model.ranks().largest(box.high[d]);
+  }
   return box;
 }
 
@@ -126,7 +130,7 @@ std::vector<int> choose_faces(const ModelOf<Dim>& model, const std::vector<Outli
   }
   const auto low = resized<Dim>(faces.box_low), high = resized<Dim>(faces.box_high);
   auto chosen = chosen_by(in_box<Dim>(low - slack, high + slack));
-  if (chosen.empty())
+  if (!model.ranks().any(!chosen.empty()))
     throw Error(fmt::format(
         "no face of the outline has its centre in the box from ({:g}) to ({:g}) m; the specimen lies from "
         "({:g}) to ({:g}) m",
@@ -251,7 +255,7 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
   for (const auto& boundary : heat.boundaries) {
     try {
       const auto faces = choose_faces(model, conduction->outline(), boundary.faces, specimen);
-      if (faces.empty())
+      if (!model.ranks().any(!faces.empty()))
         throw Error(fmt::format(
             "has no effect: no face of the outline lies wholly in \"{}\"; a face of the outline meets "
             "no other block",

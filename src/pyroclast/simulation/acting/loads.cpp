@@ -37,8 +37,7 @@ Loads::Entry& Loads::entry(const std::string& set) {
   entry.faces = faces_in(model, gridpoints);
   entry.shares = tributary_areas(gridpoints, entry.faces);
   const double whole = chunked_sum(entry.set.chunks, [&](int i) { return entry.shares[i]; });
-  for (double& share : entry.shares)
-    share = whole > 0.0 ? share / whole : 1.0 / static_cast<double>(gridpoints.size());
+  for (double& share : entry.shares) share = whole > 0.0 ? share / whole : 1.0 / entry.set.whole_count;
   Entry& added = entries_.emplace(set, std::move(entry)).first->second;
   list_loaded();
   return added;
@@ -86,7 +85,7 @@ void Loads::set(const std::map<std::string, SetLoad>& loads) {
     for (int i = motion_.model().dimension(); i < 3; ++i)
       if (load.force[i] != 0.0)
         throw Error(fmt::format("a force on set \"{}\" acts across the plane of this body", set));
-    if (load.pressure != 0.0 && changed.faces.empty())
+    if (load.pressure != 0.0 && !motion_.model().ranks().any(!changed.faces.empty()))
       throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
   }
   for (const auto& [set, load] : loads) entry(set).load = load;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -102,6 +103,11 @@ Press::Press(Motion& motion, Specimen between)
   for (std::size_t d = 0; d < across_.size(); ++d)
     for (const auto& side : between_.sides[d])
       summed_.emplace(side, gridpoint_set(motion_.model(), set(side)));
+  const GridpointSet& bottom = summed("bottom");
+  std::vector<double> heights;
+  if (const auto [first, last] = bottom.chunks.own(); first < last)
+    heights.push_back(motion_.model().place(bottom.gridpoints[first])[between_.axis]);
+  bottom_ = motion_.model().ranks().collect(heights).at(0);
   for (int g : set("bottom_platen_support"))
     for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))
@@ -135,10 +141,10 @@ void Press::move_platen(double velocity) {
 
 void Press::hold(double stress) {
   const double force = stress * between_.area;
-  const auto& support = set("top_platen_support");
+  const GridpointSet& support = summed("top_platen_support");
   Vec<3> share{};
-  share[between_.axis] = -force / static_cast<double>(support.size());
-  for (int g : support) motion_.constraints().apply_force(g, share);
+  share[between_.axis] = -force / support.whole_count;
+  for (int g : support.gridpoints) motion_.constraints().apply_force(g, share);
   kept_.stress_held = stress;
 }
 
@@ -168,9 +174,13 @@ double Press::rise_of_stand(std::size_t direction) const {
     double across, up;  // position across the axis, and displacement along it
   };
   std::vector<Point> points;
-  for (int g : set("bottom"))
+  const GridpointSet& bottom = summed("bottom");
+  for (auto [i, last] = bottom.chunks.own(); i < last; ++i) {
+    const int g = bottom.gridpoints[i];
     points.push_back(
         {motion_.model().place(g)[across_[direction]], motion_.read().displacement(g)[between_.axis]});
+  }
+  points = motion_.model().ranks().collect(points);
   std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.across, p.up); });
   const auto turns_left = [](const Point& a, const Point& b, const Point& c) {
     return (b.across - a.across) * (c.up - b.up) - (b.up - a.up) * (c.across - b.across) > 0.0;
@@ -192,15 +202,19 @@ double Press::rise_of_stand(std::size_t direction) const {
 /// points.
 std::array<double, 2> Press::slopes_of_stand() const {
   std::vector<StandingPoint> points;
-  Vec<2> low{}, high{};
-  for (int g : set("bottom")) {
+  const GridpointSet& bottom = summed("bottom");
+  for (auto [i, last] = bottom.chunks.own(); i < last; ++i) {
+    const int g = bottom.gridpoints[i];
     const Vec<3> at = motion_.model().place(g);
     points.push_back({{{at[across_[0]], at[across_[1]]}}, motion_.read().displacement(g)[between_.axis]});
-    for (int d : {0, 1}) {
-      low[d] = points.size() == 1 ? points.back().across[d] : std::min(low[d], points.back().across[d]);
-      high[d] = points.size() == 1 ? points.back().across[d] : std::max(high[d], points.back().across[d]);
-    }
   }
+  points = motion_.model().ranks().collect(points);
+  Vec<2> low = points.front().across, high = low;
+  for (const StandingPoint& point : points)
+    for (int d : {0, 1}) {
+      low[d] = std::min(low[d], point.across[d]);
+      high[d] = std::max(high[d], point.across[d]);
+    }
   return slopes_under(points, 0.5 * (low + high), norm(high - low));
 }
 
@@ -208,8 +222,14 @@ std::array<double, 2> Press::slopes_of_stand() const {
 /// \param up  function that returns the way of a gridpoint along the axis since the start
 template <class Up>
 Press::Clearances Press::clearances(const Up& up) const {
-  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
-  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
+  constexpr double kFar = std::numeric_limits<double>::infinity();  // of a part without such gridpoints
+  double lowest = kFar, highest = -kFar;
+  const GridpointSet &bottom = summed("bottom"), &top = summed("top");
+  for (auto [i, last] = bottom.chunks.own(); i < last; ++i)
+    lowest = std::min(lowest, up(bottom.gridpoints[i]));
+  for (auto [i, last] = top.chunks.own(); i < last; ++i) highest = std::max(highest, up(top.gridpoints[i]));
+  lowest = motion_.model().ranks().least(lowest);
+  highest = motion_.model().ranks().largest(highest);
   return {lowest - motion_.totals().mean_displacement(summed("bottom_platen_face"))[between_.axis],
           motion_.totals().mean_displacement(summed("top_platen_face"))[between_.axis] - highest};
 }
@@ -315,7 +335,6 @@ double Press::stress_bottom() const {
 
 void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
   const auto& model = motion_.model();
-  const double bottom = model.place(set("bottom").front())[between_.axis];
   const std::array<double, 2> middle = middle_across();
   const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
@@ -323,12 +342,12 @@ void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_foll
     double turned = 0.0;
     for (std::size_t d = 0; d < across_.size(); ++d) {
       turned += motion.tilt[d] * (x[across_[d]] - middle[d]);
-      const double aside = -motion.tilt[d] * (x[between_.axis] - bottom);
+      const double aside = -motion.tilt[d] * (x[between_.axis] - bottom_);
       motion_.constraints().prescribe_velocity(g, across_[d],
                                                rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
     }
     motion_.constraints().prescribe_velocity(
-        g, between_.axis, rate * (motion.axial * (x[between_.axis] - bottom) + motion.lift + turned));
+        g, between_.axis, rate * (motion.axial * (x[between_.axis] - bottom_) + motion.lift + turned));
   }
   if (!platen_follows) return;
   for (int g : set("top_platen"))

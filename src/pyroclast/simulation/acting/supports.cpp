@@ -60,18 +60,28 @@ Supports::Supports(const Model& model) : model_(model), holders_(model.gridpoint
 /// turns count by the size of the body. Motions are free where the equations leave some undetermined.
 std::optional<std::string> Supports::free_motion() const {
   const int dimension = model_.dimension();
+  Ranks& ranks = model_.ranks();
+  const auto [first, last] = model_.gridpoint_chunks().own();
+  const Vec<3> origin = ranks.collect(std::vector{model_.place(first)}).front();
+  struct HeldComponent {
+    Vec<3> place;
+    int component;
+  };
+  std::vector<HeldComponent> all_held;
   double size = 0.0;
-  const Vec<3> origin = model_.place(0);
-  for (int g = 0; g < model_.gridpoint_count(); ++g) size = std::max(size, norm(model_.place(g) - origin));
+  for (int g = first; g < last; ++g) {
+    size = std::max(size, norm(model_.place(g) - origin));
+    for (int c = 0; c < dimension; ++c)
+      if (holders_[g][c] > 0) all_held.push_back({model_.place(g), c});
+  }
+  size = ranks.largest(size);
 
   RigidMotions held(dimension);
   std::array<bool, 3> any{};
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
-    for (int c = 0; c < dimension; ++c)
-      if (holders_[g][c] > 0) {
-        any[c] = true;
-        held.hinder((model_.place(g) - origin) * (1.0 / size), c);
-      }
+  for (const auto& [place, component] : ranks.collect(all_held)) {
+    any[component] = true;
+    held.hinder((place - origin) * (1.0 / size), component);
+  }
   if (held.are_all_hindered()) return std::nullopt;
   std::vector<std::string> along;
   for (int c = 0; c < dimension; ++c)

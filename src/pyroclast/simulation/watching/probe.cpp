@@ -91,7 +91,11 @@ bool holds(const Found& found) {
 
 Probe::Probe(const Model& model, const ProbePosition& at) : name_(at.name) {
   Found found = deepest_zones(model, {at.position}).front();
-  if (!holds(found))
+  ranks_ = &model.ranks();
+  const auto depths = ranks_->collect(std::vector{found.depth});
+  const auto deepest = std::ranges::max_element(depths);  // the first of equals, as in the whole
+  rank_ = static_cast<int>(deepest - depths.begin());
+  if (!(*deepest >= -kOnEdge))
     throw Error(fmt::format("no zone of the specimen holds the point {} m of probe {}",
                             place_text(at.position, model.dimension(), "{:g}"), at.name));
   gridpoints_ = std::move(found.gridpoints);
@@ -113,7 +117,8 @@ std::vector<std::optional<Probe>> Probe::at(const Model& model, const std::vecto
 double Probe::read(const std::vector<double>& gridpoints) const {
   double value = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) value += weights_[i] * gridpoints[gridpoints_[i]];
-  return value;
+  if (ranks_->count() == 1) return value;
+  return ranks_->collect(std::vector{value})[static_cast<std::size_t>(rank_)];
 }
 
 }  // namespace pyroclast

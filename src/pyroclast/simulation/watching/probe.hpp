@@ -25,6 +25,7 @@ class Probe {
 
   const std::string& name() const { return name_; }
 
+  /// Reads the field: a collective.
   /// \param gridpoints  value of each gridpoint
   double read(const std::vector<double>& gridpoints) const;
 
@@ -34,6 +35,8 @@ class Probe {
   std::string name_;
   std::vector<int> gridpoints_;  ///< corners of the zone
   std::vector<double> weights_;  ///< weight of each corner
+  Ranks* ranks_ = &one_rank();
+  int rank_ = 0;  ///< rank that holds the zone
 };
 
 }  // namespace pyroclast

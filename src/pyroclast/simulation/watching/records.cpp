@@ -84,7 +84,7 @@ Record::Record(const Model& model, bool moves, RecordParameters parameters)
   };
   const auto find = [&](const auto& sets, const std::string& name) -> const std::vector<int>& {
     const auto found = sets.find(name);
-    if (found == sets.end() || found->second.empty())
+    if (found == sets.end() || !model.ranks().any(!found->second.empty()))
       fail(fmt::format("is of the set \"{}\", but there is no such set of {}; there are {}", name,
                        is_of_cracks(parameters_.kind) ? "contacts" : "gridpoints", names_of(sets)));
     return found->second;
@@ -111,7 +111,8 @@ Record::Record(const Model& model, bool moves, RecordParameters parameters)
       mean_of_other_ = mean_over(model, chunked(parameters_.other));
     if (parameters_.kind == RecordKind::stress) {
       items_ = zones_in(model, mean_.set.gridpoints);
-      if (items_.empty()) fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
+      if (!model.ranks().any(!items_.empty()))
+        fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
       const auto volume = model.zone_volumes();
       for (int z : items_) size_.push_back(volume[z]);
       chunks_ = model.zone_chunks().of_some(items_);
@@ -131,11 +132,11 @@ Record::Mean Record::mean_over(const Model& model, GridpointSet set) const {
       for (int g : model.gridpoints_of_zone(z))
         mean.weights[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] +=
             volume[z] / (model.dimension() + 1);
-    if (zones.empty()) mean.weights = tributary_areas(gridpoints, faces_in(model, gridpoints));
+    if (!model.ranks().any(!zones.empty()))
+      mean.weights = tributary_areas(gridpoints, faces_in(model, gridpoints));
   }
   const double whole = chunked_sum(mean.set.chunks, [&](int i) { return mean.weights[i]; });
-  for (double& weight : mean.weights)
-    weight = whole > 0.0 ? weight / whole : 1.0 / static_cast<double>(gridpoints.size());
+  for (double& weight : mean.weights) weight = whole > 0.0 ? weight / whole : 1.0 / mean.set.whole_count;
   return mean;
 }
 

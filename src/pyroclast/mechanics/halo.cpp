@@ -1,0 +1,89 @@
+#include "pyroclast/mechanics/halo.hpp"
+
+#include <map>
+#include <set>
+#include <type_traits>
+
+namespace pyroclast {
+
+namespace {
+
+/// Returns a component of a gridpoint's vector in an array by slot or by pack.
+template <int Dim, class Array>
+double& component(Array& array, int slot, int i) {
+  if constexpr (std::is_same_v<std::decay_t<decltype(*array.data())>, VectorPack<Dim>>)
+    return array[slot / kLanes].c[i][slot % kLanes];
+  else
+    return array[slot][i];
+}
+
+/// Calls `f(array)` for the arrays that travel at a moment.
+template <int Dim, class F>
+void for_each_that_travels(StateArrays<Dim, FlatArray>& arrays, Travels travels, F f) {
+  for_each_array(
+      [&](const ArrayInfo& info, auto& array) {
+        using T = std::decay_t<decltype(*array.data())>;
+        if constexpr (std::is_same_v<T, VectorPack<Dim>> || std::is_same_v<T, Vec<Dim>>)
+          if (info.travels == travels) f(array);
+      },
+      arrays);
+}
+
+}  // namespace
+
+template <int Dim>
+Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(model.ranks()) {
+  if (ranks_.count() == 1) return;
+  const ChunkList chunks = model.gridpoint_chunks();
+  std::vector<int> rank_of(model.position.size());
+  for (int c = 0; c < chunks.count(); ++c)
+    for (int g = chunks[c]; g < chunks[c + 1]; ++g) rank_of[g] = model.part->rank_of_chunk[c];
+  struct Gridpoints {
+    std::set<int> own, foreign;  // ascending here as in the whole
+  };
+  std::map<int, Gridpoints> of_rank;
+  const auto add = [&](int own, int foreign) {
+    if (rank_of[own] != ranks_.me() || rank_of[foreign] == ranks_.me()) return;
+    of_rank[rank_of[foreign]].own.insert(own);
+    of_rank[rank_of[foreign]].foreign.insert(foreign);
+  };
+  for (const Contact<Dim>& contact : model.contacts) {
+    add(contact.a, contact.b);
+    add(contact.b, contact.a);
+  }
+  for (const auto& [rank, gridpoints] : of_rank) {
+    Neighbour& neighbour = neighbours_.emplace_back();
+    for (const int g : gridpoints.own) neighbour.sent.push_back(layout.gridpoint_slot[g]);
+    for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);
+    messages_.push_back({rank, {}, {}});
+  }
+}
+
+template <int Dim>
+void Halo<Dim>::exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
+  std::size_t count = 0;
+  for_each_that_travels<Dim>(arrays, travels, [&](auto& /*array*/) { ++count; });
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    auto& [rank, sent, received] = messages_[n];
+    sent.resize(neighbours_[n].sent.size() * Dim * count);
+    received.resize(neighbours_[n].received.size() * Dim * count);
+    auto next = sent.begin();
+    for_each_that_travels<Dim>(arrays, travels, [&](auto& array) {
+      for (const int slot : neighbours_[n].sent)
+        for (int i = 0; i < Dim; ++i) *next++ = component<Dim>(array, slot, i);
+    });
+  }
+  ranks_.exchange(messages_);
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    auto next = messages_[n].received.begin();
+    for_each_that_travels<Dim>(arrays, travels, [&](auto& array) {
+      for (const int slot : neighbours_[n].received)
+        for (int i = 0; i < Dim; ++i) component<Dim>(array, slot, i) = *next++;
+    });
+  }
+}
+
+template class Halo<2>;
+template class Halo<3>;
+
+}  // namespace pyroclast

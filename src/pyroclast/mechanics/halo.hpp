@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/base/ranks.hpp"
+#include "pyroclast/mechanics/state.hpp"
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// Halo of a part of a body: the gridpoints that faces join to gridpoints of other ranks. What contacts read
+/// of them travels: each rank sends its own, and receives those of its neighbours.
+template <int Dim>
+class Halo {
+ public:
+  Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout);
+
+  /// Tells whether no face joins the part to another rank.
+  bool is_empty() const { return neighbours_.empty(); }
+  /// Gives foreign gridpoints the numbers that their owners have.
+  /// \param travels  kind of the arrays that travel now
+  void exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels);
+
+ private:
+  /// Slots of gridpoints whose numbers travel to and from a neighbour, in one order on both ranks.
+  struct Neighbour {
+    std::vector<int> sent, received;
+  };
+
+  Ranks& ranks_;
+  std::vector<Neighbour> neighbours_;
+  std::vector<Message> messages_;  ///< messages by neighbour
+};
+
+extern template class Halo<2>;
+extern template class Halo<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,149 @@
+#include "pyroclast/model/part.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Copies of the whole's named lists those items that stand in the part.
+/// \param here  number in the part of each item, -1 for others
+template <class Sets>
+Sets cut_sets(const Sets& whole, const std::vector<int>& here) {
+  Sets cut;
+  for (const auto& [name, items] : whole) {
+    std::vector<int>& own = cut[name];
+    for (const int item : items)
+      if (here[item] >= 0) own.push_back(here[item]);
+  }
+  return cut;
+}
+
+/// Returns the block of each gridpoint.
+std::vector<int> gridpoint_blocks(const Model& model) {
+  std::vector<int> block(static_cast<std::size_t>(model.gridpoint_count()));
+  for (int b = 0; b < model.block_count(); ++b)
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) block[g] = b;
+  return block;
+}
+
+}  // namespace
+
+std::vector<int> ranks_of_chunks(const Model& whole, int ranks) {
+  const ChunkList zones = whole.zone_chunks();
+  if (ranks > zones.count())
+    throw Error(fmt::format("{} ranks cannot share a body of {} chunks: take {} ranks at most", ranks,
+                            zones.count(), zones.count()));
+  std::vector<int> rank;
+  for (int c = 0; c < zones.count(); ++c) {
+    const std::int64_t twice_the_middle = zones[c] + zones[c + 1];
+    const auto by_zones = static_cast<int>(twice_the_middle * ranks / (2 * std::int64_t{whole.zone_count()}));
+    const int least = std::max(rank.empty() ? 0 : rank.back(), ranks - (zones.count() - c));
+    const int most = rank.empty() ? 0 : rank.back() + 1;  // no rank is passed over
+    rank.push_back(std::clamp(by_zones, least, std::max(least, most)));
+  }
+  return rank;
+}
+
+template <int Dim>
+ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
+                     const std::vector<int>& rank_of_chunk, const std::vector<int>& nodes) {
+  const int me = ranks->me(), blocks = whole.block_count();
+  std::vector<int> chunk_of(static_cast<std::size_t>(blocks));
+  const ChunkList chunks = whole.chunks();
+  for (int c = 0; c < chunks.count(); ++c)
+    for (int b = chunks[c]; b < chunks[c + 1]; ++b) chunk_of[b] = c;
+  const std::vector<int> block_of = gridpoint_blocks(whole);
+  const auto is_own = [&](int gridpoint) { return rank_of_chunk[chunk_of[block_of[gridpoint]]] == me; };
+
+  std::vector<bool> is_in(static_cast<std::size_t>(blocks));
+  for (int b = 0; b < blocks; ++b) is_in[b] = rank_of_chunk[chunk_of[b]] == me;
+  for (const Contact<Dim>& contact : whole.contacts)
+    if (is_own(contact.a) || is_own(contact.b))
+      is_in[block_of[contact.a]] = is_in[block_of[contact.b]] = true;
+  std::vector<bool> is_own_node(nodes.size());
+  for (std::size_t g = 0; g < nodes.size(); ++g)
+    if (nodes[g] >= 0 && is_own(static_cast<int>(g))) is_own_node[nodes[g]] = true;
+  for (std::size_t g = 0; g < nodes.size(); ++g)
+    if (nodes[g] >= 0 && is_own_node[nodes[g]]) is_in[block_of[g]] = true;
+
+  ModelOf<Dim> part;
+  part.thickness = whole.thickness;
+  part.material_names = whole.material_names;
+  part.interface_names = whole.interface_names;
+  part.bearing_materials = whole.bearing_materials;
+  part.bearing_interfaces = whole.bearing_interfaces;
+  part.symmetry = whole.symmetry;
+  part.chunk_blocks.clear();
+  PartOfBody of;
+  of.zones_of_whole = whole.zone_count();
+  std::vector<int> here(whole.position.size(), -1);
+  for (int b = 0; b < blocks; ++b) {
+    if (!is_in[b]) continue;
+    if (of.chunk.empty() || of.chunk.back() != chunk_of[b]) {
+      of.chunk.push_back(chunk_of[b]);
+      of.rank_of_chunk.push_back(rank_of_chunk[chunk_of[b]]);
+      part.chunk_blocks.push_back(part.block_count());
+    }
+    of.block.push_back(b);
+    part.block_material.push_back(whole.block_material[b]);
+    for (int g = whole.block_gridpoints[b]; g < whole.block_gridpoints[b + 1]; ++g) {
+      here[g] = static_cast<int>(of.gridpoint.size());
+      of.gridpoint.push_back(g);
+      part.position.push_back(whole.position[g]);
+    }
+    for (int z = whole.block_zones[b]; z < whole.block_zones[b + 1]; ++z) {
+      of.zone.push_back(z);
+      auto zone = whole.zones[z];
+      for (int& g : zone) g = here[g];
+      part.zones.push_back(zone);
+    }
+    part.block_gridpoints.push_back(static_cast<int>(part.position.size()));
+    part.block_zones.push_back(static_cast<int>(part.zones.size()));
+  }
+  part.chunk_blocks.push_back(part.block_count());
+
+  std::vector<int> contact_here(whole.contacts.size(), -1);
+  for (int f = 0; f < whole.face_count(); ++f) {
+    const Contact<Dim>& first = whole.contacts[whole.face_contacts[f]];
+    if (here[first.a] < 0 || here[first.b] < 0) continue;
+    if (nodes.empty() && !is_own(first.a) && !is_own(first.b)) continue;
+    const int face = part.face_count();
+    for (int c = whole.face_contacts[f]; c < whole.face_contacts[f + 1]; ++c) {
+      Contact<Dim> contact = whole.contacts[c];
+      contact.a = here[contact.a];
+      contact.b = here[contact.b];
+      contact.face = face;
+      contact_here[c] = static_cast<int>(of.contact.size());
+      of.contact.push_back(c);
+      part.contacts.push_back(contact);
+    }
+    part.face_contacts.push_back(static_cast<int>(part.contacts.size()));
+  }
+  part.sets = cut_sets(whole.sets, here);
+  part.contact_sets = cut_sets(whole.contact_sets, contact_here);
+  of.ranks = std::move(ranks);
+  part.part = std::make_shared<const PartOfBody>(std::move(of));
+  return part;
+}
+
+std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
+                               const std::vector<int>& nodes) {
+  const auto rank_of_chunk = ranks_of_chunks(whole, ranks->count());
+  return with_dimension(whole, [&]<int Dim>(const ModelOf<Dim>& of_dimension) -> std::unique_ptr<Model> {
+    return std::make_unique<ModelOf<Dim>>(part_of(of_dimension, ranks, rank_of_chunk, nodes));
+  });
+}
+
+template ModelOf<2> part_of(const ModelOf<2>&, std::shared_ptr<Ranks>, const std::vector<int>&,
+                            const std::vector<int>&);
+template ModelOf<3> part_of(const ModelOf<3>&, std::shared_ptr<Ranks>, const std::vector<int>&,
+                            const std::vector<int>&);
+
+}  // namespace pyroclast

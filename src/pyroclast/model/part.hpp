@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// Shares the chunks of a body out to ranks: runs of chunks with about as many zones each. Returns the rank
+/// of each chunk. Throws Error where there are more ranks than chunks.
+std::vector<int> ranks_of_chunks(const Model& whole, int ranks);
+
+/// Makes the part of a body that a rank holds: its own chunks, and of others the blocks that share a face
+/// with an own one. Sets are cut and stay where they become empty; all else that is not of an item stays as
+/// it is.
+///
+/// \param rank_of_chunk  rank of each chunk of the whole
+/// \param nodes          thermal node of each gridpoint, below 0 for none: blocks at a node of an own block
+///                       then come along, with the faces between foreign blocks. Empty: no heat flows
+template <int Dim>
+ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
+                     const std::vector<int>& rank_of_chunk, const std::vector<int>& nodes = {});
+
+/// Makes the part of a body of either dimension, shared out by ranks_of_chunks.
+std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
+                               const std::vector<int>& nodes = {});
+
+extern template ModelOf<2> part_of(const ModelOf<2>&, std::shared_ptr<Ranks>, const std::vector<int>&,
+                                   const std::vector<int>&);
+extern template ModelOf<3> part_of(const ModelOf<3>&, std::shared_ptr<Ranks>, const std::vector<int>&,
+                                   const std::vector<int>&);
+
+}  // namespace pyroclast
