@@ -26,13 +26,21 @@ struct Left {
   std::map<int, std::vector<double>> contacts;      ///< internal variables and losses
 };
 
-/// Runs a deck to its end on one of several ranks, or alone.
-Left run_on(const std::string& text, const std::shared_ptr<Ranks>& ranks) {
-  Setup setup = read(text);
-  setup.moving->chunk_blocks = kBlocksOfASmallChunk;
+/// Deck to be run, with what makes it small.
+struct Asked {
+  std::string text;
+  int blocks = 0;  ///< blocks, 0: those of the deck
+  std::size_t most_rows = 1000000;
+};
+
+/// Runs a deck on one of several ranks, or alone.
+Left run_on(const Asked& asked, const std::shared_ptr<Ranks>& ranks) {
+  Setup setup = read(asked.text);
+  if (asked.blocks > 0) setup.specimen.blocks.count = asked.blocks;
+  if (setup.moving) setup.moving->chunk_blocks = kBlocksOfASmallChunk;
   const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
   Run run(*simulation, std::move(setup.stages));
-  while (run.next()) {
+  while (run.history().row_count() < asked.most_rows && run.next()) {
   }
   Left left;
   for (const Column& column : run.history().columns()) left.columns.push_back(column.name);
@@ -68,15 +76,15 @@ std::string difference(const Left& a, const Left& b) {
   return a.rows.size() == b.rows.size() ? "" : "another number of rows";
 }
 
-void expect_same_bits(const std::string& text, const std::vector<int>& counts) {
-  const Left alone = run_on(text, nullptr);
-  ASSERT_GT(alone.rows.size(), 5U);
+void expect_same_bits(const Asked& asked, const std::vector<int>& counts) {
+  const Left alone = run_on(asked, nullptr);
+  ASSERT_GT(alone.rows.size(), 3U);
   for (const int count : counts) {
     SCOPED_TRACE(testing::Message() << count << " ranks");
     Left together;
     std::mutex mutex;
     RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
-      Left left = run_on(text, ranks);
+      Left left = run_on(asked, ranks);
       const std::lock_guard lock(mutex);
       EXPECT_EQ(difference(left, alone), "") << "rank " << ranks->me();
       together.gridpoints.merge(left.gridpoints);
@@ -91,24 +99,43 @@ void expect_same_bits(const std::string& text, const std::vector<int>& counts) {
 }
 
 TEST(RunOnRanks, CrushesAPrismToTheBit) {
-  expect_same_bits(deck(kUniform + kSettle + kFailure + kControl), {2, 3, 7});
+  expect_same_bits({deck(kUniform + kSettle + kFailure + kControl)}, {2, 3, 7});
 }
 
 TEST(RunOnRanks, LoadsAndHeatsAPrismToTheBit) {
-  expect_same_bits(deck(kUniform + kSettle + load("stress = \"2 MPa\"") + heat("60 degC")), {2, 4});
+  expect_same_bits({deck(kUniform + kSettle + load("stress = \"2 MPa\"") + heat("60 degC"))}, {2, 4});
 }
 
 TEST(RunOnRanks, HeatsAFaceUnderLoadToTheBit) {
-  expect_same_bits(deck(kSettle + load("stress = \"2 MPa\"") + kExpose + kHeatedFace), {2, 3});
+  expect_same_bits({deck(kSettle + load("stress = \"2 MPa\"") + kExpose + kHeatedFace)}, {2, 3});
 }
 
 // Promise: the same where cracks hinder heat, with gaps between two other ranks.
 TEST(RunOnRanks, HeatsACrackedPrismToTheBit) {
-  expect_same_bits(hot_deck("[heat.cracks]\n"), {2, 3});
+  expect_same_bits({hot_deck("[heat.cracks]\n")}, {2, 3});
+}
+
+class CaseOnRanks : public testing::TestWithParam<std::pair<std::string, int>> {};
+INSTANTIATE_TEST_SUITE_P(Small, CaseOnRanks,
+                         testing::Values(std::pair{"compression_3d", 240}, std::pair{"biaxial_3d", 60},
+                                         std::pair{"biaxial", 80}, std::pair{"cube_3d", 60},
+                                         std::pair{"disc_3d", 80}, std::pair{"brazilian", 170},
+                                         std::pair{"direct_tension", 80}, std::pair{"notched_beam", 200},
+                                         std::pair{"cyclic", 80}, std::pair{"anderberg_thelandersson", 80},
+                                         std::pair{"fire_one_side", 100}, std::pair{"hot_strength", 80},
+                                         std::pair{"residual_capacity", 80},
+                                         std::pair{"restrained_heating", 80}, std::pair{"ring_cooling", 240},
+                                         std::pair{"starter_3d", 60}, std::pair{"transient_heating", 80},
+                                         std::pair{"wall_bent", 100}, std::pair{"limestone", 80}),
+                         [](const auto& info) { return info.param.first; });
+
+TEST_P(CaseOnRanks, HasTheBitsOfOne) {
+  const auto& [name, blocks] = GetParam();
+  expect_same_bits({shipped_case(name), blocks, 8}, {2, 3});
 }
 
 TEST(RunOnRanks, MoreRanksThanChunksAreRefused) {
-  EXPECT_THROW(RanksInThreads::run(20, [](const auto& ranks) { run_on(deck(kUniform + kSettle), ranks); }),
+  EXPECT_THROW(RanksInThreads::run(20, [](const auto& ranks) { run_on({deck(kUniform + kSettle)}, ranks); }),
                Error);
 }
 

@@ -235,8 +235,10 @@ std::vector<Face> faces_in(const Model& model, const std::vector<int>& set) {
   std::vector<bool> is_in(model.gridpoint_count());
   for (int g : set) is_in[g] = true;
   auto faces = faces_of(model);
+  const auto own = model.gridpoint_chunks().own();  // of foreign blocks a part may lack the neighbours
   std::erase_if(faces, [&](const Face& face) {
-    return std::ranges::any_of(face.gridpoints(), [&](int g) { return !is_in[g]; });
+    return std::ranges::any_of(face.gridpoints(),
+                               [&](int g) { return !is_in[g] || g < own.first || g >= own.second; });
   });
   return faces;
 }

@@ -47,17 +47,22 @@ std::optional<HeldComponent> held_along(const Model& model, const Supports& supp
   return std::nullopt;
 }
 
-/// Returns a gridpoint of a set along which supports bear a pressure; none where they do not bear all of it.
-std::optional<HeldComponent> borne(const Model& model, const Supports& supports, const std::string& set) {
-  std::optional<HeldComponent> any;
+/// Tells whether supports bear all of a pressure on a set.
+/// \param at  set to a gridpoint there, where the part of the body has one
+bool borne(const Model& model, const Supports& supports, const std::string& set,
+           std::optional<HeldComponent>& at) {
+  bool misses = false;
   for (const Face& face : faces_in(model, model.set(set)))
     for (const int g : face.gridpoints())
       for (int c = 0; c < model.dimension(); ++c) {
         if (std::abs(face.normal[c]) <= kParallel) continue;
-        if (!supports.holds(g, c)) return std::nullopt;
-        any = {g, c};
+        if (supports.holds(g, c))
+          at = {g, c};
+        else
+          misses = true;
       }
-  return any;
+  const bool bears = model.ranks().any(at.has_value());
+  return !model.ranks().any(misses) && bears;
 }
 
 /// Throws Error where a part of a set that bears a force from before comes to be held along the force: the
@@ -163,9 +168,12 @@ HeldMotion motion_of(const DriveAction& action) {
 }
 
 SetLoad without_borne(const Model& model, const Supports& supports, const std::string& set, SetLoad load) {
-  if (load.pressure != 0.0 && borne(model, supports, set)) load.pressure = 0.0;
-  for (int c = 0; c < model.dimension(); ++c)
-    if (std::ranges::all_of(model.set(set), [&](int g) { return supports.holds(g, c); })) load.force[c] = 0.0;
+  std::optional<HeldComponent> at;
+  if (load.pressure != 0.0 && borne(model, supports, set, at)) load.pressure = 0.0;
+  for (int c = 0; c < model.dimension(); ++c) {
+    const auto moves = [&](int g) { return !supports.holds(g, c); };
+    if (!model.ranks().any(std::ranges::any_of(model.set(set), moves))) load.force[c] = 0.0;
+  }
   return load;
 }
 
@@ -173,11 +181,11 @@ void check_actions(const DriveKeys& keys, const Simulation& simulation, Acting& 
   const Model& model = simulation.model();
   for (const DriveAction& action : keys.actions) {
     const auto found = model.sets.find(action.set);
-    if (found == model.sets.end() || found->second.empty())
+    if (found == model.sets.end() || !model.ranks().any(!found->second.empty()))
       throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", action.place, action.set,
                               names_of(model.sets)));
     require_off_press(simulation, action);
-    if (action.kind == ActionKind::pressure && faces_in(model, found->second).empty())
+    if (action.kind == ActionKind::pressure && !model.ranks().any(!faces_in(model, found->second).empty()))
       throw Error(
           fmt::format("{}: a pressure acts on faces that meet no other block, but set \"{}\" has none",
                       action.place, action.set));
@@ -198,9 +206,10 @@ void check_actions(const DriveKeys& keys, const Simulation& simulation, Acting& 
   }
   for (const DriveAction& action : keys.actions) {
     if (!action.is_load() || action.amount == 0.0) continue;
+    std::optional<HeldComponent> at;
     if (action.kind == ActionKind::force)
       require_free(keys.actions, model, acting.supports, action.set, action.direction, action.place);
-    else if (const auto at = borne(model, acting.supports, action.set))
+    else if (borne(model, acting.supports, action.set, at) && at)
       throw Error(
           fmt::format("{}: a pressure acts on set \"{}\", all of which is held or driven along it, so "
                       "that it moves nothing {}",

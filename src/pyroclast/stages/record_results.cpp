@@ -235,7 +235,7 @@ BodyFigures figures_of(const Simulation& simulation) {
       low = std::min(low, model.place(g)[2]);
       high = std::max(high, model.place(g)[2]);
     }
-    depth = high - low;
+    depth = model.ranks().largest(high) - model.ranks().least(low);
   }
   return {depth, norm(simulation.motion().totals().total_weight(gridpoint_set(model, specimen)))};
 }

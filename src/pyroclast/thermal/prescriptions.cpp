@@ -51,7 +51,8 @@ void Prescriptions::require_within(const Interval& range, double begin, double e
 
 Interval Prescriptions::reach(double begin, double end) const {
   Interval reach = nothing();
-  for (const int i : acting_) include(reach, {curves_[i].minimum(begin, end), curves_[i].maximum(begin, end)});
+  for (const int i : acting_)
+    include(reach, {curves_[i].minimum(begin, end), curves_[i].maximum(begin, end)});
   return reach;
 }
 
