@@ -93,6 +93,21 @@ TEST(ChooseColumns, ACommentOfNamesIsAHeader) {
   expect_near(read(remark, kStones, kOthersOfStones, in_mm), stones, remark);
 }
 
+// Promise: where "%" begins the comment that names the columns, it may be the unit of the first one. A pure
+// number there is refused unless its unit is told, as both readings differ by a hundred.
+TEST(ChooseColumns, APercentSignBeforeTheNamesIsNeitherUnitNorCommentByGuess) {
+  const std::string table = "strain,stress [MPa]\n0.1,20\n0.2,30\n";
+  expect_in(
+      "f.csv:1: the line begins with \"%\", which may be the unit of column \"strain\" or begin a comment; "
+      "write \"strain [%]\" or \"strain [-]\"",
+      message([&] { read("% " + table, kCurve); }));
+  const std::vector<Numbers> curve{{0.001, 0.002}, {20e6, 30e6}};
+  for (const std::string text :
+       {"% strain [%],stress [MPa]\n0.1,20\n0.2,30\n", "% strain [-],stress [MPa]\n0.001,20\n0.002,30\n"})
+    expect_near(read(text, kCurve), curve, text);
+  expect_near(read("% " + table, kCurve, {}, {"f.csv", {}, {"%", ""}}), curve, table);
+}
+
 // Promise: a name that says another quantity than its place is refused, and the message says what to write.
 TEST(ChooseColumns, NamesThatContradictTheirPlaceAreRefused) {
   expect_in("f.csv:1: column \"radius\" is the radius by its name, but stands in the place of the x",

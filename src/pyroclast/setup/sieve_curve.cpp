@@ -81,7 +81,8 @@ specimen::GradingCurve checked_curve(specimen::GradingCurve curve) {
 
 specimen::GradingCurve sieve_curve(const MeasuredTable& table, ColumnChoice choice) {
   std::array<AskedColumn, kSieveColumns> asked{
-      {{"size", unit::length, {{&meaning::sieve}}}, {"passing", unit::dimensionless, {{&meaning::passing}}}}};
+      {{"size", unit::length, {{&meaning::sieve}}},
+       {"passing", unit::dimensionless, {{&meaning::passing}}, false, /*is_known_by_size=*/true}}};
   if (std::ranges::any_of(table.columns(), is_sum_retained)) asked[1].names.push_back({&meaning::retained});
   if (choice.columns.empty() && table.columns().size() > kSieveColumns) choose_by_names(table, choice);
   const auto columns = table.choose(choice, asked, {&meaning::retained, &meaning::radius});

@@ -286,6 +286,12 @@ std::string MeasuredTable::chosen_unit(std::size_t column, const std::string& st
              fmt::format("{} is in \"{}\" by the file and in \"{}\" by the deck; write \"\" in its place in "
                          "`units`, or change the file",
                          column_name(column), said, stated));
+    if (column == 0 && grid_.may_begin_with_unit && columns_[0].unit.empty() && said == "1" &&
+        !asked.is_known_by_size)
+      refuse(path_, header_line_,
+             fmt::format("the line begins with \"%\", which may be the unit of {} or begin a comment; write "
+                         "\"{} [%]\" or \"{} [-]\"",
+                         column_name(0), columns_[0].name, columns_[0].name));
     return said;
   }
   return stated;

@@ -164,7 +164,7 @@ bool has_thousands(const Cells& cells) {
 class GridReader {
  public:
   GridReader(const TableLines& lines, std::size_t least, const std::filesystem::path& path)
-      : lines_(lines.lines), above_(lines.above), least_(least), path_(path) {
+      : table_(lines), lines_(lines.lines), least_(least), path_(path) {
     if (lines_.empty()) refuse(path_, 0, "is empty; rows of numbers under a header are needed");
     delimiter_ = lines.delimiter ? *lines.delimiter : find_delimiter();
   }
@@ -173,12 +173,14 @@ class GridReader {
     cut_rows();
     drop_empty_ends();
     std::size_t header = header_rows();
-    if (header == 0 && take_comment()) header = 1;
+    const bool is_comment = header == 0 && take_comment();
+    if (is_comment) header = 1;
     require_equal_rows(header);
     const auto begin = std::make_move_iterator(rows_.begin()), end = std::make_move_iterator(rows_.end());
     const auto first = begin + static_cast<std::ptrdiff_t>(header);
     TableGrid grid{{begin, first}, {first, end}, DecimalSign::point, in_words(delimiter_)};
     grid.decimal_sign = decimal_sign(grid.rows);
+    grid.may_begin_with_unit = is_comment && table_.above_may_begin_with_unit;
     return grid;
   }
 
@@ -275,11 +277,12 @@ class GridReader {
   /// Takes the comment above a table without a header for its header, where it has a name for each of its
   /// columns, as NumPy writes it: "# x y r".
   bool take_comment() {
-    if (!above_) return false;
+    const std::optional<TableLine>& above = table_.above;
+    if (!above) return false;
     const std::size_t columns = rows_[0].cells.size();
-    auto cells = cells_of(above_->text, delimiter_);
+    auto cells = cells_of(above->text, delimiter_);
     if (cells && delimiter_ == kBlanks && cells->size() != columns)
-      cells = cells_between_blanks(above_->text, columns);
+      cells = cells_between_blanks(above->text, columns);
     while (cells && cells->size() > columns && cells->back().empty()) cells->pop_back();
     const auto is_name = [](const std::string& cell) {
       const ColumnHeader header = column_header(cell);
@@ -290,8 +293,8 @@ class GridReader {
       return false;
     if (std::ranges::all_of(*cells, [](const std::string& cell) { return unit_cell(cell).has_value(); }))
       return false;
-    rows_.insert(rows_.begin(), {above_->number, std::move(*cells)});
-    texts_.insert(texts_.begin(), above_->text);
+    rows_.insert(rows_.begin(), {above->number, std::move(*cells)});
+    texts_.insert(texts_.begin(), above->text);
     return true;
   }
 
@@ -381,8 +384,8 @@ class GridReader {
                               shell_path(name), shell_word("points_" + name))));
   }
 
+  const TableLines& table_;
   const std::vector<TableLine>& lines_;
-  const std::optional<TableLine>& above_;
   std::size_t least_;
   const std::filesystem::path& path_;
   char delimiter_ = kNothing;

@@ -21,6 +21,8 @@ struct TableGrid {
   std::vector<TableRow> rows;    ///< rows with numbers, at least one
   DecimalSign decimal_sign = DecimalSign::point;
   std::string delimiter;  ///< name of the delimiter in words
+  /// True where the header begins with "%": the sign of a comment, or the unit of the first column.
+  bool may_begin_with_unit = false;
 };
 
 /// Finds the delimiter, the decimal sign and the lines of the header. Throws Error naming file and line where

@@ -31,6 +31,7 @@ struct AskedColumn {
   const Unit& unit;
   std::vector<KnownName> names = {};  ///< names of its column, the likeliest first; empty where any will do
   bool is_optional = false;           ///< true where a table may lack it; such quantities come last
+  bool is_known_by_size = false;      ///< true where the numbers tell shares of 1 from per cent
 };
 
 /// Word for the time of the first row, where a deck states the start of a record.

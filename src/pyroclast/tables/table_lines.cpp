@@ -97,10 +97,12 @@ TableLines table_lines(std::string_view bytes, const std::filesystem::path& path
     bytes.remove_prefix(bytes.starts_with("\r\n") ? 2 : bytes.empty() ? 0 : 1);
     if (number == 1 && (result.delimiter = stated_delimiter(line))) continue;
     if (written.empty()) continue;
-    if (!is_comment(written))
+    if (!is_comment(written)) {
       result.lines.push_back({number, line});
-    else if (result.lines.empty())
+    } else if (result.lines.empty()) {
       result.above = {number, written.substr(std::min(written.find_first_not_of("#%!/"), written.size()))};
+      result.above_may_begin_with_unit = written.starts_with('%');
+    }
   }
   return result;
 }

@@ -17,8 +17,9 @@ struct TableLine {
 /// Lines of a table without blank lines and comments (#, %, !, //).
 struct TableLines {
   std::vector<TableLine> lines;
-  std::optional<char> delimiter;   ///< delimiter that a first line "sep=;" states
-  std::optional<TableLine> above;  ///< comment right above the first line, without its sign
+  std::optional<char> delimiter;           ///< delimiter that a first line "sep=;" states
+  std::optional<TableLine> above;          ///< comment right above the first line, without its sign
+  bool above_may_begin_with_unit = false;  ///< true where that sign is "%"
 };
 
 /// Splits a table into lines, which end with LF, CRLF or CR. Throws Error, naming the file, for bytes that
