@@ -159,6 +159,22 @@ class BetweenRuns(unittest.TestCase):
         self.pyroclast("run", "load.toml", "-o", "sure_load", "--overwrite", "--no-figures", "--quiet")
         self.assertFalse(any("in doubt" in warning for warning in self.summary("sure_load")["warnings"]))
 
+    def test_the_strength_is_that_of_the_stage_that_is_the_test(self):
+        def crushed_twice(summary: dict) -> None:
+            second = json.loads(json.dumps(summary["stages"][0]))
+            second["results"] |= {"f_c_MPa": None, "f_c_none_because": "the stage ended before a peak"}
+            summary["stages"].append(second)
+
+        facts = self.folder / self.copied("twice", crushed_twice) / "run.json"
+        for test, told in ((0, ""), (1, "twice/summary.json: the run has no f_c: the stage ended before a peak"),
+                           (None, "twice/summary.json: the run has no f_c: none of its stages measures one")):
+            with self.subTest(test=test):
+                facts.write_text(json.dumps(json.loads(facts.read_text()) | {"test_stage": test}))
+                self.load_of("twice")
+                self.assertIn(told, self.pyroclast("check", "load.toml", code=1 if told else 0).stderr)
+        facts.unlink()
+        self.assertIn("twice/run.json", self.pyroclast("check", "load.toml", code=1).stderr)
+
     def test_a_history_that_figures_compare_with_and_a_frame_of_temperatures_bring_the_verdict_along(self):
         for key, text in (
                 ("output.references[0].file", '[[output.references]]\nfile = "fast/history.csv"\nof = "stress"\n'

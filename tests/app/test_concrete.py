@@ -279,7 +279,7 @@ class StrengthOfARun(unittest.TestCase):
         self.assertEqual(summary["stages"][1]["results"]["f_c_of_level_is"],
                          f"of the run of deck {manifest['deck_sha256'][:8]}")
         inputs = json.loads((self.folder / "hot/manifest.json").read_text())["inputs"]
-        self.assertEqual([i["source"] for i in inputs], ["cold/summary.json", "cold/manifest.json"])
+        self.assertEqual([i["source"] for i in inputs], ["cold/summary.json", "cold/manifest.json", "cold/run.json"])
         kept = json.loads((self.folder / "hot/inputs/manifest.json").read_text())
         self.assertEqual(kept["deck_sha256"], manifest["deck_sha256"])
 

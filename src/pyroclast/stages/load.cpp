@@ -28,6 +28,7 @@ std::string read_run(const Section& s, const std::filesystem::path& run, Load::K
     const StrengthOfRun found = strength_of_run(run);
     s.names_file("run", found.summary);
     s.needs_file(found.manifest);
+    s.needs_file(found.facts);
     keys.strength = found.value;
     if (!found.doubts.empty())
       s.warn("run", fmt::format("its f_c, {:.4g} MPa, is in doubt: {}", found.value * 1e-6, found.doubts));

@@ -1,5 +1,8 @@
 #include "pyroclast/stages/strength_of_run.hpp"
 
+#include <cstddef>
+#include <string_view>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -22,22 +25,27 @@ nlohmann::json json_in(const std::filesystem::path& file) {
 StrengthOfRun strength_of_run(const std::filesystem::path& place) {
   StrengthOfRun found;
   found.summary = is_directory(place) ? place / "summary.json" : place;
-  std::string name = found.summary.filename().string();
+  const std::string name = found.summary.filename().string();
   const auto at = name.find("summary");
   if (at == std::string::npos) throw Error(fmt::format("{}: is no folder of a run", place.string()));
-  found.manifest = found.summary.parent_path() / name.replace(at, std::string("summary").size(), "manifest");
+  const auto beside = [&](std::string_view kind) {
+    std::string other = name;
+    return found.summary.parent_path() / other.replace(at, std::string_view("summary").size(), kind);
+  };
+  found.manifest = beside("manifest");
+  found.facts = beside("run");
   const auto summary = json_in(found.summary);
   found.deck_sha256 = json_in(found.manifest).value("deck_sha256", "");
+  const auto test = json_in(found.facts).value("test_stage", nlohmann::json());
   std::string why = "none of its stages measures one";
-  for (const auto& stage : summary.value("stages", nlohmann::json::array())) {
-    if (!stage.is_object() || !stage.contains("results")) continue;
-    const auto& results = stage["results"];
-    if (const auto f_c = results.find("f_c_MPa"); f_c != results.end() && f_c->is_number()) {
+  if (test.is_number_unsigned()) {
+    const nlohmann::json::json_pointer place_of(fmt::format("/stages/{}/results", test.get<std::size_t>()));
+    const auto results = summary.value(place_of, nlohmann::json());
+    if (const auto f_c = results.find("f_c_MPa"); f_c != results.end() && f_c->is_number())
       found.value = f_c->get<double>() * 1e6;
-    } else if (const auto reason = results.find("f_c_none_because");
-               reason != results.end() && reason->is_string()) {
+    else if (const auto reason = results.find("f_c_none_because");
+             reason != results.end() && reason->is_string())
       why = reason->get<std::string>();
-    }
   }
   if (!(found.value > 0.0))
     throw Error(fmt::format("{}: the run has no f_c: {}", found.summary.string(), why));
