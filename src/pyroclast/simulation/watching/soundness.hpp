@@ -25,7 +25,8 @@ struct Soundness {
   /// Error of the energy ledger over the energy that contacts dissipated; empty where they dissipated
   /// nothing.
   std::optional<double> error_over_dissipated;
-  /// Largest stress that an exchange of computed temperatures brings at once, over the tensile strength.
+  /// Stress that an exchange of computed temperatures brings at once, in the mean over the temperatures of
+  /// the stage where it is largest, over the tensile strength.
   std::optional<double> exchange_stress;
   /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
   std::optional<double> heat_error;
