@@ -230,7 +230,7 @@ std::string hot_concrete() {
                      "sieves = [\"8 mm\"]"},
            std::pair{"count = 1000", "count = 250"},
            std::pair{"safety = 0.9", "safety = 0.6"},
-           std::pair{"to = \"400 degC\"", "to = \"220 degC\""},
+           std::pair{"to = \"200 degC\"", "to = \"220 degC\""},
            std::pair{"exchange_increment = \"4 K\"", "exchange_increment = \"20 K\""},
            std::pair{"least_cycles = 1000", "least_cycles = 300"},
            std::pair{"velocity = \"0.3 mm/s\"", "velocity = \"2 mm/s\""},
