@@ -6,6 +6,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import tomllib
 import unittest
@@ -124,6 +125,26 @@ frame_interval = "30 s"
         self.assertRegex(more[2], r"; about (more than a hundred years|\d{2,} h)")
         self.assertGreater(forecast[1], foreseen("output.fields=false")[1])
         self.assertLess(foreseen("stages[0].interval=1 h", "stages[0].change=1000 K")[0], 3)
+
+    def test_other_work_on_the_processor_does_not_lengthen_the_time_that_check_tells(self):
+        cores = os.sched_getaffinity(0)
+        self.addCleanup(os.sched_setaffinity, 0, cores)
+        os.sched_setaffinity(0, {min(cores)})  # for the children too
+
+        def foreseen() -> float:
+            said = self.pyroclast("check", str(CASES / "starter.toml")).stdout
+            told = re.search(r"steps; about (?:(\d+) h ?)?(?:(\d+) min ?)?(?:(\d+) s)?", said)
+            hours, minutes, seconds = map(int, told.groups("0"))
+            return 3600.0 * hours + 60.0 * minutes + seconds
+
+        alone = foreseen()
+        self.assertGreater(alone, 4.0)  # the program tells whole seconds
+        for _ in range(3):
+            busy = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+            self.addCleanup(busy.wait)
+            self.addCleanup(busy.kill)
+        # four processes share the core: by the clock a step takes four times as long
+        self.assertLess(foreseen(), 2.0 * alone)
 
     def test_a_text_in_the_place_of_a_list_is_proposed_as_a_list(self):
         (self.folder / "wall.toml").write_text(self.WALL)

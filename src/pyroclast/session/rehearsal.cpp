@@ -1,11 +1,11 @@
 #include "pyroclast/session/rehearsal.hpp"
 
 #include <algorithm>
+#include <ctime>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "pyroclast/base/clock.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
 #include "pyroclast/simulation/watching/fields.hpp"
@@ -26,15 +26,23 @@ constexpr double kBytesPerProfile = 1250.0;
 /// Share of the largest change of a temperature at which the heat solver's steps aim, see Conduction.
 constexpr double kAimedChange = 0.8;
 
-template <class Action>
-double seconds_of(Action action) {
-  const auto start = Clock::now();
-  action();
-  return seconds_since(start);
+/// Returns the processor time that this thread has used, s. On a loaded machine the forecast is that of free
+/// cores: other work comes and goes.
+double seconds_of_thread() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Returns the wall time of a step, s, of many steps in one go, as a run takes them: the last step of a batch
-/// costs more, because it is measured.
+template <class Action>
+double seconds_of(Action action) {
+  const double start = seconds_of_thread();
+  action();
+  return seconds_of_thread() - start;
+}
+
+/// Returns the processor time of a step, s, of many steps in one go, as a run takes them: the last step of a
+/// batch costs more, because it is measured.
 double seconds_per_step(Motion& motion) {
   const auto time = [&](int steps) { return seconds_of([&] { motion.advance(steps); }) / steps; };
   const double steps = kSecondsOfTiming / time(kWarmUpSteps);
@@ -53,18 +61,18 @@ double expected_evaluations(const HeatConditions& heat, double stable_step, doub
   return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
 }
 
-/// Returns the wall time of an evaluation, s, by those that the solver does in a moment. Heats the field,
-/// which may leave the range of its temperatures.
+/// Returns the processor time of an evaluation, s, by those that the solver does in a moment. Heats the
+/// field, which may leave the range of its temperatures.
 double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
-  const auto start = Clock::now();
+  const double start = seconds_of_thread();
   const std::int64_t before = field.conduction()->work().stages;
   try {
-    while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
+    while (field.time() < duration && seconds_of_thread() - start < kSecondsOfTiming)
       field.advance(largest_change, duration);
   } catch (const Error&) {  // foretell_heat tells it
     field.end_advance();
   }
-  return seconds_since(start) / static_cast<double>(field.conduction()->work().stages - before);
+  return (seconds_of_thread() - start) / static_cast<double>(field.conduction()->work().stages - before);
 }
 
 /// Returns the size of the arrays of a frame, bytes.

@@ -12,7 +12,7 @@ namespace pyroclast {
 /// Probable cost of a run.
 struct Rehearsal {
   Forecast forecast;
-  double seconds = 0.0;           ///< wall time, s, from the speed of the first steps on this machine
+  double seconds = 0.0;           ///< wall time on free cores, s, from the speed of the first steps
   double heat_evaluations = 0.0;  ///< evaluations of the heat solver: stages of its steps
   double history_bytes = 0.0;     ///< size of history.csv and temperature_profile.csv, bytes
   double field_bytes = 0.0;       ///< size of all frames of the fields, bytes; 0 where the deck wants none
