@@ -188,7 +188,15 @@ class Watch:
         if writer is Writer.THERE:
             return stage or "begins"
         how = "run was killed" if writer is Writer.DIED else "run broke off"
-        return f"{how}{f' in {stage}' if stage else ''}; to go on: pyroclast resume {shell_path(self.folder)}"
+        return f"{how}{f' in {stage}' if stage else ''}{self._way_on()}"
+
+    def _way_on(self) -> str:
+        """Returns why the run broke off, by its log, which says what helps; else how to go on from a checkpoint."""
+        if error := re.search(r"^error: (.+)\Z", self._end_of_log(), re.MULTILINE | re.DOTALL):
+            return ": " + "; ".join(error[1].split("\n")).rstrip("; ")
+        if any((self.folder / "checkpoints").glob("*.state")):
+            return f"; to go on: pyroclast resume {shell_path(self.folder)}"
+        return "; it left no checkpoint: run its deck anew"
 
     def _stage(self) -> str:
         """Returns the number and kind of the stage, and what the log says of how far it is."""

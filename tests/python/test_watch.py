@@ -219,9 +219,15 @@ class Told(WatchTest):
         self.begin(rows=100)
         with self.writer():
             watch = Watch(self.folder)
+        self.assertIn("run was killed in stage 2 of 2 (compress); it left no checkpoint", watch.headlines()[1])
+        (self.folder / "checkpoints").mkdir()
+        (self.folder / "checkpoints/000001.state").touch()
         self.assertIn("run was killed in stage 2 of 2 (compress); to go on: pyroclast resume", watch.headlines()[1])
         (self.folder / "lock").unlink()
         self.assertIn("run broke off in stage 2", watch.headlines()[1])
+        with open(self.folder / "run.log", "a") as log:
+            log.write("error: too hot\nchange the deck\n")
+        self.assertEqual(watch.headlines()[1], "run broke off in stage 2 of 2 (compress): too hot; change the deck")
         (self.folder / "summary.json").write_text(json.dumps({"outcome": "stopped by the user", "stages": []}))
         self.assertEqual(watch.headlines()[1], "run ended: stopped by the user")
 

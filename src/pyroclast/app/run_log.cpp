@@ -45,6 +45,13 @@ void RunLog::say_now(const std::string& text) {
   logger_->log(kProgress, "{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), shown(text));
 }
 
+void RunLog::note(const std::string& text) {
+  const auto level = screen_ ? screen_->level() : spdlog::level::off;
+  if (screen_) screen_->set_level(spdlog::level::off);
+  say(text);
+  if (screen_) screen_->set_level(level);
+}
+
 void RunLog::keep_progress_off_screen(bool kept) {
   if (screen_) screen_->set_level(kept ? spdlog::level::info : kProgress);
 }

@@ -24,6 +24,8 @@ class RunLog {
   void say(const std::string& text);
   /// Writes a line with the time of day before it.
   void say_now(const std::string& text);
+  /// Writes a text to the file alone.
+  void note(const std::string& text);
   /// Sets whether lines with the time of day go to the file alone.
   void keep_progress_off_screen(bool kept);
   /// Returns the length of the file in bytes.

@@ -148,6 +148,17 @@ int exit_code(const Summary& summary) {
   return is_good(summary.outcome) && summary.is_sound() ? 0 : 2;
 }
 
+/// Returns the result of `act`. An Error of it stands in the log too: who watches the run then knows its end.
+template <class Act>
+auto noting_errors(RunLog& log, Act act) {
+  try {
+    return act();
+  } catch (const Error& error) {
+    log.note(fmt::format("error: {}", error.what()));
+    throw;
+  }
+}
+
 }  // namespace
 
 std::string describe_start(Session& session) {
@@ -160,7 +171,7 @@ std::string describe_start(Session& session) {
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())
     text += describe(*conduction, model, opened.setup.temperatures);
-  if (opened.setup.heat.temperature_range)
+  if (may_leave_range(opened.setup, simulation))
     if (const auto told = foretell_heat(opened.setup, simulation))
       if (const std::string warning = warning_of(*told, opened.setup); !warning.empty())
         text += describe_warnings({warning});
@@ -186,12 +197,16 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
     if (progress.is_long_silent()) log.say_now(doing_line(run));
   });
   int stage = run.stage_number();
-  while (session.next()) {
-    if (run.stage_number() != stage) progress.begin_stage(steps_after(session));
-    stage = run.stage_number();
-    if (progress.line_is_due() || log.speech() == Speech::verbose) log.say_now(progress_line(run, progress));
-  }
-  const Summary summary = session.finish();
+  const auto to_the_end = [&] {
+    while (session.next()) {
+      if (run.stage_number() != stage) progress.begin_stage(steps_after(session));
+      stage = run.stage_number();
+      if (progress.line_is_due() || log.speech() == Speech::verbose)
+        log.say_now(progress_line(run, progress));
+    }
+    return session.finish();
+  };
+  const Summary summary = noting_errors(log, to_the_end);
   if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   log.say(describe(summary, session.opened().setup.specimen, folder));
   if (summary.outcome == Outcome::stopped)

@@ -21,23 +21,29 @@ constexpr double kChange = 5.0;        // of a temperature between two looks, K
 /// A range that is proposed ends at a multiple of this, at least half of it above the hottest temperature, K.
 constexpr double kRounding = 50.0;
 
-/// Returns the temperatures to which gases and prescribed temperatures may take the specimen, where the
-/// curves of the heat solver hold them; else the run's.
-Interval widest_range(const Setup& setup, const HeatConditions& heat) {
+/// Returns the temperatures beyond which gases and prescribed temperatures cannot take the specimen; none
+/// where a flux may take it anywhere.
+std::optional<Interval> bounds_of(const Setup& setup, const HeatConditions& heat) {
   HeatConditions unstated = heat;
   unstated.temperature_range.reset();
   const bool has_flux = std::ranges::any_of(heat.boundaries, [](const HeatBoundaryCondition& boundary) {
     return std::holds_alternative<HeatFlux>(boundary.condition);
   });
-  if (has_flux) return setup.temperatures;
+  if (has_flux) return std::nullopt;
   const Interval gas = temperature_range(unstated, setup.exposure);
-  const Interval wide{std::min(gas.lower, setup.temperatures.lower),
-                      std::max(gas.upper, setup.temperatures.upper)};
+  return Interval{std::min(gas.lower, setup.temperatures.lower),
+                  std::max(gas.upper, setup.temperatures.upper)};
+}
+
+/// Returns these temperatures where the curves of the heat solver hold them; else the run's.
+Interval widest_range(const Setup& setup, const HeatConditions& heat) {
+  const auto wide = bounds_of(setup, heat);
+  if (!wide) return setup.temperatures;
   for (const BlockMaterial& material : setup.block_materials)
     if (!material.is_of_bearing &&
-        !(material.conductivity->holds(wide) && material.specific_heat->holds(wide)))
+        !(material.conductivity->holds(*wide) && material.specific_heat->holds(*wide)))
       return setup.temperatures;
-  return wide;
+  return *wide;
 }
 
 /// Follows the heat of a deck as far as it stays within a range, °C.
@@ -70,6 +76,12 @@ std::string minutes(double seconds) {
 }
 
 }  // namespace
+
+bool may_leave_range(const Setup& setup, const Simulation& simulation) {
+  if (simulation.field().is_uniform() || setup.exposure <= 0.0) return false;
+  const auto bounds = bounds_of(setup, simulation.heat());
+  return !bounds || !setup.temperatures.holds(*bounds, absolute_zero);
+}
 
 std::optional<ForetoldHeat> foretell_heat(const Setup& setup, const Simulation& simulation) {
   if (simulation.field().is_uniform() || setup.exposure <= 0.0) return std::nullopt;

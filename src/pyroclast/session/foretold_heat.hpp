@@ -23,6 +23,10 @@ struct ForetoldHeat {
 /// seconds of wall time. Returns none where no heat is conducted.
 std::optional<ForetoldHeat> foretell_heat(const Setup& setup, const Simulation& simulation);
 
+/// Tells whether boundaries may take a temperature out of the run's range, as far as is known without solving
+/// for the heat.
+bool may_leave_range(const Setup& setup, const Simulation& simulation);
+
 /// Describes how hot the specimen gets, in a line.
 std::string describe(const ForetoldHeat& heat);
 
