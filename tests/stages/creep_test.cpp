@@ -119,6 +119,9 @@ TEST(CreepInADeck, IsRefusedWhereItMakesNoSense) {
   EXPECT_NE(falling.find("materials.mortar.creep.strain"), std::string::npos) << falling;
   EXPECT_NE(falling.find("falls from 0.002 at 200 degC"), std::string::npos) << falling;
   EXPECT_NE(error_of("k2 = 2.35\n").find("needs the thermal strain of the concrete"), std::string::npos);
+  const std::string unread = error_of("k2 = 2.35\n[concrete]\nthermal_strain = { builtin = \"none\" }\n");
+  EXPECT_NE(unread.find("concrete.thermal_strain"), std::string::npos) << unread;
+  EXPECT_EQ(unread.find("k2"), std::string::npos) << unread;  // one fault, one error
   EXPECT_NE(error_of("k2 = 2.35\n" + kB).find("no meaning beside \"k2\""), std::string::npos);
   EXPECT_NE(error_of("of = \"phase\"\nshare = 0.6\n" + kB).find("share"), std::string::npos);
   EXPECT_NE(error_of("nu = 0.6\n" + kB).find("materials.mortar.creep.nu"), std::string::npos);

@@ -158,7 +158,8 @@ Curve read_creep_strain(const Section& s, const ReadConcrete& concrete, CurveRea
                              "and grows by 1e-4 1/K beyond (Anderberg and Thelandersson 1976)");
   if (s.has("strain")) s.error("strain", "has no meaning beside \"k2\": give one of the two");
   if (!concrete.thermal_strain || concrete.thermal_strain->is_constant()) {
-    s.error("k2", "needs the thermal strain of the concrete: thermal_strain or expansion in [concrete]");
+    if (concrete.is_readable)
+      s.error("k2", "needs the thermal strain of the concrete: thermal_strain or expansion in [concrete]");
     return Curve::constant(0.0);
   }
   return anderberg_thelandersson(k2, *concrete.thermal_strain);
@@ -585,6 +586,7 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
                                        "load](../understand/deck.md#creep-under-load)");
   if (!s) return concrete;
   concrete.thermal_strain = read_thermal_strain(*s, rules.expansion_reading, curves);
+  concrete.is_readable = s->ok();
   const char* const key = s->has("expansion") ? "expansion" : "thermal_strain";
   concrete.place = fmt::format("{}: concrete.{}", s->where(key), key);
   if (!s->has("inclusion_ratio")) {

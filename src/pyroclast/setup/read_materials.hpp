@@ -22,6 +22,7 @@ MaterialRules read_material_rules(const Section& root);
 /// Content of [concrete] on the concrete as a whole.
 struct ReadConcrete {
   std::optional<Curve> thermal_strain;        ///< eps_c
+  bool is_readable = true;                    ///< false where the deck has an error in the strain
   std::string place;                          ///< place of the strain in the deck, for messages
   std::optional<StrainOfConcrete> of_phases;  ///< strain, where the strains of the phases follow from it
 };
