@@ -122,8 +122,16 @@ class Judging(unittest.TestCase):
     def test_a_test_that_measures_no_strength_says_what_it_bore(self):
         card = cards(pyroclast.read(RUNS / "fire_one_side"))[0]
         self.assertEqual((card.label, card.value), ("strength", "not measured"))
-        self.assertRegex(card.reason, r"^held [\d.]+ MPa = 0\.\d\d of f_c [\d.]+ MPa as the deck states it$")
+        self.assertRegex(card.reason, r"^no failure: held [\d.]+ MPa = 0\.\d\d of f_c [\d.]+ MPa as the deck states it$")
         self.assertNotIn("strength", {card.label for card in cards(pyroclast.read(RUNS / "compression"))})
+
+    def test_a_failure_in_heat_and_none_say_for_which_body_they_hold(self):
+        told = "of this one specimen of plain concrete in plane stress: no steel, no spalling, no member"
+        for case, label in (("fire_one_side", "strength"), ("transient_heating", "critical temperature")):
+            with self.subTest(case):
+                run = pyroclast.read(RUNS / case)
+                self.assertEqual({card.label: card.of for card in _cards(run, {"course": {"marks": []}})}[label], told)
+                self.assertIn(told, run_page(run))
 
     def test_the_first_lines_say_how_much_was_tested_and_how_hot_a_cold_test_was(self):
         run = pyroclast.read(RUNS / "compression")

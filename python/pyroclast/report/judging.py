@@ -160,14 +160,19 @@ def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
     if hot.restrained:
         said = "the platens held the specimen in place while it was heated"
     elif hot.load_stress:
-        said = f"{'held' if hot.critical_temperature is None else 'failed under'} {hot.load_stress:.3g} MPa"
+        said = f"{'no failure: held' if hot.critical_temperature is None else 'failed under'} {hot.load_stress:.3g} MPa"
         loads = [results for results in run.stage_results if results.get("f_c_of_level_MPa")]
         if hot.load_level and loads:
             said += f" = {hot.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
             said += f" {loads[-1].get('f_c_of_level_is', '')}"
     else:
         said = "nothing loaded the specimen"
-    return Card(STRENGTH, "not measured", "", worst(whole), said.strip())
+    return Card(STRENGTH, "not measured", "", worst(whole), said.strip(), of=_conditions(hot.results))
+
+
+def _conditions(results: dict[str, Any]) -> str:
+    """Returns the body and the conditions for which a failure in heat, or none, is the answer."""
+    return str(results.get("answer_is") or "")
 
 
 def _asked(run: Results) -> list[str]:
@@ -197,7 +202,8 @@ def _of_stage(facts: RunFacts, stage: dict[str, Any], own: list[Reason], whole: 
         said = next((reason.text for reason in reasons if reason.level == level), "the stage came to its end")
         unit, factor = _SHOWN.get(about.shown_in, (about.shown_in, 1.0))
         yield Card(about.label, _number(factor * value, about.digits), unit, level, said,
-                   known[name].mark if name in known else "", factor * value)
+                   known[name].mark if name in known else "", factor * value,
+                   _conditions(results) if name == "critical_temperature_degC" else "")
 
 
 def _number(value: float, digits: int | None) -> str:

@@ -82,7 +82,7 @@ def _cards(run: Results, data: dict[str, Any]) -> list[Card]:
     """Returns the headlines of the run; only one whose place the curve has leads there."""
     places = {mark["id"] for mark in data["course"]["marks"]}
     return [replace(card, mark=card.mark if card.mark in places else "",
-                    of=_tested(run) if card.mark == "peak" and card.unit == "MPa" else "") for card in cards(run)]
+                    of=_tested(run) if card.mark == "peak" and card.unit == "MPa" else card.of) for card in cards(run)]
 
 
 def _tested(run: Results) -> str:
