@@ -30,7 +30,9 @@ void print_strength(const Setup& setup) {
   if (!like || std::ranges::none_of(setup.stages, is_compress)) return;
   fmt::print(
       "strength        blocks are {:.2f} of d_max; of specimens with {:.2f}, {} of {} fell clearly, and f_c\n"
-      "                scattered by {:.0f} % from seed to seed (docs/validation/peaks.md)\n",
+      "                scattered by {:.0f} % from seed to seed (docs/validation/peaks.md). Their stones "
+      "held\n"
+      "                together where they touch; more fall where stones may part (between_stones)\n",
       setup.specimen.block_size() / setup.specimen.aggregates.d_max, like->size, like->fell_clearly, like->of,
       100.0 * like->scatter);
 }
