@@ -143,11 +143,12 @@ Command add_law(CLI::App& cli) {
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->default_val(1);
   law->add_option("-o,--out", options->out, "CSV file to write (default: standard output)");
-  auto* verify = law->add_option("--verify", to_verify->laws,
-                                 "Test these laws, or all, for the properties that a law must have")
-                     ->expected(0, -1)
-                     ->excludes(law_deck)
-                     ->excludes(law_path);
+  auto* verify =
+      law->add_option("--verify", to_verify->laws,
+                      "Test these laws, or that of --law, or all, for the properties that a law must have")
+          ->expected(0, -1)
+          ->excludes(law_deck)
+          ->excludes(law_path);
   law->add_option("--paths", to_verify->paths, "Number of random paths in each dimension")
       ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->needs(verify)
@@ -155,6 +156,7 @@ Command add_law(CLI::App& cli) {
   law->add_option("--seed", to_verify->seed, "Seed of the random paths")->needs(verify)->default_val(1);
   law->callback([=] {
     to_verify->sources = options->sources;
+    if (*verify && *stated) to_verify->laws.push_back(options->law);
     if (*verify) return;
     if (!*law_deck && !*stated) throw CLI::RequiredError("DECK, or --law");
     if (!*law_path) throw CLI::RequiredError(law_path->get_name());
