@@ -4,6 +4,8 @@ import csv
 import json
 import pathlib
 import re
+import shlex
+import shutil
 import tomllib
 import unittest
 
@@ -146,10 +148,15 @@ class OneCommand(InTheFire):
         (self.folder / "records").mkdir()
         (self.folder / "records/furnace.csv").write_text("time [s],mean [degC],TC3 [degC]\n0,20,20\n600,700,650\n")
         fire = ("--fire", "records/furnace.csv", "--columns", "time", "TC3", "--minutes", "10")
-        self.pyroclast("concrete", *CONCRETE, "--aggregate", "granite", *fire, "-o", "mine.toml")
-        self.pyroclast("concrete", *CONCRETE[:8], "--aggregate", "granite", *fire, "--from", "mine.toml", "-o", "2.toml")
-        self.assertEqual(tomllib.loads((self.folder / "2.toml").read_text())["blocks"]["count"], 100)
-        self.pyroclast("run", "2.toml", "--quiet", "--no-figures", "-o", "out", "--set",
+        said = self.pyroclast("concrete", *CONCRETE, "--aggregate", "granite", *fire, "-o", "mine.toml").stdout
+        program, *again = shlex.split(said.splitlines()[-1])  # what is to follow the calibration
+        best = self.folder / again[again.index("--from") + 1]
+        self.assertEqual((program, best), ("pyroclast", self.folder / "runs/mine-calibrate/best.toml"))
+        best.parent.mkdir(parents=True)
+        shutil.copy(self.folder / "mine.toml", best)
+        self.pyroclast(*again)
+        self.assertEqual(tomllib.loads((self.folder / "mine-calibrated-fire.toml").read_text())["blocks"]["count"], 100)
+        self.pyroclast("run", "mine-calibrated-fire.toml", "--quiet", "--no-figures", "-o", "out", "--set",
                        "coupling.exchange_increment=40 K")
 
     def test_what_cannot_be_is_refused_and_nothing_is_written(self):

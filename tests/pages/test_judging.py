@@ -123,6 +123,8 @@ class Judging(unittest.TestCase):
         card = cards(pyroclast.read(RUNS / "fire_one_side"))[0]
         self.assertEqual((card.label, card.value), ("strength", "not measured"))
         self.assertRegex(card.reason, r"^no failure: held [\d.]+ MPa = 0\.\d\d of f_c [\d.]+ MPa as the deck states it$")
+        failed = cards(pyroclast.read(RUNS / "transient_heating"))[0]
+        self.assertRegex(failed.reason, r"^failed under [\d.]+ MPa = .* as the deck states it, after 26 min of heating$")
         self.assertNotIn("strength", {card.label for card in cards(pyroclast.read(RUNS / "compression"))})
 
     def test_a_failure_in_heat_and_none_say_for_which_body_they_hold(self):

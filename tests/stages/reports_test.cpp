@@ -212,7 +212,8 @@ TEST(ExchangeReports, TheLastExchangeIsWhereItRanAway) {
   EXPECT_EQ(number(r, "exchanges"), 3.0);
   EXPECT_EQ(number(r, "exchanges_not_converged"), 1.0);
   EXPECT_EQ(number(r, "worst_unbalanced_ratio"), 3e-3);
-  EXPECT_EQ(r.lines[1], std::string("critical temperature 80 degC, ") + kConditions);
+  EXPECT_EQ(r.lines[1],
+            std::string("critical temperature 80 degC, after 0.5 min of heating, ") + kConditions);
 }
 
 // Promise: before its first look a stage names its results, all of them empty.

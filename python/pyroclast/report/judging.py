@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ..stored.heated import Heated
-from ..stored.results import Results
+from ..stored.results import Results, results_with
 from ..stored.run_facts import ResultFacts, RunFacts
 
 GOOD, DOUBT, BAD = "good", "doubt", "bad"
@@ -165,6 +165,8 @@ def _unmeasured_strength(run: Results, whole: list[Reason]) -> Card | None:
         if hot.load_level and loads:
             said += f" = {hot.load_level:.2f} of f_c {loads[-1]['f_c_of_level_MPa']:.3g} MPa"
             said += f" {loads[-1].get('f_c_of_level_is', '')}"
+        for failed in results_with(run, "critical_time_s"):
+            said += f", after {failed['critical_time_s'] / 60.0:.3g} min of heating"
     else:
         said = "nothing loaded the specimen"
     return Card(STRENGTH, "not measured", "", worst(whole), said.strip(), of=_conditions(hot.results))

@@ -372,7 +372,7 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
                  shell_path(calibrate))
            : fmt::format("# E of the mortar and the numbers of the contacts come from {}.\n",
                          o.from.string())},
-      {"COMMAND", o.command},
+      {"COMMAND", shell_command(o.typed)},
       {"TITLE", fmt::format("{}{} concrete, {:g} MPa",
                             is_hot && a.fire ? ""
                             : is_hot         ? "Hot strength of "
@@ -587,6 +587,24 @@ by = "strength"
       0.01 * a.strength * 1e-6, in_toml(folder_of_calibration(o)));
 }
 
+/// Returns the command that writes the deck of a hot test or of a fire again, from the calibrated deck: that
+/// which was typed, without its number of blocks.
+std::string heated_again(const ConcreteOptions& o, const std::filesystem::path& out) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < o.typed.size(); ++i) {
+    const std::string& word = o.typed[i];
+    const bool is_replaced =
+        word.starts_with("-o") || word.starts_with("--out") || word.starts_with("--blocks");
+    if (!is_replaced)
+      words.push_back(word);
+    else if (word == "-o" || word == "--out" || word == "--blocks")
+      ++i;  // its value
+  }
+  const auto best = o.out.parent_path() / folder_of_calibration(o) / "best.toml";
+  words.insert(words.end(), {"--from", best.string(), "-o", out.string()});
+  return shell_command(words);
+}
+
 /// Writes the deck of a concrete with first guesses, a study that calibrates it, and a deck of a hot
 /// test or of a fire.
 int write_concrete(const ConcreteOptions& options) {
@@ -656,8 +674,7 @@ int write_concrete(const ConcreteOptions& options) {
   if (asked.is_solid) fmt::print("  pyroclast study check {}  # tells how many hours it takes\n", study);
   fmt::print("  pyroclast study run {}\n", study);
   if (is_heated)
-    fmt::print("and then {} again, by this command with `--from {}` and another -o\n", heated.string(),
-               shell_path(o.out.parent_path() / folder_of_calibration(o) / "best.toml"));
+    fmt::print("  {}\n", heated_again(o, beside(asked.fire ? "calibrated-fire" : "calibrated-hot")));
   return 0;
 }
 
@@ -727,7 +744,7 @@ Command add_concrete(CLI::App& cli) {
   concrete->add_option("-o,--out", options->out, "File for the deck")->required();
   return {concrete, [options](std::vector<std::string> typed) {
             typed[0] = "pyroclast";
-            options->command = shell_command(typed);
+            options->typed = std::move(typed);
             return write_concrete(*options);
           }};
 }

@@ -20,7 +20,7 @@ struct ConcreteOptions {
   bool cylinder = false;             ///< true for a body in space
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
   std::filesystem::path out;
-  std::string command;  ///< command as typed, for the deck
+  std::vector<std::string> typed;  ///< words of the command as typed
 };
 
 /// Returns a text as a value of TOML. Its basic strings escape as JSON's do.

@@ -191,7 +191,8 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
   const std::string how =
-      failed ? fmt::format("critical temperature {:.0f} degC, {}", *r.critical_temperature, conditions)
+      failed ? fmt::format("critical temperature {:.0f} degC, after {:.3g} min of heating, {}",
+                           *r.critical_temperature, r.critical_time / 60.0, conditions)
              : fmt::format("no failure {}", conditions);
   if (!kept_.has_press)
     report.lines.push_back(how);
