@@ -30,8 +30,7 @@ constexpr double kLatestStrain = 0.02;
 constexpr double kExpectedStrain = 0.001;
 /// Strain limit of a stage that ends at a strain of the test, which it reaches before.
 constexpr double kNoStopStrain = 1.0;
-/// Mean strain rate of a controlled velocity over its dissipation_rate, about: 0.8e-3 to 1.3e-3 were measured
-/// (docs/validation/adaptive.md).
+/// Mean strain rate of a controlled velocity over its dissipation_rate, about: 0.8e-3 to 1.3e-3 were measured.
 constexpr double kStrainOfControl = 1.1e-3;
 
 /// Reads the control of a velocity that changes between `velocity` and `fastest_velocity`.
