@@ -3,27 +3,12 @@
 Usage: python3 validation/tabulate.py RUNS
 """
 
-import csv
 import json
-import math
 import pathlib
 import statistics
 import sys
 
 COLUMNS = ("E_GPa", "f_c_MPa", "stress_max_MPa", "strain_at_peak", "strain_ic")
-
-INERTIA_COUNTS_FROM = 0.1  # of f_c, as in the program's own verdict
-
-
-def inertia(history: pathlib.Path) -> tuple[float, float]:
-    """Worst kinetic over elastic energy, and worst difference of the platens' stresses over f_c, up to the peak."""
-    with open(history, newline="") as file:
-        rows = [{k: float(v) if v else math.nan for k, v in row.items()} for row in csv.DictReader(file)]
-    peak = max(range(len(rows)), key=lambda i: rows[i]["stress_MPa"])
-    strength = rows[peak]["stress_MPa"]
-    loaded = [r for r in rows[:peak + 1] if r["stage"] == 1 and r["stress_MPa"] > INERTIA_COUNTS_FROM * strength]
-    return (max(r["kinetic_over_strain"] for r in loaded),
-            max(abs(r["stress_top_MPa"] - r["stress_bottom_MPa"]) for r in loaded) / strength)
 
 
 def number(value: float | None) -> str:
@@ -41,7 +26,7 @@ def main() -> None:
         manifest = json.loads((file.parent / "manifest.json").read_text())
         variant = file.parent.name.rpartition("-")[0]
         result = next(stage["results"] for stage in summary["stages"] if stage["kind"] == "compress")
-        kinetic, difference = inertia(file.parent / "history.csv")
+        kinetic, difference = result["kinetic_over_elastic_to_peak"], result["platen_difference_over_f_c_to_peak"]
         runs.setdefault(variant, []).append(result | {"version": manifest["physics_version"]})
         version = manifest["physics_version"]
         print(f"{version},{variant},{manifest['seed']}," + ",".join(number(result[c]) for c in COLUMNS) +
