@@ -12,6 +12,7 @@ import tomllib
 import unittest
 
 import pyroclast
+from pyroclast.study.outputs import unit_of_name
 
 OF_THE_PROGRAM = pathlib.Path(os.environ["SMALL_FORMS"])
 ROOT = pathlib.Path(__file__).parents[2]
@@ -47,6 +48,16 @@ class Cases(unittest.TestCase):
                 self.assertEqual(of_program.keys(), of_script.keys())
                 for name, contents in of_program.items():
                     self.assertEqual(contents == of_script[name], True, name)
+
+
+class Units(unittest.TestCase):
+    def test_the_name_of_a_column_or_result_ends_on_its_unit(self):
+        """A study counts in the unit on which the name of an output ends."""
+        for file in OF_THE_PROGRAM.glob("*/run.json"):
+            facts = json.loads(file.read_text())
+            for told in facts["columns"] + facts["results"]:
+                if told["unit"]:  # a text has none
+                    self.assertEqual(unit_of_name(told["name"]), told["unit"], told["name"])
 
 
 def _is_toml(value: str) -> bool:

@@ -880,10 +880,9 @@ class Judgements(StudyTest):
         summary = {"steps": 5, "energy_J": {"kinetic": 2.5}, "stages": [
             {"results": {"f_c_MPa": 30.0}}, {"results": {"f_c_MPa": None, "f_c_none_because": "it was not loaded"}}]}
         facts = {"results": [{"name": "f_c_none_because", "of": "reason", "about": "f_c_MPa"}]}
-        (self.folder / "run.json").write_text(json.dumps(facts))
-        self.assertEqual(Output("n", "steps").of(self.folder, summary), (5.0, ""))
-        self.assertEqual(Output("k", "energy_J.kinetic").of(self.folder, summary), (2.5, ""))
-        value, why = Output("f", "f_c_MPa").of(self.folder, summary)
+        self.assertEqual(Output("n", "steps").of(self.folder, summary, facts), (5.0, ""))
+        self.assertEqual(Output("k", "energy_J.kinetic").of(self.folder, summary, facts), (2.5, ""))
+        value, why = Output("f", "f_c_MPa").of(self.folder, summary, facts)
         self.assertTrue(math.isnan(value))
         self.assertEqual(why, "it was not loaded")
 
@@ -894,9 +893,9 @@ class Histories(StudyTest):
         for what, value in (("stress_MPa at strain = 1.5", 20.0), ("strain at stress_MPa = 25", 1.75),
                             ("strain where stress_MPa is largest", 2.0), ("stress_MPa largest", 30.0),
                             ("stress_MPa least", 0.0), ("stress_MPa last", 20.0), ("strain", 4.0)):
-            self.assertEqual(Output("y", f"history: {what}").of(self.folder, {}), (value, ""), what)
+            self.assertEqual(Output("y", f"history: {what}").of(self.folder, {}, {}), (value, ""), what)
         for what, why in (("stress at strain = 1", "no column 'stress'"), ("strain at stress_MPa = 40", "never")):
-            value, said = Output("y", f"history: {what}").of(self.folder, {})
+            value, said = Output("y", f"history: {what}").of(self.folder, {}, {})
             self.assertTrue(math.isnan(value))
             self.assertIn(why, said)
 

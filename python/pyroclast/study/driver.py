@@ -27,7 +27,7 @@ from ..writing import write_text
 from .code import StudyCode
 from .executors import Executor
 from .file import FIRST_SEED, StudySetup
-from .outputs import Output, read_summary
+from .outputs import Output, read_facts, read_summary
 from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
@@ -317,9 +317,9 @@ class Driver:
         summary = read_summary(folder)
         if summary is None or any(o.of_history for o in outputs) and not (folder / "history.csv").exists():
             return None
-        found = dict(result.outputs)
+        found, facts = dict(result.outputs), read_facts(folder)
         for output in outputs:
-            value, why = self._call(output.name, folder) if output.is_function else output.of(folder, summary)
+            value, why = self._call(output.name, folder) if output.is_function else output.of(folder, summary, facts)
             found[output.what] = (None if math.isnan(value) else value, why)
         result = judged(replace(result, outputs=found), found)
         self.store.put(result)

@@ -81,13 +81,13 @@ class Output:
         """Name of a number of the summary: a name, or a path."""
         return self.what.removeprefix("summary:").strip()
 
-    def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
+    def of(self, folder: Path, summary: dict[str, Any], facts: dict[str, Any]) -> tuple[float, str]:
         """Returns the number, and why there is none (NaN) or why it is in doubt; empty where nothing is against it. Not
-        of functions.
+        of functions. summary, facts: summary.json and run.json of the run.
         """
-        return self._of_history(folder) if self.of_history else self._of_summary(folder, summary)
+        return self._of_history(folder) if self.of_history else self._of_summary(summary, facts)
 
-    def _of_summary(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
+    def _of_summary(self, summary: dict[str, Any], facts: dict[str, Any]) -> tuple[float, str]:
         name = self.summary_name
         results = [s.get("results", {}) for s in summary.get("stages", []) if isinstance(s, dict)]
         with_it = [r for r in results if name in r]
@@ -97,8 +97,9 @@ class Output:
                 node = node.get(part) if isinstance(node, dict) else None
         own = with_it[-1] if with_it else summary
         if isinstance(node, (int, float)) and math.isfinite(node):
-            return float(node), str(own.get(_text_about(folder, name, "doubt")) or "")
-        return math.nan, str(own.get(_text_about(folder, name, "reason")) or f"the summary has no number called {name!r}")
+            return float(node), str(own.get(_text_about(facts, name, "doubt")) or "")
+        why = own.get(_text_about(facts, name, "reason"))
+        return math.nan, str(why or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
         from ..stored.files import Table  # numpy and h5py, which a task that takes no history does without
@@ -190,9 +191,9 @@ def with_plain_numbers(what: str) -> str:
         raise Error(f"{found[3]} does not belong to {found[2]}, which {error}") from None
 
 
-def _text_about(folder: Path, result: str, kind: str) -> str:
+def _text_about(facts: dict[str, Any], result: str, kind: str) -> str:
     """Returns the name of the result that is the "reason" or "doubt" of another, as run.json tells; empty without one."""
-    known = _json_in(folder / "run.json").get("results")
+    known = facts.get("results")
     about = [each for each in known if isinstance(each, dict)] if isinstance(known, list) else []
     return next((str(each.get("name")) for each in about if each.get("about") == result and each.get("of") == kind), "")
 
@@ -219,6 +220,11 @@ def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
 def read_summary(folder: Path) -> dict[str, Any] | None:
     """Reads summary.json; None where there is none that is whole."""
     return _json_in(folder / "summary.json") or None
+
+
+def read_facts(folder: Path) -> dict[str, Any]:
+    """Reads run.json; empty where there is none that is whole."""
+    return _json_in(folder / "run.json")
 
 
 def _json_in(path: Path) -> dict[str, Any]:

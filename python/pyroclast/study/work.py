@@ -21,7 +21,7 @@ from typing import Any
 from ..errors import Error
 from ..writing import make_folder, refuse_link
 from .hashes import require_unchanged
-from .outputs import Output, read_summary
+from .outputs import Output, read_facts, read_summary
 from .start import FOLDER, environment, python
 from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, REASON_LENGTH, TIMED_OUT, RunResult,
                     begun_file, judged, read_result, result_file, write_result)
@@ -219,8 +219,9 @@ def _concluded(result: RunResult, reason: str, job: Job, runs: Path, summary: di
     """
     outputs = {}
     if summary is not None and result.state == DONE:
+        facts = read_facts(runs / job.id)
         for what in job.outputs:
-            value, why = Output("", what).of(runs / job.id, summary)
+            value, why = Output("", what).of(runs / job.id, summary, facts)
             outputs[what] = (None if math.isnan(value) else value, why)
     known = known_result(job, runs)
     if known is None:
