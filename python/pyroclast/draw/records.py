@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -13,13 +13,14 @@ from ..errors import Error
 from ..stored.frames import Frame
 from ..stored.heated import Heated
 from ..stored.results import Results
+from ..stored.run_facts import RECORD
 from . import style
 from .curves import draw_tables
 from .fractures import Panel, Rows
 from .progress import MINUTES_LABEL, Course
 
-_SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
-"""Unit of a column, how it is drawn, and what a value is multiplied by for that."""
+_SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "N": ("kN", 1e-3), "degC": ("°C", 1.0)}
+"""Unit of a column, how it is drawn where that is another, and what a value is multiplied by for that."""
 _KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force", "stress": "Stress",
           "temperature": "Temperature", "crack_length": "Length of cracks", "crack_area": "Area of cracks",
           "crack_opening": "Opening of cracks"}
@@ -46,15 +47,8 @@ class Record:
     name: str
     kind: str
     column: str
-
-    @property
-    def unit(self) -> str:
-        return _SHOWN[self.column.rsplit("_", 1)[1]][0]
-
-    @property
-    def factor(self) -> float:
-        """Factor from the history's unit to `unit`."""
-        return _SHOWN[self.column.rsplit("_", 1)[1]][1]
+    unit: str
+    factor: float  #: from the history's unit to `unit`
 
     def of(self, run: HasHistory) -> np.ndarray:
         """Returns the record's values (rows,) in `unit`."""
@@ -71,18 +65,18 @@ class Record:
 
 def records_of(run: Results) -> list[Record]:
     """Returns the records of the deck that the run keeps, in its order."""
-    return records_in(run.deck, run.history.names)
+    return records_in(run.deck, {column.name: column.unit for column in run.facts.of_role(RECORD)})
 
 
-def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]:
-    """Returns the records of a deck that are among these columns, in its order."""
+def records_in(deck: Mapping[str, Any], units: Mapping[str, str]) -> list[Record]:
+    """Returns the records of a deck that are among these columns, which have units, in its order."""
+    columns = {name.removesuffix(f"_{unit}"): (name, *_SHOWN.get(unit, (unit, 1.0))) for name, unit in units.items()}
     asked = deck.get("record", [])
     records = []
     for record in asked if isinstance(asked, list) else []:
         name, kind = (record.get(key) for key in ("name", "kind")) if isinstance(record, dict) else (None, None)
-        found = [f"{name}_{unit}" for unit in _SHOWN if f"{name}_{unit}" in columns]
-        if found:
-            records.append(Record(str(name), str(kind), found[0]))
+        if name in columns:
+            records.append(Record(str(name), str(kind), *columns[name]))
     return records
 
 

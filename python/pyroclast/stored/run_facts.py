@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import Error
 from .files import read_json
 
-PRESS, PROBE = "press", "probe"
+PRESS, PROBE, RECORD = "press", "probe", "record"
 PUT_IN, HELD, LOST, ENERGY_ERROR = "energy.put_in", "energy.held", "energy.lost", "energy.error"
 DAMAGED, BROKEN = "crack.damaged", "crack.broken"
 DAMAGED_EXTENT, BROKEN_EXTENT = "crack.damaged_extent", "crack.broken_extent"
