@@ -1,14 +1,14 @@
 """Figures of folders that are damaged: each is drawn, or one line says what is wrong; nothing else happens.
 
-    python3 -m unittest discover -s tests/python -p test_damaged_folders.py
+    SMALL_FORMS=build/strict/small_forms python3 -m unittest discover -s tests/python -p test_damaged_folders.py
 """
 
 from __future__ import annotations
 
-import contextlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,8 +23,7 @@ HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1] / "python"
 sys.path[:0] = [str(HERE), str(PACKAGE)]
 
-import synthetic_run  # noqa: E402
-from synthetic_run import Heating  # noqa: E402
+import small_forms  # noqa: E402
 from pyroclast import figures
 from pyroclast.draw import style  # noqa: E402
 from pyroclast.draw.comparisons import compare_runs  # noqa: E402
@@ -40,6 +39,7 @@ DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try
 RENDERED_EVERY = int(os.environ.get("PYROCLAST_RENDERED_EVERY", "25"))  # also rendered, not only made; this is slow
 WATCHED_EVERY = 10
 READ_EVERY = 5
+FORMS = ("starter", "transient_heating", "hot_strength", "restrained_heating", "thermal_wall")
 FIGURES = 1  # of a damaged folder, drawn by lot
 DRAWN = ("strain", "stress_MPa", "temperature_degC", "heating_time_s", "specimen_strain", "lateral_strain",
          "energy_loading_J", "exchange", "stage", "converged")
@@ -130,17 +130,14 @@ class Damaged(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
         cls.root = Path(temporary.name)
-        for name, write in (("compressed", synthetic_run.write_run),
-                            ("failed", lambda to: synthetic_run.write_heated_run(to, Heating(critical=505.0))),
-                            ("cooled", lambda to: synthetic_run.write_heated_run(
-                                to, Heating(hottest=300.0, cooled=True, compressed=True, spread=50.0))),
-                            ("restrained", lambda to: synthetic_run.write_heated_run(
-                                to, Heating(restrained=True, unconverged=(40,)))),
-                            ("wall", synthetic_run.write_conduction)):
-            write(cls.root / name)
-            write(cls.root / f"{name}_whole")
+        for name in FORMS:
+            for folder in (name, f"{name}_whole"):
+                copied = small_forms.copy(name, cls.root / folder)
+                shutil.rmtree(copied / "specimen")  # no figure of a run reads it, nor these
+                for file in ("run.log", "properties.csv"):
+                    (copied / file).unlink(missing_ok=True)
             (cls.root / name / "references.json").write_text(json.dumps(
-                [{"builtin": "transient_strain" if name == "failed" else "compression"},
+                [{"builtin": "transient_strain" if name == "transient_heating" else "compression"},
                  {"name": "mine", "of": "stress", "over": "strain", "x": [0.0, 0.001], "low": [0.0, 20.0],
                   "high": [0.0, 21.0]}]))
             (cls.root / name / "deck.toml").write_text('[output]\n')
@@ -195,74 +192,62 @@ class Damaged(unittest.TestCase):
             if rendered:
                 figure.savefig(io.BytesIO(), format="png", dpi=20)
 
-    def test_each_is_drawn_or_told_in_one_line(self):
-        names = ("compressed", "failed", "cooled", "restrained", "wall")
-        drawn = told = gaps = 0
-        for seed in range(DAMAGED):
+    def damaged(self, every: int):
+        """Each folder by turns, damaged, with what draws lots; mends it afterwards."""
+        for seed in range(0, DAMAGED, every):
             random = np.random.default_rng(seed)
-            folder = self.root / names[seed % len(names)]
+            folder = self.root / FORMS[seed // every % len(FORMS)]
             what, paths = self.damage(folder, random)
-            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]):
-                try:
-                    with warnings.catch_warnings(record=True) as noted:
-                        warnings.simplefilter("error")
-                        warnings.simplefilter("always", GapWarning)
-                        self.draw(Results(folder), self.root / f"{folder.name}_whole",
-                                  all(path.suffix in (".h5", ".hdf") for path in paths),
-                                  seed % RENDERED_EVERY == 0, random)
-                    drawn += 1
-                    gaps += bool(noted)
-                except Error as error:
-                    told += 1
-                    self.assertEqual(len(str(error).splitlines()), 1, str(error))
-                    self.assertIn(str(self.root), str(error))
+            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), \
+                    warnings.catch_warnings(record=True) as noted:
+                warnings.simplefilter("error")
+                warnings.simplefilter("always", GapWarning)
+                yield seed, folder, paths, random, noted
             for path in paths:
                 path.write_bytes(self.content[path])
+
+    def assert_one_line(self, error: Error) -> None:
+        self.assertEqual(len(str(error).splitlines()), 1, str(error))
+        self.assertIn(str(self.root), str(error))
+
+    def test_each_is_drawn_or_told_in_one_line(self):
+        drawn = told = gaps = 0
+        for seed, folder, paths, random, noted in self.damaged(1):
+            try:
+                self.draw(Results(folder), self.root / f"{folder.name}_whole",
+                          all(path.suffix in (".h5", ".hdf") for path in paths), seed % RENDERED_EVERY == 0, random)
+                drawn += 1
+                gaps += bool(noted)
+            except Error as error:
+                told += 1
+                self.assert_one_line(error)
         # Damage that figures never meet would prove nothing.
         self.assertGreater(told, 0.2 * DAMAGED)
         self.assertGreater(drawn, 0.2 * DAMAGED)
         self.assertGreater(gaps, 0.02 * DAMAGED)
 
     def test_fields_and_notebooks_have_all_or_tell_it_in_one_line(self):
-        names = ("compressed", "failed", "cooled", "restrained", "wall")
         read = told = 0
-        for seed in range(0, DAMAGED, READ_EVERY):
-            random = np.random.default_rng(seed)
-            folder = self.root / names[seed // READ_EVERY % len(names)]
-            what, paths = self.damage(folder, random)
-            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), warnings.catch_warnings():
-                warnings.simplefilter("error")
-                warnings.simplefilter("ignore", GapWarning)
-                try:
-                    results = Results(folder)
-                    results.fields.isel(frame=slice(None, None, 5)).load()
-                    results.block_fields.isel(frame=-1).load()
-                    read += 1
-                except Error as error:
-                    told += 1
-                    self.assertEqual(len(str(error).splitlines()), 1, str(error))
-                    self.assertIn(str(self.root), str(error))
-                self.assertTrue(Results(folder)._repr_html_())
-            for path in paths:
-                path.write_bytes(self.content[path])
+        for _, folder, *_ in self.damaged(READ_EVERY):
+            try:
+                results = Results(folder)
+                results.fields.isel(frame=slice(None, None, 5)).load()
+                results.block_fields.isel(frame=-1).load()
+                read += 1
+            except Error as error:
+                told += 1
+                self.assert_one_line(error)
+            self.assertTrue(Results(folder)._repr_html_())
         self.assertGreater(told, 0.2 * DAMAGED / READ_EVERY)
         self.assertGreater(read, 0.2 * DAMAGED / READ_EVERY)
 
     def test_a_damaged_run_is_watched_as_far_as_it_can_be_read(self):
-        names = ("compressed", "failed", "cooled", "restrained", "wall")
         shown = 0
-        for seed in range(0, DAMAGED, WATCHED_EVERY):
-            random = np.random.default_rng(seed)
-            folder = self.root / names[seed // WATCHED_EVERY % len(names)]
-            what, paths = self.damage(folder, random)
-            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), warnings.catch_warnings():
-                warnings.simplefilter("ignore", GapWarning)
-                watch = Watch(folder)
-                curve, *_ = watch.draw().axes
-                shown += bool(curve.lines)
-                self.assertGreaterEqual(len(watch.text(79, 20)), 3)
-            for path in paths:
-                path.write_bytes(self.content[path])
+        for _, folder, *_ in self.damaged(WATCHED_EVERY):
+            watch = Watch(folder)
+            curve, *_ = watch.draw().axes
+            shown += bool(curve.lines)
+            self.assertGreaterEqual(len(watch.text(79, 20)), 3)
         self.assertGreater(shown, 0.2 * DAMAGED / WATCHED_EVERY)
 
 
@@ -272,18 +257,11 @@ class CommandLine(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name) / "run"
-        synthetic_run.write_run(self.folder)
+        self.folder = small_forms.copy("starter", Path(temporary.name) / "run")
 
     def command(self, *arguments) -> subprocess.CompletedProcess:
         return subprocess.run([sys.executable, "-m", "pyroclast.figures", *map(str, arguments)], text=True,
                               capture_output=True, env=os.environ | {"PYTHONPATH": str(PACKAGE)}, check=False)
-
-    def set_cell(self, row: int, name: str, cell: str) -> None:
-        history = self.folder / "history.csv"
-        lines = [line.split(",") for line in history.read_text().splitlines()]
-        lines[row - 1][lines[0].index(name)] = cell
-        history.write_text("\n".join(",".join(line) for line in lines) + "\n")
 
     def test_damage_is_told_in_one_line(self):
         out = self.folder / "figures" / "all.png"
@@ -306,12 +284,13 @@ class CommandLine(unittest.TestCase):
             path.write_bytes(before)
 
     def test_a_cell_that_is_not_finite_is_a_gap(self):
-        for row, name, cell in ((9, "strain", "nan"), (100, "stress_MPa", "inf"), (12, "energy_zones_J", "-inf")):
-            self.set_cell(row, name, cell)
+        with small_forms.table(self.folder / "history.csv") as cells:
+            for row, name, cell in ((99, "strain", "nan"), (150, "stress_MPa", "inf"), (112, "energy_zones_J", "-inf")):
+                cells.loc[row - 2, name] = cell
         done = self.command("run", self.folder)
         self.assertEqual((done.returncode, len(done.stdout.splitlines())), (0, 4), done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-        for part in (f"{self.folder}/history.csv, line 9", "'strain'", "'nan'", "3 in all", "gaps"):
+        for part in (f"{self.folder}/history.csv, line 99", "'strain'", "'nan'", "3 in all", "gaps"):
             self.assertIn(part, done.stderr)
 
     def test_a_picture_is_there_whole_or_not_at_all(self):
@@ -325,7 +304,8 @@ class CommandLine(unittest.TestCase):
     def test_a_title_is_no_formula(self):
         for title in ("costs 3 $ or 4 $ \\frac{", "a\nb\x00c", "$"):
             with self.subTest(title):
-                synthetic_run.write_summary(self.folder, title, [("settle", {}), ("compress", {})])
+                with small_forms.facts(self.folder / "summary.json") as summary:
+                    summary["title"] = title
                 marks = {}
                 figures.stress_strain(Results(self.folder), marks).savefig(io.BytesIO(), format="svg")
 

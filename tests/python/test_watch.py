@@ -1,6 +1,6 @@
 """What is shown of a run while another process writes it; that process is played by this one.
 
-    python3 -m unittest discover -s tests/python -p test_watch.py
+    SMALL_FORMS=build/strict/small_forms python3 -m unittest discover -s tests/python -p test_watch.py
 """
 
 from __future__ import annotations
@@ -25,8 +25,7 @@ HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1] / "python"
 sys.path[:0] = [str(HERE), str(PACKAGE)]
 
-import synthetic_run  # noqa: E402
-from synthetic_run import Heating  # noqa: E402
+import small_forms  # noqa: E402
 from test_figures import png_size  # noqa: E402
 from pyroclast.draw import style  # noqa: E402
 from pyroclast.draw.textplot import curve  # noqa: E402
@@ -35,14 +34,6 @@ from pyroclast.stored.files import GrowingTable, Lock, Writer  # noqa: E402
 from pyroclast.stored.heated import Heated  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 from pyroclast.watch import PICTURE, Watch  # noqa: E402
-
-DECK = """title = "Watched"
-[[stages]]
-kind = "settle"
-[[stages]]
-kind = "compress"
-"""
-
 
 def environment(**changes: str) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(PACKAGE), "DISPLAY": "", "WAYLAND_DISPLAY": "", **changes}
@@ -53,10 +44,8 @@ class WatchTest(unittest.TestCase):
     def setUpClass(cls):
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
-        cls.whole = Path(temporary.name) / "whole"
-        synthetic_run.write_run(cls.whole)
-        (cls.whole / "deck.toml").write_text(DECK)
-        (cls.whole / "manifest.json").write_text('{"program": "pyroclast"}')
+        cls.whole = small_forms.copy("starter", Path(temporary.name) / "whole")
+        (cls.whole / "run.log").unlink()
         cls.rows = (cls.whole / "history.csv").read_text().splitlines(keepends=True)
 
     def setUp(self):
@@ -169,7 +158,7 @@ class Reading(WatchTest):
             self.assertIs(lock.writer, Writer.DIED, "a file that was free is not tried again before it changes")
 
     def test_the_deck_tells_what_a_run_without_summary_does_not(self):
-        synthetic_run.write_heated_run(self.folder, Heating(restrained=True))
+        small_forms.copy("restrained_heating", self.folder)
         self.assertTrue(Heated(Results(self.folder)).restrained)
         (self.folder / "summary.json").unlink()
         stages = '[[stages]]\nkind = "settle"\n[[stages]]\nkind = "load"\n[[stages]]\nkind = "heat"\nplaten = '
@@ -191,7 +180,7 @@ class Told(WatchTest):
             "10:00:05 stage 2 of 2 (compress)  38 %,      1 min 2 s left  strain 0.00123  stress  20.00 MPa\n")
         with self.writer():
             title, stage, numbers = Watch(self.folder).headlines()
-        self.assertEqual(title, "Watched")
+        self.assertEqual(title, Results(self.whole).title)
         self.assertEqual(stage, "stage 2 of 2 (compress), 38 %, 1 min 2 s left")
         last = Results(self.whole).history["stress_MPa"][99]
         self.assertIn(f"stress {last:.3g} MPa", numbers)
@@ -232,40 +221,26 @@ class Told(WatchTest):
         self.assertEqual(watch.headlines()[1], "run ended: stopped by the user")
 
 
-def bent(folder: Path, recorded: str = "") -> None:
-    """A run without platens, whose records stand in the place of stress and strain. recorded: of these, one alone."""
-    synthetic_run.write_run(folder)
-    for name in ("history.csv", "fields/frames.csv"):
-        header, *rows = (folder / name).read_text().splitlines(keepends=True)
-        instead = ("cmod_m", "load_N") if name == "history.csv" else ("x", "y")
-        places = dict(zip(("strain", "stress_MPa"), instead))
-        words = [places.get(word, word) for word in header.strip().split(",")]
-        (folder / name).write_text(",".join(words) + "\n" + "".join(rows))
-        if name == "history.csv":
-            synthetic_run.write_facts(folder, words)
-    records = {"cmod": "opening", "load": "force"}
-    (folder / "deck.toml").write_text(DECK + "".join(
-        f'[[record]]\nname = "{name}"\nkind = "{kind}"\n' for name, kind in records.items() if recorded in ("", name)))
-
-
 class Drawn(WatchTest):
     def test_each_kind_of_run_is_drawn_over_what_its_figures_are(self):
-        for write, over, values in (
-            (synthetic_run.write_run, "Axial strain", "Axial stress"),
-            (lambda to: synthetic_run.write_heated_run(to, Heating()), "Temperature", "Total axial strain"),
-            (lambda to: synthetic_run.write_heated_run(to, Heating(spread=100.0)),
-             "Time of heating", "Total axial strain"),
-            (lambda to: synthetic_run.write_heated_run(to, Heating(restrained=True)), "Temperature", "Axial stress"),
-            (lambda to: synthetic_run.write_heated_run(to, Heating(hottest=300.0, cooled=True, compressed=True)),
-             "Axial strain", "Axial stress"),
-            (synthetic_run.write_conduction, "Time of heating", "Mean temperature"),
-            (bent, "cmod, opening [mm]", "load, force [kN]"),
-            (lambda to: bent(to, "cmod"), "cmod, opening [mm]", "cmod, opening [mm]"),
-            (lambda to: bent(to, "none"), "Time [s]", "Unbalanced ratio"),
+        records = {"cmod": "opening", "load": "force"}
+        for form, kept, over, values in (
+            ("starter", None, "Axial strain", "Axial stress"),
+            ("anderberg_thelandersson", None, "Temperature", "Total axial strain"),
+            ("fire_one_side", None, "Time of heating", "Total axial strain"),
+            ("restrained_heating", None, "Temperature", "Axial stress"),
+            ("hot_strength", None, "Axial strain", "Axial stress"),
+            ("thermal_wall", None, "Time of heating", "Mean temperature"),
+            ("notched_beam", records, "cmod, opening [mm]", "load, force [kN]"),
+            ("notched_beam", ["cmod"], "cmod, opening [mm]", "cmod, opening [mm]"),
+            ("notched_beam", [], "Time [s]", "Unbalanced ratio"),
         ):
             with self.subTest(over + values):
                 shutil.rmtree(self.folder, ignore_errors=True)
-                write(self.folder)
+                small_forms.copy(form, self.folder)
+                if kept is not None:
+                    (self.folder / "deck.toml").write_text("".join(
+                        f'[[record]]\nname = "{name}"\nkind = "{records[name]}"\n' for name in kept))
                 watch = Watch(self.folder)
                 axes, section, *_ = watch.draw().axes
                 self.assertTrue(axes.get_xlabel().startswith(over), axes.get_xlabel())
@@ -294,7 +269,7 @@ class Drawn(WatchTest):
     def test_a_notebook_gets_picture_and_words(self):
         watch = Watch(self.whole)
         self.assertTrue(watch._repr_png_().startswith(b"\x89PNG"))
-        begin = r'^<img alt="Synthetic run; run ended: [^"]*" src="data:image/png;base64,'
+        begin = rf'^<img alt="{Results(self.whole).title}; run ended: [^"]*" src="data:image/png;base64,'
         self.assertRegex(watch._repr_html_(), begin)
 
     def test_watching_needs_no_compiled_module(self):
@@ -390,7 +365,7 @@ class Command(WatchTest):
         text = shown.decode()
         self.assertGreaterEqual(text.count("Axial stress"), 2)
         self.assertRegex(text, r"\x1b\[20F\x1b\[J")  # back to where the last one began
-        self.assertIn("run ended: completed", text.split("\x1b[J")[-1])
+        self.assertIn("run ended: the stress fell", text.split("\x1b[J")[-1])
         self.assertTrue(pictures)
         self.assertNotIn((self.folder / PICTURE).read_bytes(), pictures)  # the last one is of the whole run
 

@@ -3,7 +3,6 @@
 import ast
 import os
 import re
-import runpy
 import subprocess
 import unittest
 from pathlib import Path
@@ -58,16 +57,6 @@ class Columns(unittest.TestCase):
                 for template in re.findall(r"`[^`]*`|/[^/\n]+/", path.read_text(encoding="utf-8")):
                     if "${" in template or template.startswith("/"):
                         self.assertNotIn(known, template, path)
-
-    def test_invented_runs_have_the_roles_of_the_program(self):
-        invented = runpy.run_path(str(PACKAGE.parents[1] / "tests" / "python" / "synthetic_run.py"))
-        names = {"NAME": "x", "MODE": "shear", "INTERFACE": "mortar_mortar"}
-        for name, _, _, _, role, *_ in _core.possible_columns():
-            if role in ("record", "control") or "gap" in name:
-                continue
-            for word, own in names.items():
-                name = name.replace(word, own)
-            self.assertEqual(invented["column_facts"](name)["role"], role, name)
 
 
 if __name__ == "__main__":

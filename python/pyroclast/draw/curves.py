@@ -239,11 +239,6 @@ def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], col
     axes.plot(*mean_of(curves), color=colour, linewidth=2.0, label=label or "their mean, as far as all go")
 
 
-def mean_curve(runs: Sequence[Results]) -> tuple[np.ndarray, np.ndarray]:
-    """Returns strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
-    return mean_of([_curve(run) for run in runs])
-
-
 def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
     """Returns strain and stress [MPa]; from rest, unless heat came before."""
     test = Compressed(run)
