@@ -15,8 +15,11 @@ class InAFolder(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300,
-                              check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+    def pyroclast(self, *words, code: int | None = 0, **options) -> subprocess.CompletedProcess:
+        """Runs the program, which must exit with the code. code: None for any."""
+        told = [word if isinstance(word, bytes) else str(word) for word in words]
+        done = subprocess.run([PROGRAM, *told], cwd=self.folder, capture_output=True, encoding="utf-8",
+                              errors="replace", timeout=300, check=False, **options)
+        if code is not None:
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done

@@ -2,14 +2,10 @@
 
 import csv
 import json
-import os
-import pathlib
-import shutil
-import subprocess
-import tempfile
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import InAFolder
+
 E, NU = 30e9, 0.2  # Pa
 SOFTER = 1e-3  # by contacts, see t_b below, and by what is left of the motion at rest
 SIZE = {"x": 0.06, "y": 0.09, "z": 0.04}  # m
@@ -68,11 +64,7 @@ def move(name: str, component: str = "y", speed: float = -SPEED) -> str:
     return f'set = "{name}"\nvelocity = "{speed} m/s"\ndirection = "{component}"\nramp_time = "10 ms"'
 
 
-class BetweenStages(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class BetweenStages(InAFolder):
     def deck(self, axes: str, stages: str, more: str = "") -> str:
         depth = f'depth = "{SIZE["z"]} m"\n' if "z" in axes else 'thickness = "40 mm"\n'
         records = "".join(f'[[record]]\nname = "{axis}"\nkind = "stress"\nset = "specimen"\ndirection = "{axis}"\n'
@@ -84,9 +76,7 @@ class BetweenStages(unittest.TestCase):
 
     def run_deck(self, text: str, code: int = 0) -> str:
         (self.folder / "deck.toml").write_text(text)
-        done = subprocess.run([PROGRAM, "run", "deck.toml", "-o", "out", "--overwrite", "--no-figures", "--quiet"],
-                              cwd=self.folder, capture_output=True, text=True, timeout=120, check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        done = self.pyroclast("run", "deck.toml", "-o", "out", "--overwrite", "--no-figures", "--quiet", code=code)
         return done.stderr
 
     def ends(self) -> list[dict[str, float]]:

@@ -18,14 +18,13 @@ import shutil
 import signal
 import struct
 import subprocess
-import tempfile
 import time
 import unittest
 from collections.abc import Callable
 
+from in_a_folder import PROGRAM, InAFolder
 from sanitized import SANITIZED
 
-PROGRAM = os.environ["PYROCLAST"]
 EDITS = int(os.environ.get("PYROCLAST_EDITS", "8"))
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 MEMORY = 2 << 30  # bytes, of address space
@@ -121,11 +120,10 @@ TABLES = [{"row": (None, None, None, count, None)} for count in (1 << 62, 1 << 3
     for value in (-1, 1 << 31, 1 << 63, 1e308)] + [{"wall_time": -1.0}, {"wall_time": 7}, {"stage_kinds": 7}]
 
 
-class Values(unittest.TestCase):
+class Values(InAFolder):
     def setUp(self):
+        super().setUp()
         self.hash_of = xxh3()
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
 
     def stopped(self, name: str) -> pathlib.Path:
         """A run that was stopped on its way, in its last stage."""
@@ -253,9 +251,7 @@ class Values(unittest.TestCase):
                 ("outcome", b"\xc8", "must be 0 to")):
             with self.subTest(name):
                 state.write(newest, self.hash_of, name, data)
-                done = subprocess.run([PROGRAM, "resume", out, "--no-figures"], capture_output=True, text=True,
-                                      timeout=60, check=False)
-                self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+                done = self.pyroclast("resume", out, "--no-figures", code=1)
                 at_fault = name.replace("made_constraints", "constraints_of_bundle")
                 self.assertIn(f"{newest.name}: is not sound: \"{at_fault}\"", done.stderr)
                 self.assertIn(says, done.stderr)

@@ -11,8 +11,9 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from in_a_folder import InAFolder  # noqa: E402
 from sanitized import needs_studies  # noqa: E402
-from test_user import CARELESS_LAW, PROGRAM, deck_of_careless_law  # noqa: E402
+from test_user import CARELESS_LAW, deck_of_careless_law  # noqa: E402
 
 MARK = """#include <cstdio>
 [[gnu::constructor]] static void mark() {
@@ -36,15 +37,14 @@ def model(seed):
 """
 
 
-class CodeTest(unittest.TestCase):
+class CodeTest(InAFolder):
     @classmethod
     def setUpClass(cls):
         cls.common = pathlib.Path(tempfile.mkdtemp())
         cls.addClassCleanup(shutil.rmtree, cls.common)
 
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         self.mark = self.common / "mark"
         self.env = os.environ | {"PYROCLAST_CACHE": str(self.common / "cache"), "HOME": str(self.folder / "home"),
                                  "XDG_CONFIG_HOME": str(self.folder / "home"), "PYROCLAST_CODE": "ask"}
@@ -58,9 +58,7 @@ class CodeTest(unittest.TestCase):
     def run_it(self, *words: str, **env: str) -> tuple[subprocess.CompletedProcess, bool]:
         """What the program says, and whether the code ran."""
         self.mark.unlink(missing_ok=True)
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, env=self.env | env, capture_output=True, text=True,
-                              timeout=300, check=False)
-        return done, self.mark.exists()
+        return self.pyroclast(*words, code=None, env=self.env | env), self.mark.exists()
 
     def assert_refused(self, *words: str, says: str = "--allow-code", **env: str) -> subprocess.CompletedProcess:
         done, ran = self.run_it(*words, **env)

@@ -7,12 +7,12 @@ import re
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import tomllib
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import PROGRAM, InAFolder
+
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 
 NUMBERS = (
@@ -33,17 +33,7 @@ NUMBERS = (
 )
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, timeout=300, check=False)
-        done.stdout, done.stderr = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done
-
+class CommandLine(InAFolder):
     def error(self, *words) -> str:
         """The one line that a command ends with that comes to nothing."""
         done = self.pyroclast(*words, code=1)

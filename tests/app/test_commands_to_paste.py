@@ -7,30 +7,26 @@ import os
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
-import tempfile
 import tomllib
 import unittest
 
+from in_a_folder import PROGRAM, InAFolder
 from sanitized import needs_studies
 
-PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 NAMES = ("My deck", "it's mine", "-dash", 'say "hello"', "Prüfung 1", "a&b;c", "$HOME")
 
 
-class CommandsToPaste(unittest.TestCase):
+class CommandsToPaste(InAFolder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         (self.folder / "bin").mkdir()
         (self.folder / "bin/pyroclast").symlink_to(PROGRAM)
 
     def pyroclast(self, *words, code: int = 0) -> str:
         """All that the program says."""
-        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        done = super().pyroclast(*words, code=code)
         return done.stdout + done.stderr
 
     def paste(self, command: str, code: int = 0) -> str:

@@ -2,15 +2,12 @@
 
 import csv
 import json
-import os
-import pathlib
 import re
-import shutil
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
+from in_a_folder import InAFolder
 
 HEAD = """title = "Grains"
 [specimen]
@@ -90,14 +87,9 @@ def holds(outline, point):
     return bool(np.count_nonzero(is_between & (point[0] < at)) % 2)
 
 
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *arguments):
-        return subprocess.run([os.environ["PYROCLAST"], *arguments], cwd=self.folder, capture_output=True, text=True,
-                              timeout=300, check=False)
+class ProgramTest(InAFolder):
+    def pyroclast(self, *words, code: int | None = None, **options) -> subprocess.CompletedProcess:
+        return super().pyroclast(*words, code=code, **options)
 
 
 class Grains(ProgramTest):

@@ -1,17 +1,16 @@
 """Runs that are stopped, killed, resumed and forked. PYROCLAST names the program."""
 
 import json
-import os
 import pathlib
 import resource
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import PROGRAM, InAFolder
+
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 SMALL = ("specimen.width=50 mm", "specimen.height=100 mm", "aggregates.d_max=12 mm", 'aggregates.sieves=["8 mm"]',
          "blocks.count=100", "stages[1].velocity=4 mm/s", "stages[1].ramp_time=2 ms", "stages[1].stop_strain=6e-4",
@@ -25,17 +24,7 @@ def changes(*keys: str) -> list[str]:
     return [word for key in keys for word in ("--set", key)]
 
 
-class RestartTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *arguments, code: int = 0, **options) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
-                              timeout=300, check=False, **options)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done
-
+class RestartTest(InAFolder):
     def run_case(self, out: str, *more: str, case: str = "starter", small: tuple = SMALL, **options):
         return self.pyroclast("run", CASES / f"{case}.toml", *changes(*small), *more, "--out", out, "--no-figures",
                               **options)

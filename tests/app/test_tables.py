@@ -2,15 +2,13 @@
 program."""
 
 import json
-import os
 import pathlib
 import re
-import shutil
 import subprocess
-import tempfile
 import unittest
 
-PROGRAM = os.environ["PYROCLAST"]
+from in_a_folder import InAFolder
+
 AGGREGATE = """
 [materials.aggregate]
 density = "2600 kg/m3"
@@ -74,14 +72,9 @@ FACE = 'kind = "temperature"\ntemperature = {}'
 GAS = 'kind = "convection"\ncoefficient = "25 W/(m2 K)"\ngas_temperature = {}'
 
 
-class Tables(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def pyroclast(self, *arguments) -> subprocess.CompletedProcess:
-        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, encoding="utf-8",
-                              timeout=60, check=False)
+class Tables(InAFolder):
+    def pyroclast(self, *words, code: int | None = None, **options) -> subprocess.CompletedProcess:
+        return super().pyroclast(*words, code=code, **options)
 
     def check(self, deck: str, **files: str) -> subprocess.CompletedProcess:
         for name, text in (files | {"deck.toml": deck}).items():

@@ -15,9 +15,9 @@ import tempfile
 import time
 import unittest
 
+from in_a_folder import PROGRAM, InAFolder
 from sanitized import SANITIZED
 
-PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 STARTER = (CASES / "starter.toml").read_text()
 WALL = (CASES / "thermal_wall.toml").read_text()
@@ -44,19 +44,14 @@ def small_deck(**changes: str) -> str:
     return deck
 
 
-class UserTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class UserTest(InAFolder):
     def write(self, text: str, name: str = "deck.toml") -> pathlib.Path:
         file = self.folder / name
         file.write_text(text)
         return file
 
-    def pyroclast(self, *arguments, **options) -> subprocess.CompletedProcess:
-        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
-                              timeout=300, check=False, **options)
+    def pyroclast(self, *words, code: int | None = None, **options) -> subprocess.CompletedProcess:
+        return super().pyroclast(*words, code=code, **options)
 
     def assert_that_overwriting_clears(self, name: str) -> None:
         """All files of a folder are ones that a run writes: of them, no other run's results are left."""
