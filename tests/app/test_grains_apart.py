@@ -207,10 +207,10 @@ class Grains(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def told(self, outlines) -> str:
-        """What `check` says, but for memory, which it measures."""
+        """What `check` says, but for memory and times, which it measures."""
         done = self.check_given(outlines)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return re.sub(r"\d+ MB of memory", "", done.stdout)
+        return re.sub(r"\d+ MB of memory|about \d+ (?:s|min|h).*", "", done.stdout)
 
     def test_an_outline_whose_last_row_repeats_the_first_is_the_same(self):
         once = circle(count=12)
