@@ -55,6 +55,8 @@ class Units(unittest.TestCase):
         """A study counts in the unit on which the name of an output ends."""
         for file in OF_THE_PROGRAM.glob("*/run.json"):
             facts = json.loads(file.read_text())
+            units = {column["name"]: column["unit"] for column in facts["columns"]}
+            self.assertEqual(pyroclast.read(file.parent).history.units, units)
             for told in facts["columns"] + facts["results"]:
                 if told["unit"]:  # a text has none
                     self.assertEqual(unit_of_name(told["name"]), told["unit"], told["name"])

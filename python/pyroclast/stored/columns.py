@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 else:
     Array = np.ndarray  # figures run with a NumPy that has no types yet
 
-_IN_SI = {"s": 1.0, "m": 1.0, "N": 1.0, "J": 1.0, "degC": 1.0, "MPa": 1e6}  # units of the program's columns
+_IN_SI = {"K/s": 1.0, "s": 1.0, "m": 1.0, "m2": 1.0, "N": 1.0, "J": 1.0, "degC": 1.0, "MPa": 1e6}
+"""Units of the program's columns, longer ends of names first, with their factors to SI."""
 
 
 class ColumnNames:
@@ -43,8 +44,8 @@ class ColumnNames:
     @classmethod
     def of_header(cls, names: Sequence[str]) -> ColumnNames:
         """Takes the header of a file of the program: the units are what names end with."""
-        ends = [name.rpartition("_") for name in names]
-        return cls([(name, unit if rest and unit in _IN_SI else "1") for name, (rest, _, unit) in zip(names, ends)],
+        ends = {"_" + unit.replace("/", "_"): unit for unit in _IN_SI}
+        return cls([(name, next((unit for end, unit in ends.items() if name.endswith(end)), "1")) for name in names],
                    _IN_SI.__getitem__)
 
     def place(self, name: str) -> tuple[int, float]:
