@@ -21,7 +21,7 @@ from ..stored.results import Results
 from . import style
 from .fractures import draw_specimen
 from .heated_sections import draw_temperature
-from .records import abscissa, leading, records_in, records_of
+from .records import abscissa, leading, records_in
 from .sections import draw_blocks, frame_section
 from .solid_sections import crack_lines, flat
 
@@ -90,9 +90,7 @@ def _draw_curve(axes: Axes, run: RunOrResults) -> None:
         axes.plot(style.PER_MILLE * history["strain"], history["stress_MPa"], color=style.BLUE)
         axes.set_xlabel(style.STRAIN_LABEL)
         axes.set_ylabel(style.STRESS_LABEL)
-        return
-    records = records_of(run) if isinstance(run, Results) else records_in(run.deck, history.units)
-    if record := leading(records):
+    elif record := leading(records := records_in(run.deck, history.units)):
         _, over, label = abscissa(run, records)
         axes.plot(over, record.of(run), color=style.BLUE)
         axes.set_xlabel(label)
