@@ -11,7 +11,7 @@ import tempfile
 import tomllib
 import unittest
 
-from in_a_folder import PROGRAM, InAFolder
+from in_a_folder import LONGEST, PROGRAM, InAFolder
 from sanitized import needs_studies
 
 CASES = pathlib.Path(__file__).parents[2] / "cases"
@@ -260,7 +260,7 @@ class StrengthOfARun(unittest.TestCase):
 
     @classmethod
     def run_deck(cls, *words, code: int = 0) -> subprocess.CompletedProcess:
-        done = subprocess.run([PROGRAM, "run", *words], cwd=cls.folder, capture_output=True, text=True, timeout=300,
+        done = subprocess.run([PROGRAM, "run", *words], cwd=cls.folder, capture_output=True, text=True, timeout=LONGEST,
                               check=False)
         assert done.returncode == code, done.stdout + done.stderr
         return done
