@@ -28,17 +28,19 @@ class ChunkList {
   }
   Ranks& ranks() const { return *ranks_; }
 
-  /// Returns the begin and the end of the items in own chunks.
-  std::pair<int, int> own() const {
+  /// Items from `first` up to `last`.
+  struct Items {
+    int first = 0, last = 0;
+    bool contain(int item) const { return item >= first && item < last; }
+  };
+  /// Returns the items in own chunks.
+  Items own() const {
     int first = 0, last = count();
     while (first < last && is_foreign(first)) ++first;
     while (last > first && is_foreign(last - 1)) --last;
-    return count() == 0 ? std::pair{0, 0} : std::pair{(*this)[first], (*this)[last]};
+    return count() == 0 ? Items{} : Items{(*this)[first], (*this)[last]};
   }
-  bool is_own(int item) const {
-    const auto [first, last] = own();
-    return item >= first && item < last;
-  }
+  bool is_own(int item) const { return own().contain(item); }
   /// Returns the number of items on all ranks, each counted by its owner: a collective.
   int whole_count(CallPlace at = CallPlace::here()) const {
     const auto [first, last] = own();

@@ -237,8 +237,7 @@ std::vector<Face> faces_in(const Model& model, const std::vector<int>& set) {
   auto faces = faces_of(model);
   const auto own = model.gridpoint_chunks().own();  // of foreign blocks a part may lack the neighbours
   std::erase_if(faces, [&](const Face& face) {
-    return std::ranges::any_of(face.gridpoints(),
-                               [&](int g) { return !is_in[g] || g < own.first || g >= own.second; });
+    return std::ranges::any_of(face.gridpoints(), [&](int g) { return !is_in[g] || !own.contain(g); });
   });
   return faces;
 }

@@ -469,14 +469,14 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
 /// and beyond the temperatures that act on it from outside.
 template <int Dim>
 void Conduction<Dim>::limit_flows(double time) {
-  const auto [first_own, last_own] = node_chunks_.own();
+  const auto own = node_chunks_.own();
   std::fill(reach_.begin(), reach_.end(), nothing());
   boundary_.add_reach(time, reach_);
   const auto share = [](double room, double heat) { return heat <= room ? 1.0 : std::max(room, 0.0) / heat; };
   team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (int node = static_cast<int>(begin); node < end; ++node) {
       shares_[node] = {1.0, 1.0};
-      if (node < first_own || node >= last_own) continue;
+      if (!own.contain(node)) continue;
       const auto uphill = zones_.uphill(node);
       if (prescriptions_.hold(node) || (uphill.in == 0.0 && uphill.out == 0.0)) continue;
       const double temperature = trial_.temperature[node];
@@ -506,9 +506,9 @@ bool Conduction<Dim>::oversteps() {
   std::fill(reach_.begin(), reach_.end(), nothing());
   for (const double t : {time(), time() + trial_.step}) boundary_.add_reach(t, reach_);
   std::atomic<bool> found{false};
-  const auto [first_own, last_own] = node_chunks_.own();
-  team_->share(last_own - first_own, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (int node = first_own + static_cast<int>(begin); node < first_own + end && !found; ++node) {
+  const auto own = node_chunks_.own();
+  team_->share(own.last - own.first, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (int node = own.first + static_cast<int>(begin); node < own.first + end && !found; ++node) {
       if (prescriptions_.hold(node)) continue;
       const double heat = state_.enthalpy[node];
       const double before = state_.temperature[node] + excess(node, state_.temperature[node], heat);
@@ -539,10 +539,10 @@ template <int Dim>
 void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   const bool first = stage.begin == 0.0;
   std::atomic<double> largest_change{trial_.change}, most_below{0.0}, most_above{0.0};
-  const auto [first_own, last_own] = node_chunks_.own();
-  team_->share(last_own - first_own, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const auto own = node_chunks_.own();
+  team_->share(own.last - own.first, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double change = 0.0, below = 0.0, above = 0.0;
-    for (int node = first_own + static_cast<int>(begin); node < first_own + end; ++node) {
+    for (int node = own.first + static_cast<int>(begin); node < own.first + end; ++node) {
       const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
       double& temperature = trial_.temperature[node];
       double increment;

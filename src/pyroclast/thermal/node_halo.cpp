@@ -9,14 +9,13 @@ NodeHalo::NodeHalo(const Model& model, const ThermalNodes& nodes, const ChunkLis
     : ranks_(&model.ranks()) {
   if (ranks_->count() == 1) return;
   const std::vector<int>& in_whole = model.part->gridpoint;  // ascending
-  const auto [first_own, last_own] = chunks.own();
+  const auto own = chunks.own();
   struct Wanted {
     int rank, node, gridpoint;  // who asks, which of its nodes, and a gridpoint of the whole there
   };
   std::vector<Wanted> own_wishes;
   for (int node = 0; node < nodes.count(); ++node)
-    if (node < first_own || node >= last_own)
-      own_wishes.push_back({ranks_->me(), node, in_whole[nodes.gridpoint[node]]});
+    if (!own.contain(node)) own_wishes.push_back({ranks_->me(), node, in_whole[nodes.gridpoint[node]]});
   struct Answer {
     int owner;
     Wanted wanted;
@@ -28,7 +27,7 @@ NodeHalo::NodeHalo(const Model& model, const ThermalNodes& nodes, const ChunkLis
     const auto here = std::ranges::lower_bound(in_whole, wanted.gridpoint);
     if (here == in_whole.end() || *here != wanted.gridpoint) continue;
     const int node = nodes.of_gridpoint[here - in_whole.begin()];
-    if (node < first_own || node >= last_own) continue;
+    if (!own.contain(node)) continue;
     of_rank[wanted.rank].sent.push_back(node);
     answers.push_back({ranks_->me(), wanted});
   }
