@@ -28,6 +28,14 @@ class ChunkList {
   }
   Ranks& ranks() const { return *ranks_; }
 
+  /// Returns the chunk of each item.
+  std::vector<int> of_items() const {
+    std::vector<int> chunk_of;
+    for (int chunk = 0; chunk < count(); ++chunk)
+      chunk_of.resize(static_cast<std::size_t>((*this)[chunk + 1]), chunk);
+    return chunk_of;
+  }
+
   /// Items from `first` up to `last`.
   struct Items {
     int first = 0, last = 0;

@@ -34,18 +34,17 @@ void for_each_that_travels(StateArrays<Dim, FlatArray>& arrays, Travels travels,
 template <int Dim>
 Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(model.ranks()) {
   if (ranks_.count() == 1) return;
-  const ChunkList chunks = model.gridpoint_chunks();
-  std::vector<int> rank_of(model.position.size());
-  for (int c = 0; c < chunks.count(); ++c)
-    for (int g = chunks[c]; g < chunks[c + 1]; ++g) rank_of[g] = model.part->rank_of_chunk[c];
+  const std::vector<int> chunk_of = model.gridpoint_chunks().of_items();
+  const auto rank_of = [&](int gridpoint) { return model.part->rank_of_chunk[chunk_of[gridpoint]]; };
   struct Gridpoints {
     std::set<int> own, foreign;  // ascending here as in the whole
   };
   std::map<int, Gridpoints> of_rank;
   const auto add = [&](int own, int foreign) {
-    if (rank_of[own] != ranks_.me() || rank_of[foreign] == ranks_.me()) return;
-    of_rank[rank_of[foreign]].own.insert(own);
-    of_rank[rank_of[foreign]].foreign.insert(foreign);
+    if (rank_of(own) != ranks_.me() || rank_of(foreign) == ranks_.me()) return;
+    Gridpoints& shared = of_rank[rank_of(foreign)];
+    shared.own.insert(own);
+    shared.foreign.insert(foreign);
   };
   for (const Contact<Dim>& contact : model.contacts) {
     add(contact.a, contact.b);

@@ -102,13 +102,9 @@ class LayoutBuilder {
   }
 
   void place_faces() {
-    std::vector<int> block_of(model_.position.size());
-    for (int b = 0; b < model_.block_count(); ++b)
-      for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) block_of[g] = b;
-    std::vector<int> chunk_of_block(model_.block_count());
+    const std::vector<int> block_of = gridpoint_blocks(model_);
     const ChunkList& blocks = layout_.chunks.blocks;
-    for (int chunk = 0; chunk < blocks.count(); ++chunk)
-      std::fill(chunk_of_block.begin() + blocks[chunk], chunk_of_block.begin() + blocks[chunk + 1], chunk);
+    const std::vector<int> chunk_of_block = blocks.of_items();
 
     std::vector<FaceToPlace> faces(model_.face_count());
     for (int f = 0; f < model_.face_count(); ++f) {

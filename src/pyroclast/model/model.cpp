@@ -162,10 +162,11 @@ ZoneGeometry<Dim> zone_geometry(const ModelOf<Dim>& model) {
 }
 
 std::vector<int> zone_blocks(const Model& model) {
-  std::vector<int> block(model.zone_count());
-  for (int b = 0; b < model.block_count(); ++b)
-    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) block[z] = b;
-  return block;
+  return ChunkList(model.block_zones).of_items();
+}
+
+std::vector<int> gridpoint_blocks(const Model& model) {
+  return ChunkList(model.block_gridpoints).of_items();
 }
 
 GridpointContacts gridpoint_contacts(const Model& model) {

@@ -213,6 +213,8 @@ ZoneGeometry<Dim> zone_geometry(const ModelOf<Dim>& model);
 
 /// Returns the block of each zone.
 std::vector<int> zone_blocks(const Model& model);
+/// Returns the block of each gridpoint.
+std::vector<int> gridpoint_blocks(const Model& model);
 
 /// Contact sides at each gridpoint, as compressed lists.
 struct GridpointContacts {

@@ -25,14 +25,6 @@ Sets cut_sets(const Sets& whole, const std::vector<int>& here) {
   return cut;
 }
 
-/// Returns the block of each gridpoint.
-std::vector<int> gridpoint_blocks(const Model& model) {
-  std::vector<int> block(static_cast<std::size_t>(model.gridpoint_count()));
-  for (int b = 0; b < model.block_count(); ++b)
-    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) block[g] = b;
-  return block;
-}
-
 }  // namespace
 
 std::vector<int> ranks_of_chunks(const Model& whole, int ranks) {
@@ -55,10 +47,7 @@ template <int Dim>
 ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
                      const std::vector<int>& rank_of_chunk, const std::vector<int>& nodes) {
   const int me = ranks->me(), blocks = whole.block_count();
-  std::vector<int> chunk_of(static_cast<std::size_t>(blocks));
-  const ChunkList chunks = whole.chunks();
-  for (int c = 0; c < chunks.count(); ++c)
-    for (int b = chunks[c]; b < chunks[c + 1]; ++b) chunk_of[b] = c;
+  const std::vector<int> chunk_of = whole.chunks().of_items();
   const std::vector<int> block_of = gridpoint_blocks(whole);
   const auto is_own = [&](int gridpoint) { return rank_of_chunk[chunk_of[block_of[gridpoint]]] == me; };
 
