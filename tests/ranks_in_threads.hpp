@@ -55,10 +55,10 @@ class RanksInThreads {
     }
 
    protected:
-    Bytes gather(std::span<const std::byte> own, CallPlace at) override {
+    Bytes gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
       Bytes all;
       for (const Bytes& bytes : board_->gather(me_, {own.begin(), own.end()}, at))
-        all.insert(all.end(), bytes.begin(), bytes.end());
+        if (receivers == Receivers::all || me_ == 0) all.insert(all.end(), bytes.begin(), bytes.end());
       return all;
     }
     double largest_of_all(double own, CallPlace at) override {

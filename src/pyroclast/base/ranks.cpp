@@ -11,7 +11,8 @@ class OneRank final : public Ranks {
   void exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override {}
 
  protected:
-  std::vector<std::byte> gather(std::span<const std::byte> own, CallPlace /*at*/) override {
+  std::vector<std::byte> gather(std::span<const std::byte> own, Receivers /*receivers*/,
+                                CallPlace /*at*/) override {
     return {own.begin(), own.end()};
   }
   double largest_of_all(double own, CallPlace /*at*/) override { return own; }

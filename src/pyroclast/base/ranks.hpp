@@ -37,16 +37,22 @@ class Ranks {
   virtual ~Ranks() = default;
   virtual int me() const = 0;
   virtual int count() const = 0;
+  /// Tells whether this is the rank that writes files and speaks to the user.
+  bool is_first() const { return me() == 0; }
 
   /// Returns the items of all ranks, in the order of the ranks.
   template <class T>
   std::vector<T> collect(const std::vector<T>& own, CallPlace at = CallPlace::here()) {
     static_assert(std::is_trivially_copyable_v<T>, "what travels is plain data");
     if (count() == 1) return own;
-    const std::vector<std::byte> bytes = gather(std::as_bytes(std::span(own)), at);
-    std::vector<T> all(bytes.size() / sizeof(T));
-    if (!all.empty()) std::memcpy(all.data(), bytes.data(), bytes.size());
-    return all;
+    return items_of<T>(gather(std::as_bytes(std::span(own)), Receivers::all, at));
+  }
+  /// Returns the same on the first rank, and nothing on the others.
+  template <class T>
+  std::vector<T> collect_at_first(const std::vector<T>& own, CallPlace at = CallPlace::here()) {
+    static_assert(std::is_trivially_copyable_v<T>, "what travels is plain data");
+    if (count() == 1) return own;
+    return items_of<T>(gather(std::as_bytes(std::span(own)), Receivers::first, at));
   }
   double largest(double own, CallPlace at = CallPlace::here()) {
     return count() == 1 ? own : largest_of_all(own, at);
@@ -64,9 +70,19 @@ class Ranks {
   virtual void exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) = 0;
 
  protected:
-  /// Returns the bytes of all ranks, in the order of the ranks.
-  virtual std::vector<std::byte> gather(std::span<const std::byte> own, CallPlace at) = 0;
+  enum class Receivers : std::uint8_t { all, first };
+  /// Returns the bytes of all ranks, in the order of the ranks; nothing on a rank that does not receive.
+  virtual std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers,
+                                        CallPlace at) = 0;
   virtual double largest_of_all(double own, CallPlace at) = 0;
+
+ private:
+  template <class T>
+  static std::vector<T> items_of(const std::vector<std::byte>& bytes) {
+    std::vector<T> items(bytes.size() / sizeof(T));
+    if (!items.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
+    return items;
+  }
 };
 
 /// Returns the one rank of a body that no other process holds a part of.

@@ -17,7 +17,7 @@ namespace pyroclast {
 namespace {
 
 const std::filesystem::path& created(const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
+  if (!folder.empty()) std::filesystem::create_directories(folder);
   return folder;
 }
 
@@ -115,12 +115,12 @@ std::vector<double> frame_times(const History& history, const FrameRows& frames)
 FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& simulation,
                        const History& history, const FrameRows& frames)
     : columns_(frame_columns(history)),
-      frames_(created(folder) / "frames.csv", text_of(history, columns_, frames)),
+      frames_(file_in(created(folder), "frames.csv"), text_of(history, columns_, frames)),
       blocks_(folder, MeshPart::blocks, simulation.model().dimension(), frame_times(history, frames)) {
   if (simulation.moves())
     contacts_.emplace(folder, MeshPart::contacts, simulation.model().dimension(),
                       frame_times(history, frames));
-  write_mesh(folder, simulation.model());
+  if (!folder.empty()) write_mesh(folder, *simulation.whole());
 }
 
 std::vector<std::string> FieldFiles::lost() const {

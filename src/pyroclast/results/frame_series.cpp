@@ -148,6 +148,7 @@ void rehearse_mesh(const Model& model) {
 FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part, int dimension,
                          std::vector<double> times)
     : folder_(std::move(folder)), part_(part), dimension_(dimension), times_(std::move(times)) {
+  if (folder_.empty()) return;
   for (int later = count(); std::filesystem::remove(folder_ / file_name(part_, later)); ++later) continue;
   if (count() > 0) write_series();
 }
@@ -159,12 +160,13 @@ std::string FrameSeries::file_name(MeshPart part, int frame) {
 std::vector<std::string> FrameSeries::lost() const {
   std::vector<std::string> names;
   for (int frame = 0; frame < count(); ++frame)
-    if (const auto name = file_name(part_, frame); !Hdf5File::is_whole(folder_ / name)) names.push_back(name);
+    if (const auto name = file_name(part_, frame); !folder_.empty() && !Hdf5File::is_whole(folder_ / name))
+      names.push_back(name);
   return names;
 }
 
 void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
-  Hdf5File file(folder_ / file_name(part_, count()));
+  Hdf5File file(file_in(folder_, file_name(part_, count())));
   link_mesh(file, part_, dimension_);
   fields(file);
   file.close();
@@ -177,7 +179,7 @@ void FrameSeries::write_series() const {
   series["file-series-version"] = "1.0";
   for (int i = 0; i < count(); ++i)
     series["files"].push_back({{"name", file_name(part_, i)}, {"time", times_[i]}});
-  write_text_file(folder_ / fmt::format("{}.hdf.series", name(part_)), series.dump(1) + "\n");
+  write_text_file(file_in(folder_, fmt::format("{}.hdf.series", name(part_))), series.dump(1) + "\n");
 }
 
 }  // namespace pyroclast

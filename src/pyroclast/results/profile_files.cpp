@@ -88,13 +88,13 @@ void ProfileRows::visit_state(StateVisitor& visitor) {
 ProfileFiles::ProfileFiles(const std::filesystem::path& folder, const Simulation& simulation, double duration,
                            const ProfileRows& rows)
     : line_(required(HeatedLine(simulation, duration), rows)),
-      profile_(folder / "temperature_profile.csv",
+      profile_(file_in(folder, "temperature_profile.csv"),
                table_text("heating_time_s,depth_m,temperature_degC\n", rows,
                           [&](std::size_t row) {
                             return profile_lines(rows.time[row], line_.depths(),
                                                  row_of(rows, row, line_.depths().size()));
                           })),
-      isotherm_(folder / "isotherm.csv",
+      isotherm_(file_in(folder, "isotherm.csv"),
                 table_text(fmt::format("heating_time_s,depth_{:.0f}_degC_m\n", kIsotherm), rows,
                            [&](std::size_t row) { return isotherm_lines(rows, row, line_.depths()); })) {}
 

@@ -26,21 +26,21 @@ ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
 }
 
 void ResultsWriter::begin(const Run& run) {
-  std::filesystem::remove(folder_ / "summary.json");
-  write_run_facts(folder_ / "run.json", run);
-  history_.emplace(folder_ / "history.csv", run.history());
+  if (!folder_.empty()) std::filesystem::remove(folder_ / "summary.json");
+  write_run_facts(file_in(folder_, "run.json"), run);
+  history_.emplace(file_in(folder_, "history.csv"), run.history());
   if (!run.simulation().field().is_uniform())
     profile_.emplace(folder_, run.simulation(), exposure_, profile_rows_);
-  if (has_fields_) fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
+  if (has_fields_) fields_.emplace(file_in(folder_, "fields"), run.simulation(), run.history(), frames_);
   lost_frames_.clear();
   for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
     lost_frames_.push_back(fmt::format(
         "a frame is lost: fields/{} is missing or broken; a run from the beginning has it", name));
   if (temperatures_.upper > temperatures_.lower)
-    write_text_file(folder_ / "properties.csv",
+    write_text_file(file_in(folder_, "properties.csv"),
                     properties_csv(property_curves(run.simulation().materials(), run.simulation().moves()),
                                    temperatures_, PropertyRows::few));
-  if (run.simulation().has_specimen())
+  if (run.simulation().has_specimen() && !folder_.empty())
     write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
@@ -52,7 +52,7 @@ void ResultsWriter::write(const Run& run) {
 
 Summary ResultsWriter::finish(const Run& run) {
   Summary made = summary(run);
-  write_summary(folder_ / "summary.json", made, run);
+  write_summary(file_in(folder_, "summary.json"), made, run);
   return made;
 }
 

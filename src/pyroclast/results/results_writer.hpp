@@ -25,7 +25,8 @@ namespace pyroclast {
 class ResultsWriter {
  public:
   /// Touches no file yet.
-  /// \param folder  folder that exists, see RunFolder
+  /// \param folder  folder that exists, see RunFolder; empty where another rank writes: then the functions
+  ///                below do their part of the collectives alone
   ResultsWriter(std::filesystem::path folder, const Setup& setup);
 
   /// Writes the specimen, the mesh, the properties where the temperature changes, and all present rows. Where

@@ -20,6 +20,7 @@ namespace {
 }  // namespace
 
 void write_text_file(const std::filesystem::path& path, const std::string& text) {
+  if (path.empty()) return;
   std::filesystem::path partial = path;
   partial += ".partial";
   {
@@ -39,11 +40,13 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
 
 LineFile::LineFile(std::filesystem::path path, const std::string& text) : path_(std::move(path)) {
   write_text_file(path_, text);
+  if (path_.empty()) return;
   stream_.open(path_, std::ios::binary | std::ios::app);
   if (!stream_) fail(path_);
 }
 
 void LineFile::lines(const std::string& text) {
+  if (path_.empty()) return;
   stream_ << text << std::flush;
   if (!stream_) fail(path_);
 }

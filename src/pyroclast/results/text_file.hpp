@@ -6,14 +6,20 @@
 
 namespace pyroclast {
 
+/// Returns the path of a file in a folder; empty where the folder is: then another rank writes the file.
+inline std::filesystem::path file_in(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  return folder.empty() ? folder : folder / name;
+}
+
 /// Writes a whole file: all of it appears under its name, or none (see publish). Throws Error naming the
-/// file.
+/// file. With an empty path it writes nothing.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
 /// Text file that grows line by line; each line is handed to the system before the next. Throws Error naming
 /// the file when a line cannot be written.
 class LineFile {
  public:
+  /// \param path  empty: nothing is written
   /// \param text  first text of the file, which replaces an earlier file, whole or not at all
   LineFile(std::filesystem::path path, const std::string& text);
   void line(const std::string& text) { lines(text + '\n'); }

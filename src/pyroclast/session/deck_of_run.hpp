@@ -23,6 +23,7 @@ struct RunChoices {
   std::optional<double> checkpoint;   ///< wall time between two checkpoints in place of the deck's, s
   StageRegistry kinds;
   LawSources laws = LawSources::of_environment();
+  std::shared_ptr<Ranks> ranks;  ///< ranks that hold the body; null: one
   bool needs_code = true;  ///< false: code that the deck names and that may not run is listed in its setup
   /// Function that is called before the specimen is made, which may take long.
   std::function<void(const DeckOfRun&)> before_making = [](const DeckOfRun&) {};

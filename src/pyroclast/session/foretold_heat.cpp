@@ -56,7 +56,7 @@ ForetoldHeat follow_heat(const Setup& setup, const Simulation& simulation, const
       .hottest = field.maximum(), .exposure = setup.exposure, .leaves_at = {}, .range = setup.temperatures};
   const auto start = Clock::now();
   try {
-    while (field.time() < setup.exposure && seconds_since(start) < kMostSeconds) {
+    while (field.time() < setup.exposure && !simulation.ranks().any(seconds_since(start) >= kMostSeconds)) {
       field.advance(kChange, setup.exposure);
       told.followed = field.time();
       if (field.maximum() <= told.hottest) continue;

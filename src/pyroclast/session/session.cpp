@@ -1,6 +1,7 @@
 #include "pyroclast/session/session.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "pyroclast/session/later.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/stages/drive.hpp"
+#include "pyroclast/version.hpp"
 
 namespace pyroclast {
 
@@ -19,9 +21,38 @@ namespace {
 
 std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
                                                std::optional<MadeSpecimen> specimen) {
-  if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team);
+  if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team, opened.choices.ranks);
   opened.choices.before_making(opened);
-  return make_simulation(opened.setup, opened.team);
+  return make_simulation(opened.setup, opened.team, opened.choices.ranks);
+}
+
+/// Tells whether this process writes the files of a run.
+bool writes_files(const RunChoices& choices) {
+  return !choices.ranks || choices.ranks->is_first();
+}
+
+/// Returns the inputs. Throws Error where ranks run different programs, decks or files that a deck names.
+Inputs same_on_all_ranks(const DeckOfRun& opened, Inputs inputs) {
+  const auto& ranks = opened.choices.ranks;
+  if (!ranks) return inputs;
+  struct Identity {
+    std::array<char, 80> program{}, inputs{};
+    bool operator==(const Identity&) const = default;
+  };
+  Identity own;
+  fmt::format_to_n(own.program.data(), own.program.size() - 1, "{} {}", kVersion, kCommit);
+  inputs.hash().copy(own.inputs.data(), own.inputs.size() - 1);
+  const auto all = ranks->collect(std::vector{own});
+  for (std::size_t rank = 1; rank < all.size(); ++rank) {
+    if (all[rank].program != all[0].program)
+      throw Error(fmt::format("rank {} runs pyroclast {}, but rank 0 {}: start one program on all ranks",
+                              rank, all[rank].program.data(), all[0].program.data()));
+    if (all[rank].inputs != all[0].inputs)
+      throw Error(fmt::format(
+          "rank {} reads another deck than rank 0, or other files that a deck names: all ranks need the same",
+          rank));
+  }
+  return inputs;
 }
 
 /// Error of a file that could not be written: nothing is wrong with the run.
@@ -81,7 +112,7 @@ Session::Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesy
     : lock_(std::move(lock)),
       folder_(std::move(folder)),
       opened_(std::move(opened)),
-      inputs_(inputs_of(opened_.deck, opened_.setup)),
+      inputs_(same_on_all_ranks(opened_, inputs_of(opened_.deck, opened_.setup))),
       simulation_(make_simulation_of(opened_, std::move(specimen))),
       writer_(folder_, opened_.setup),
       run_(*simulation_, std::move(opened_.setup.stages)) {
@@ -104,12 +135,12 @@ std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
 }
 
 std::unique_ptr<Session> Session::begin(DeckOfRun opened, const std::optional<RunOutput>& output) {
-  auto held = output ? lock(*output) : nullptr;
+  const bool writes = output && writes_files(opened.choices);
+  auto held = writes ? lock(*output) : nullptr;
   std::unique_ptr<Session> session(
-      new Session(std::move(opened), std::move(held), output ? output->folder : std::filesystem::path()));
-  if (!output) return session;
-  session->make_folder(*output, std::nullopt);
-  session->open(0);
+      new Session(std::move(opened), std::move(held), writes ? output->folder : std::filesystem::path()));
+  if (writes) session->make_folder(*output, std::nullopt);
+  if (output) session->open(0);
   return session;
 }
 
@@ -123,12 +154,14 @@ void Session::make_folder(const RunOutput& output, std::optional<Parent> parent)
 
 /// \param last_checkpoint  number of the checkpoint that the run goes on from; 0 where it begins
 void Session::open(std::int64_t last_checkpoint) {
-  checkpoints_.emplace(
-      folder_, opened_.setup.checkpoints,
-      Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
-                           [this](StateVisitor& visitor) { visit_state(visitor); },
-                           [this] { return writer_.wall_time(); }, [this] { return log_bytes_(); }},
-      last_checkpoint);
+  has_files_ = true;
+  if (simulation_->ranks().count() == 1)
+    checkpoints_.emplace(
+        folder_, opened_.setup.checkpoints,
+        Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
+                             [this](StateVisitor& visitor) { visit_state(visitor); },
+                             [this] { return writer_.wall_time(); }, [this] { return log_bytes_(); }},
+        last_checkpoint);
   writer_.begin(run_);
 }
 
@@ -159,10 +192,10 @@ bool Session::next() {
                     "and run it anew",
                     error.what()));
   }
-  if (!checkpoints_) return true;
+  if (!has_files_) return true;
   return telling_where_to_go_on([&] {
     writer_.write(run_);
-    if (run_.stage_is_over()) {
+    if (checkpoints_ && run_.stage_is_over()) {
       checkpoints_->end_stage(run_);
       last_checkpoint_ = checkpoints_->last();
     }
@@ -171,7 +204,7 @@ bool Session::next() {
 }
 
 Summary Session::finish() {
-  return telling_where_to_go_on([&] { return checkpoints_ ? writer_.finish(run_) : writer_.summary(run_); });
+  return telling_where_to_go_on([&] { return has_files_ ? writer_.finish(run_) : writer_.summary(run_); });
 }
 
 std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
@@ -203,6 +236,7 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
 }
 
 void Session::leave_folder() {
+  has_files_ = false;
   checkpoints_.reset();
   lock_.reset();
 }

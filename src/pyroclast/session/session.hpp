@@ -107,7 +107,7 @@ class Session {
   const Run& run() const { return run_; }
   Simulation& simulation() { return *simulation_; }
   const DeckOfRun& opened() const { return opened_; }
-  /// Returns the folder; empty where nothing is written.
+  /// Returns the folder; empty where nothing is written, or another rank writes.
   const std::filesystem::path& folder() const { return folder_; }
   /// Returns the files that were in the folder and that no run writes.
   const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
@@ -138,7 +138,8 @@ class Session {
   std::unique_ptr<Simulation> simulation_;
   ResultsWriter writer_;
   Run run_;
-  std::optional<Checkpoints> checkpoints_;
+  bool has_files_ = false;  ///< true where results go into a folder, by this rank or the first of several
+  std::optional<Checkpoints> checkpoints_;  ///< empty without files, and on several ranks
   std::optional<CheckpointInfo> goes_on_from_;
   std::filesystem::path last_checkpoint_;
   std::vector<std::filesystem::path> foreign_;

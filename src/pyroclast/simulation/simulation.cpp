@@ -48,9 +48,9 @@ std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
 }
 
 /// Returns the part of a body that this rank holds; the whole body where there is one rank.
-std::unique_ptr<Model> part(std::unique_ptr<Model> whole, std::shared_ptr<Ranks> ranks,
+std::unique_ptr<Model> part(std::unique_ptr<Model>& whole, const std::shared_ptr<Ranks>& ranks,
                             const HeatConditions& heat, const std::vector<BlockMaterial>& block_materials) {
-  if (!ranks || ranks->count() == 1) return whole;
+  if (!ranks || ranks->count() == 1) return std::move(whole);
   std::vector<int> nodes;
   if (!heat.uniform) {
     std::vector<bool> conducts;
@@ -59,7 +59,9 @@ std::unique_ptr<Model> part(std::unique_ptr<Model> whole, std::shared_ptr<Ranks>
       return join_through_contacts(of_dimension, conducts).of_gridpoint;
     });
   }
-  return part_of(*whole, std::move(ranks), nodes);
+  auto own = part_of(*whole, ranks, nodes);
+  if (!ranks->is_first()) whole.reset();
+  return own;
 }
 
 /// Returns the gap of each contact of a part as its owner has it: a part has contacts between foreign blocks,
@@ -126,7 +128,8 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        const std::vector<RecordParameters>& records, const std::optional<MovingBody>& moving,
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
-      model_(part(required(std::move(body.model)), std::move(ranks), heat, block_materials)),
+      whole_(required(std::move(body.model))),
+      model_(part(whole_, ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
@@ -159,8 +162,8 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 }
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {
-  if (!has_specimen()) return {};
-  return moves() ? warnings(*specimen_, *model_, materials_.contacts) : warnings(*specimen_);
+  if (!has_specimen() || !whole()) return {};
+  return moves() ? warnings(*specimen_, *whole(), materials_.contacts) : warnings(*specimen_);
 }
 
 const Record& Simulation::record(std::string_view name) const {

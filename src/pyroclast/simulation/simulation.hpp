@@ -66,7 +66,8 @@ class Simulation {
   /// Tells whether the body was made of a specimen here, not elsewhere.
   bool has_specimen() const { return specimen_.has_value(); }
   const MadeSpecimen& specimen() const { return *specimen_; }
-  /// Returns what a user should know of the specimen and of stones that hold together, one line each.
+  /// Returns what a user should know of the specimen and of stones that hold together, one line each; nothing
+  /// where another rank is the first.
   std::vector<std::string> warnings_of_specimen() const;
   const SpecimenNumbers& numbers() const { return numbers_; }
   double body_size() const { return numbers_.size; }
@@ -75,6 +76,10 @@ class Simulation {
     return side * (model_->dimension() == 2 ? model_->thickness : side);
   }
   const Model& model() const { return *model_; }
+  /// Returns the body of which `model()` may be a part, for files and words about it; null where another rank
+  /// is the first of several.
+  const Model* whole() const { return model_->part ? whole_.get() : model_.get(); }
+  Ranks& ranks() const { return model_->ranks(); }
   const ConcreteMaterials& materials() const { return materials_; }
   /// Sets other properties from now on, at the present temperatures, as an exchange of temperatures does, see
   /// `hand_over`. Densities and laws stay, and whether anything creeps.
@@ -139,6 +144,7 @@ class Simulation {
  private:
   std::shared_ptr<Team> team_;
   std::optional<MadeSpecimen> specimen_;
+  std::unique_ptr<Model> whole_;  ///< whole body on the first of several ranks, else null
   std::unique_ptr<Model> model_;
   SpecimenNumbers numbers_;
   ConcreteMaterials materials_;

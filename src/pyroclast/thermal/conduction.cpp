@@ -96,7 +96,9 @@ HeatStepLimit strictest(const std::vector<double>& rows, double safety, const Ch
     const double step = safety * 2.0 * capacity(node) / rows[node];
     if (step < limit.step) limit = {step, node};
   }
-  limit.step = nodes.ranks().least(limit.step);
+  const double own = limit.step;
+  limit.step = nodes.ranks().least(own);
+  if (limit.step < own) limit.node = -1;
   return limit;
 }
 

@@ -47,7 +47,7 @@ inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
 /// Stable step of forward Euler and the node that sets it.
 struct HeatStepLimit {
   double step = 0.0;  ///< s
-  int node = 0;
+  int node = 0;       ///< -1 where another rank has it
 };
 
 /// Work of a heat solver so far.

@@ -185,7 +185,7 @@ void Run::begin_stage() {
 bool Run::move_to_look() {
   for (bool there = false; !there;) {
     between_batches_(*this);
-    if (stop_asked_()) {
+    if (simulation_.ranks().any(stop_asked_())) {
       courses_[stage_].outcome = Outcome::stopped;
       outcome_ = Outcome::stopped;
       return false;

@@ -40,7 +40,7 @@ class Run {
   /// Runs to the end.
   Outcome run();
 
-  /// Sets a function that the run asks before every batch; true stops the run.
+  /// Sets a function that the run asks before every batch; true stops the run, on all ranks.
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
   /// Sets a function that the run calls once, when the mechanics has done so many steps since its beginning.
   /// The batch ends there. Throws Error when that step is past, or nothing moves.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -239,16 +240,77 @@ std::vector<FieldInfo> of_laws(const Laws& laws, std::initializer_list<int> dime
   return all;
 }
 
-/// Returns the laws of the contacts in the order in which the model has them.
+/// Returns the laws of the contacts in the order in which the whole model has them: a collective.
 std::vector<const LawTable*> laws_in_order(const Motion& motion) {
-  std::vector<const LawTable*> laws;
+  const Model& model = motion.model();
+  std::vector<const LawTable*> laws(motion.laws().begin(), motion.laws().end());
+  constexpr int kNone = std::numeric_limits<int>::max();  // of a law that no contact here has
+  std::vector<int> first(laws.size(), kNone);
   const LawTable* last = nullptr;
-  for (int i = 0; i < motion.model().contact_count(); ++i) {
+  for (int i = 0; i < model.contact_count(); ++i) {
     const LawTable* const law = &motion.law_of(i);
-    if (std::exchange(last, law) != law && std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
-    if (laws.size() == motion.laws().size()) break;
+    if (std::exchange(last, law) == law) continue;
+    int& of_law = first[std::ranges::find(laws, law) - laws.begin()];
+    of_law = std::min(of_law, model.part ? model.part->contact[i] : i);
   }
+  const std::vector<int> of_ranks = model.ranks().collect(first);
+  for (std::size_t i = 0; i < of_ranks.size(); ++i)
+    first[i % laws.size()] = std::min(first[i % laws.size()], of_ranks[i]);
+  const auto place = [&](const LawTable* law) {
+    return first[std::ranges::find(motion.laws(), law) - motion.laws().begin()];
+  };
+  std::erase_if(laws, [&](const LawTable* law) { return place(law) == kNone; });
+  std::ranges::sort(laws, {}, place);
   return laws;
+}
+
+/// Returns the items of a part of a body whose values this rank tells, in the order of the whole where the
+/// values of all ranks follow each other; contacts chunk by chunk.
+std::vector<int> own_items(Item item, const Model& model) {
+  std::vector<int> items;
+  const auto add = [&](ChunkList::Items own) {
+    for (int i = own.first; i < own.last; ++i) items.push_back(i);
+  };
+  if (item == Item::gridpoint)
+    add(model.gridpoint_chunks().own());
+  else if (item == Item::zone)
+    add(model.zone_chunks().own());
+  if (item == Item::gridpoint || item == Item::zone) return items;
+  const ContactsByChunk by_chunk = contacts_by_chunk(model);
+  const int of_each = item == Item::contact ? 1 : ends_of_contact(model.dimension());
+  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i)
+    for (int end = 0; end < of_each; ++end) items.push_back(of_each * by_chunk.contacts[i] + end);
+  return items;
+}
+
+/// Puts values of items, `components` each, in the order of their numbers in the whole.
+template <class T>
+std::vector<T> in_order(const std::vector<T>& values, int components, const std::vector<int>& numbers) {
+  std::vector<T> sorted(values.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i) * components, components,
+                sorted.begin() + static_cast<std::ptrdiff_t>(numbers[i]) * components);
+  return sorted;
+}
+
+/// Returns on the first rank the values of all ranks, in the order of the whole body.
+template <class T>
+std::vector<std::vector<T>> of_all_ranks(const std::vector<Field>& fields, const std::vector<int>& items,
+                                         std::vector<std::vector<T>> values, const Model& model) {
+  const Item item = fields.front().item;
+  const bool by_contact = item == Item::contact || item == Item::contact_end;
+  std::vector<int> numbers;
+  if (by_contact) {
+    const int of_each = item == Item::contact ? 1 : ends_of_contact(model.dimension());
+    for (const int i : items) numbers.push_back(model.part->contact[i / of_each] * of_each + i % of_each);
+    numbers = model.ranks().collect_at_first(numbers);
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    values[f] = model.ranks().collect_at_first(values[f]);
+    if (by_contact)
+      values[f] = in_order(values[f], components_of(fields[f].kind, model.dimension()), numbers);
+  }
+  return values;
 }
 
 }  // namespace
@@ -347,20 +409,23 @@ template <class T>
 std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Simulation& simulation) {
   std::vector<std::vector<T>> values(fields.size());
   if (fields.empty()) return values;
-  const int count = count_of(fields.front().item, simulation.model());
-  const auto components = [&](std::size_t f) {
-    return components_of(fields[f].kind, simulation.model().dimension());
-  };
+  const Model& model = simulation.model();
+  std::vector<int> items;  // those of a part
+  if (model.part) items = own_items(fields.front().item, model);
+  const auto count = model.part ? static_cast<int>(items.size()) : count_of(fields.front().item, model);
+  const auto components = [&](std::size_t f) { return components_of(fields[f].kind, model.dimension()); };
   for (std::size_t f = 0; f < fields.size(); ++f)
     values[f].reserve(static_cast<std::size_t>(count) * components(f));
   FieldReader reader(simulation);
   std::array<double, kMostComponents> value;
-  for (int i = 0; i < count; ++i)
+  for (int n = 0; n < count; ++n) {
+    const int i = model.part ? items[n] : n;
     for (std::size_t f = 0; f < fields.size(); ++f) {
       fields[f].read(reader, i, value.data());
       for (int c = 0; c < components(f); ++c) values[f].push_back(static_cast<T>(value[c]));
     }
-  return values;
+  }
+  return model.part ? of_all_ranks(fields, items, std::move(values), model) : values;
 }
 
 template std::vector<std::vector<float>> values_of(const std::vector<Field>&, const Simulation&);

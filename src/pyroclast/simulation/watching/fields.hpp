@@ -98,13 +98,14 @@ struct Field : FieldInfo {
   std::function<void(FieldReader&, int item, double* to)> read;
 };
 
-/// Returns all fields that a simulation has, in the order of the files. Files, Python and docs follow this
-/// list.
+/// Returns all fields that a simulation has, in the order of the files: a collective. Files, Python and docs
+/// follow this list.
 std::vector<Field> fields_of(const Simulation& simulation);
 /// Returns all fields that simulations of the laws in this program may have.
 std::vector<FieldInfo> possible_fields();
 
-/// Returns the values of fields of one item, of each field item by item and component by component.
+/// Returns the values of fields of one item, of each field item by item and component by component: a
+/// collective. Where several ranks hold the body the first gets the values of the whole, others get none.
 /// \tparam T  float, as in files, or double
 template <class T>
 std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Simulation& simulation);

@@ -40,10 +40,17 @@ PlaceBox box_of(const Model& model) {
 
 HeatedLine::HeatedLine(const Simulation& simulation, double duration) {
   const Model& model = simulation.model();
-  const BoxSide side =
-      most_heated_side(model, simulation.materials().block_materials, simulation.heat(), duration);
+  struct Heated {
+    BoxSide side;
+    PlaceBox box;
+  };
+  std::vector<Heated> found;
+  if (const Model* const whole = simulation.whole())
+    found.push_back(
+        {most_heated_side(*whole, simulation.materials().block_materials, simulation.heat(), duration),
+         box_of(*whole)});
+  const auto [side, box] = simulation.ranks().collect(found).front();
   face_ = kSides[side.axis][side.is_upper ? 1 : 0];
-  const PlaceBox box = box_of(model);
   const double length = box.high[side.axis] - box.low[side.axis];
   std::vector<Vec<3>> points(kPoints, 0.5 * (box.low + box.high));
   for (int i = 0; i < kPoints; ++i) {
@@ -60,9 +67,7 @@ HeatedLine::HeatedLine(const Simulation& simulation, double duration) {
 }
 
 std::vector<double> HeatedLine::read(const TemperatureField& field) const {
-  std::vector<double> temperatures;
-  for (const Probe& probe : probes_) temperatures.push_back(probe.read(field.gridpoints()));
-  return temperatures;
+  return Probe::read_all(probes_, field.gridpoints());
 }
 
 }  // namespace pyroclast

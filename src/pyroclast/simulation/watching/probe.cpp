@@ -83,42 +83,59 @@ std::vector<Found> deepest_zones(const Model& model, const std::vector<Vec<3>>& 
   });
 }
 
-bool holds(const Found& found) {
-  return found.depth >= -kOnEdge;
-}
-
 }  // namespace
 
-Probe::Probe(const Model& model, const ProbePosition& at) : name_(at.name) {
-  Found found = deepest_zones(model, {at.position}).front();
-  ranks_ = &model.ranks();
-  const auto depths = ranks_->collect(std::vector{found.depth});
-  const auto deepest = std::ranges::max_element(depths);  // the first of equals, as in the whole
-  rank_ = static_cast<int>(deepest - depths.begin());
-  if (!(*deepest >= -kOnEdge))
+Probe::Probe(const Model& model, const ProbePosition& at) {
+  auto found = Probe::at(model, {at.position}).front();
+  if (!found)
     throw Error(fmt::format("no zone of the specimen holds the point {} m of probe {}",
                             place_text(at.position, model.dimension(), "{:g}"), at.name));
-  gridpoints_ = std::move(found.gridpoints);
-  weights_ = std::move(found.weights);
+  *this = *std::move(found);
+  name_ = at.name;
 }
 
-Probe::Probe(std::string name, std::vector<int> gridpoints, std::vector<double> weights)
-    : name_(std::move(name)), gridpoints_(std::move(gridpoints)), weights_(std::move(weights)) {}
-
 std::vector<std::optional<Probe>> Probe::at(const Model& model, const std::vector<Vec<3>>& points) {
-  std::vector<std::optional<Probe>> probes;
-  for (Found& found : deepest_zones(model, points))
-    probes.push_back(holds(found)
-                         ? std::optional(Probe("", std::move(found.gridpoints), std::move(found.weights)))
-                         : std::nullopt);
+  std::vector<Found> deepest = deepest_zones(model, points);
+  std::vector<double> depths;
+  for (const Found& found : deepest) depths.push_back(found.depth);
+  const std::vector<double> of_ranks = model.ranks().collect(depths);
+  std::vector<std::optional<Probe>> probes(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    int rank = 0;  // the first of equals, as in the whole
+    const auto depth_on = [&](int r) { return of_ranks[static_cast<std::size_t>(r) * points.size() + i]; };
+    for (int r = 1; r < model.ranks().count(); ++r)
+      if (depth_on(r) > depth_on(rank)) rank = r;
+    if (!(depth_on(rank) >= -kOnEdge)) continue;
+    Probe probe;
+    probe.gridpoints_ = std::move(deepest[i].gridpoints);
+    probe.weights_ = std::move(deepest[i].weights);
+    probe.ranks_ = &model.ranks();
+    probe.rank_ = rank;
+    probes[i] = std::move(probe);
+  }
   return probes;
 }
 
-double Probe::read(const std::vector<double>& gridpoints) const {
+double Probe::read_here(const std::vector<double>& gridpoints) const {
   double value = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) value += weights_[i] * gridpoints[gridpoints_[i]];
-  if (ranks_->count() == 1) return value;
-  return ranks_->collect(std::vector{value})[static_cast<std::size_t>(rank_)];
+  return value;
+}
+
+double Probe::read(const std::vector<double>& gridpoints) const {
+  const double here = read_here(gridpoints);
+  if (ranks_->count() == 1) return here;
+  return ranks_->collect(std::vector{here})[static_cast<std::size_t>(rank_)];
+}
+
+std::vector<double> Probe::read_all(const std::vector<Probe>& probes, const std::vector<double>& gridpoints) {
+  std::vector<double> here;
+  for (const Probe& probe : probes) here.push_back(probe.read_here(gridpoints));
+  if (probes.empty() || probes.front().ranks_->count() == 1) return here;
+  const std::vector<double> of_ranks = probes.front().ranks_->collect(here);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    here[i] = of_ranks[static_cast<std::size_t>(probes[i].rank_) * probes.size() + i];
+  return here;
 }
 
 }  // namespace pyroclast

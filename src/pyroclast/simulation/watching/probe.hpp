@@ -20,8 +20,11 @@ class Probe {
   /// Throws Error when the point lies outside the specimen.
   Probe(const Model& model, const ProbePosition& at);
 
-  /// Returns a probe for each point that lies in the specimen, m; none for the others.
+  /// Returns a probe for each point that lies in the specimen, m; none for the others: a collective.
   static std::vector<std::optional<Probe>> at(const Model& model, const std::vector<Vec<3>>& points);
+  /// Reads the field by several probes: one collective.
+  static std::vector<double> read_all(const std::vector<Probe>& probes,
+                                      const std::vector<double>& gridpoints);
 
   const std::string& name() const { return name_; }
 
@@ -30,7 +33,8 @@ class Probe {
   double read(const std::vector<double>& gridpoints) const;
 
  private:
-  Probe(std::string name, std::vector<int> gridpoints, std::vector<double> weights);
+  Probe() = default;
+  double read_here(const std::vector<double>& gridpoints) const;
 
   std::string name_;
   std::vector<int> gridpoints_;  ///< corners of the zone
