@@ -26,6 +26,7 @@ MODULES = [
     "setup",
     "results",
     "session",
+    "parallel",
     "app",
     "python",
 ]

@@ -96,10 +96,13 @@ RunChoices choices_of(const RunOptions& options) {
   choices.threads = options.threads;
   choices.instructions = options.instructions;
   choices.checkpoint = options.checkpoint;
+  choices.ranks = options.ranks;
   choices.laws = sources_of(options.laws);
   choices.before_making = [speech = options.speech](const DeckOfRun& opened) {
     const int blocks = opened.setup.specimen.blocks.count;
-    if (blocks < kManyBlocks || speech == Speech::quiet) return;
+    if (blocks < kManyBlocks || (opened.choices.ranks && !opened.choices.ranks->is_first()) ||
+        speech == Speech::quiet)
+      return;
     fmt::print("making the specimen of {} blocks ...\n", blocks);
     std::fflush(stdout);
   };
@@ -141,6 +144,10 @@ std::string describe(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) { return describe_specimen(s); }, specimen);
 }
 
+std::string describe(const Ranks& ranks) {
+  return ranks.count() == 1 ? "" : fmt::format("{} ranks with ", ranks.count());
+}
+
 std::string describe(const Team& team) {
   return team.size() == 1 ? "1 thread" : fmt::format("up to {} threads", team.size());
 }
@@ -162,9 +169,14 @@ std::string describe_warnings(const std::vector<std::string>& warnings) {
 
 std::string describe(const HeatSolver& conduction, const Model& model, const Interval& temperatures) {
   const HeatStepLimit limit = conduction.step_limit();
-  const Vec<3> at = model.place(conduction.nodes().gridpoint[limit.node]);
-  std::string text = fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n",
-                                 conduction.nodes().count(), temperatures.lower, temperatures.upper) +
+  const std::vector<int>& firsts = conduction.nodes().gridpoint;
+  std::vector<Vec<3>> strictest;
+  if (limit.node >= 0) strictest.push_back(model.place(firsts[limit.node]));
+  const Vec<3> at = model.ranks().collect(strictest).front();
+  const auto nodes = model.ranks().sum(std::ranges::count_if(
+      firsts, [own = model.gridpoint_chunks().own()](int g) { return own.contain(g); }));
+  std::string text = fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n", nodes,
+                                 temperatures.lower, temperatures.upper) +
                      fmt::format("                stable step {:.3g} s at first, set at {} mm\n", limit.step,
                                  place_text(kMilli * at, model.dimension(), "{:.2f}"));
   if (const GapHeat* gaps = conduction.gap_law())

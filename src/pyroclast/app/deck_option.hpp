@@ -29,7 +29,9 @@ std::string describe_own_laws();
 /// Describes, for the screen, the specimen as it was made.
 std::string describe(const MadeSpecimen& specimen);
 
-/// Describes, for the screen, how many threads a run takes at most.
+/// Describes, for the screen, the ranks that hold a body; empty where there is one.
+std::string describe(const Ranks& ranks);
+/// Describes, for the screen, how many threads a run takes at most, on each rank.
 std::string describe(const Team& team);
 
 /// Returns the warnings as lines for the screen; empty without any.

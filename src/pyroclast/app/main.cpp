@@ -1,18 +1,16 @@
 #include <algorithm>
 #include <csignal>
-#include <new>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "pyroclast/app/command_names.hpp"
 #include "pyroclast/app/commands.hpp"
-#include "pyroclast/app/say_aside.hpp"
+#include "pyroclast/app/on_ranks.hpp"
 #include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
-#include "pyroclast/plugin/code_permission.hpp"
 #include "pyroclast/version.hpp"
 
 namespace {
@@ -54,15 +52,7 @@ int main(int argc, char** argv) {
   forget_current_folder();
   try {
     return command_line(argc, argv);
-  } catch (const pyroclast::CodeNotAllowed& e) {
-    app::say_aside(fmt::format("error: {}\n", e.what()));
-    return app::kCodeNotAllowed;
-  } catch (const pyroclast::Error& e) {
-    app::say_aside(fmt::format("error: {}\n", e.what()));
-  } catch (const std::bad_alloc&) {
-    app::say_aside("error: out of memory\n");
-  } catch (const std::exception& e) {
-    app::say_aside(fmt::format("error: {}\n", e.what()));
+  } catch (...) {
+    return app::tell_failure();
   }
-  return 1;
 }

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+
+#include "pyroclast/base/ranks.hpp"
 
 namespace pyroclast::app {
 
@@ -34,12 +37,14 @@ struct RunOptions {
   int threads = 0;                   ///< most threads; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best available
   std::optional<std::int64_t> seed;  ///< seed in place of the deck's
+  bool mpi = false;                  ///< true where the ranks of an MPI job hold the body together
   int seeds = 1;                     ///< number of specimens; above 1 by the package for Python
   std::vector<std::string> changes;  ///< changes "key=value", see Deck::open
   std::optional<double> checkpoint;  ///< wall time between two checkpoints in place of the deck's, s
   OwnLawOptions laws;
   Speech speech = Speech::usual;
-  std::string command;  ///< command as typed, for the manifest
+  std::shared_ptr<Ranks> ranks;  ///< ranks that hold the body; null: one
+  std::string command;           ///< command as typed, for the manifest
 };
 
 /// Returns a validator that takes whole numbers from `least` to `most`. Its messages are words of this

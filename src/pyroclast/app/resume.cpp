@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/app/on_ranks.hpp"
 #include "pyroclast/app/run_to_end.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/shell_words.hpp"
@@ -85,6 +86,7 @@ Command add_resume(CLI::App& cli) {
   return {resume,
           [options](const std::vector<std::string>& typed) {
             options->as.command = shell_command(typed);
+            require_one_copy("a run goes on in one process yet");
             return go_on_or_fork(*options);
           },
           false};

@@ -27,7 +27,8 @@ RunLog::RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept)
   std::error_code none;
   if (std::filesystem::exists(file_) && std::filesystem::file_size(file_) > kept)
     std::filesystem::resize_file(file_, kept, none);
-  std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string())};
+  std::vector<spdlog::sink_ptr> sinks;
+  if (!file_.empty()) sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string()));
   if (speech != Speech::quiet) sinks.push_back(screen_ = std::make_shared<spdlog::sinks::stdout_sink_st>());
   logger_ = std::make_unique<spdlog::logger>("run", sinks.begin(), sinks.end());
   logger_->set_pattern("%v");

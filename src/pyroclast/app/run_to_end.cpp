@@ -12,10 +12,12 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/interrupt.hpp"
+#include "pyroclast/app/on_ranks.hpp"
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/shell_words.hpp"
+#include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 
@@ -167,10 +169,11 @@ std::string describe_start(Session& session) {
   std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
                      describe_own_laws() + describe(simulation.specimen()) +
                      describe_warnings(simulation.warnings_of_specimen());
-  const Model& model = simulation.model();
-  text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
+  if (const Model* const whole = simulation.whole())
+    text +=
+        fmt::format("model           {} zones, {} contacts\n", whole->zone_count(), whole->contact_count());
   if (const auto* conduction = simulation.field().conduction())
-    text += describe(*conduction, model, opened.setup.temperatures);
+    text += describe(*conduction, simulation.model(), opened.setup.temperatures);
   if (may_leave_range(opened.setup, simulation))
     if (const auto told = foretell_heat(opened.setup, simulation))
       if (const std::string warning = warning_of(*told, opened.setup); !warning.empty())
@@ -178,16 +181,17 @@ std::string describe_start(Session& session) {
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
                         simulation.motion().time_step(), simulation.motion().mass_ratio());
-  return text + fmt::format("processor       {}, {} instructions\n", describe(*opened.team),
-                            name(opened.instructions));
+  return text + fmt::format("processor       {}{}, {} instructions\n", describe(simulation.ranks()),
+                            describe(*opened.team), name(opened.instructions));
 }
 
 int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   const Interrupt interrupt;
   const Run& run = session.run();
+  Ranks& ranks = run.simulation().ranks();
   const std::filesystem::path& folder = session.folder();
   std::optional<Watcher> watcher;
-  if (options.watch) watcher.emplace(folder, log);
+  if (options.watch && ranks.is_first()) watcher.emplace(folder, log);
   session.log_bytes_by([&] { return log.bytes(); });
   session.stop_when([&] { return interrupt.asked(); });
   Progress progress(steps_so_far(run));
@@ -201,15 +205,17 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
     while (session.next()) {
       if (run.stage_number() != stage) progress.begin_stage(steps_after(session));
       stage = run.stage_number();
-      if (progress.line_is_due() || log.speech() == Speech::verbose)
+      // what a line tells is measured by all ranks
+      if (ranks.any(progress.line_is_due() || log.speech() == Speech::verbose))
         log.say_now(progress_line(run, progress));
     }
     return session.finish();
   };
   const Summary summary = noting_errors(log, to_the_end);
+  if (!ranks.is_first()) return exit_code(summary);
   if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   log.say(describe(summary, session.opened().setup.specimen, folder));
-  if (summary.outcome == Outcome::stopped)
+  if (summary.outcome == Outcome::stopped && ranks.count() == 1)
     log.say(fmt::format("to go on        pyroclast resume {}", shell_path(folder)));
   if (options.figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
@@ -227,9 +233,19 @@ int run_from_start(const RunOptions& options) {
   const auto session =
       Session::begin(open_deck(options), RunOutput{folder, options.overwrite, options.command});
   print_kept(folder, session->foreign());
-  RunLog log(folder / "run.log", options.speech);
+  RunLog log(file_in(session->folder(), "run.log"), options.speech);
   log.say(describe_start(*session));
   return run_to_end(*session, log, options);
+}
+
+/// Runs a deck on the ranks of an MPI job. The first one alone writes and speaks.
+int run_on_ranks(RunOptions options) {
+  return on_ranks([&](const RanksOfRun& given) {
+    options.ranks = given.ranks;
+    if (options.threads == 0) options.threads = given.threads;
+    if (!given.ranks->is_first()) options.speech = Speech::quiet;
+    return run_from_start(options);
+  });
 }
 
 }  // namespace
@@ -247,23 +263,32 @@ Command add_run(CLI::App& cli) {
   add_checkpoint(run, *options);
   add_speech(run, *options);
   add_watching(run, *options);
+  auto* const mpi =
+      run->add_flag("--mpi", options->mpi,
+                    "Hold the body by the ranks of an MPI job: mpirun -n 4 pyroclast run DECK --mpi; "
+                    "results are the same for any number");
   run->add_option("--seeds", options->seeds,
                   "Run this many specimens, from seed 1 or --seed on: print each result with its mean and 95 "
                   "% interval, "
                   "the curves "
                   "with their band, and the pictures of the median specimen")
-      ->check(whole_number(1, 100000));
+      ->check(whole_number(1, 100000))
+      ->excludes(mpi);
   run->add_flag("--dry-run", options->dry_run,
                 "Tell the time, memory and disk of the run, as `check` does, and with --seeds those of all "
-                "specimens; run nothing");
+                "specimens; run nothing")
+      ->excludes(mpi);
   run->add_flag_callback(
       "--no-fields", [options] { options->changes.emplace_back("output.fields=false"); },
       "Write no fields, as [output] fields = false; then figures show the history only");
   return {run,
           [options](const std::vector<std::string>& typed) {
             options->command = shell_command(typed);
+            if (options->mpi) return run_on_ranks(*options);
             if (options->seeds > 1) scatter(*options);
-            return options->dry_run ? printed(check(*options)) : run_from_start(*options);
+            if (options->dry_run) return printed(check(*options));
+            require_one_copy("say --mpi, and they hold parts of one body");
+            return run_from_start(*options);
           },
           false};
 }

@@ -1,0 +1,202 @@
+// Ranks by MPI. This file alone knows MPI; it becomes a shared object that the program loads on demand.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <string>
+#include <thread>
+
+#include <mpi.h>
+#include <sched.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/parallel/processes.hpp"
+#include "pyroclast/version.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+using WaitClock = std::chrono::steady_clock;
+
+std::string text_of(CallPlace at) {
+  return std::string(at.file) + ":" + std::to_string(at.line);
+}
+
+/// Returns a number for a place in the code (FNV-1a), exact as a double.
+std::uint64_t hash_of(CallPlace at) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : text_of(at)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return hash >> 12U;
+}
+
+/// Numbers of a rank that all ranks learn at once; bytes beyond it need a second message.
+struct Packet {
+  std::uint64_t size = 0;   ///< bytes of the rank
+  std::uint64_t place = 0;  ///< hash of the place from which it calls
+  std::array<std::byte, 240> first{};
+};
+
+class MpiProcesses final : public Processes {
+ public:
+  MpiProcesses() {
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_rank(MPI_COMM_WORLD, &me_);
+    MPI_Comm_size(MPI_COMM_WORLD, &count_);
+    if (const char* const limit = std::getenv("PYROCLAST_RANKS_LIMIT")) longest_wait_ = std::atof(limit);
+    count_sharing();
+  }
+  ~MpiProcesses() override { MPI_Finalize(); }
+  MpiProcesses(const MpiProcesses&) = delete;
+  MpiProcesses& operator=(const MpiProcesses&) = delete;
+
+  int me() const override { return me_; }
+  int count() const override { return count_; }
+  int sharing_processors() const override { return sharing_; }
+
+  void exchange(std::vector<Message>& messages, CallPlace at) override {
+    requests_.clear();
+    const int tag = static_cast<int>(hash_of(at) % kTags);
+    for (Message& message : messages)
+      MPI_Irecv(message.received.data(), length(message.received.size()), MPI_DOUBLE, message.rank, tag,
+                MPI_COMM_WORLD, &requests_.emplace_back());
+    for (const Message& message : messages)
+      MPI_Isend(message.sent.data(), length(message.sent.size()), MPI_DOUBLE, message.rank, tag,
+                MPI_COMM_WORLD, &requests_.emplace_back());
+    wait(requests_, at);
+  }
+
+  void wait_for_all() override {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && done == 0;)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+
+  [[noreturn]] void end_all(int exit_code) override {
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+    std::_Exit(exit_code);
+  }
+
+ protected:
+  std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
+    Packet packet{.size = own.size(), .place = hash_of(at)};
+    std::copy_n(own.begin(), std::min(own.size(), packet.first.size()), packet.first.begin());
+    std::vector<Packet> packets(static_cast<std::size_t>(count_));
+    requests_.assign(1, MPI_REQUEST_NULL);
+    MPI_Iallgather(&packet, sizeof(Packet), MPI_BYTE, packets.data(), sizeof(Packet), MPI_BYTE,
+                   MPI_COMM_WORLD, requests_.data());
+    wait(requests_, at);
+    require_one_place(packets, at);
+    const bool receives = receivers == Receivers::all || is_first();
+    std::vector<int> sizes, begins;
+    std::size_t total = 0;
+    bool is_small = true;
+    for (const Packet& of_rank : packets) {
+      begins.push_back(length(total));
+      sizes.push_back(length(of_rank.size));
+      total += of_rank.size;
+      is_small = is_small && of_rank.size <= of_rank.first.size();
+    }
+    length(total);
+    std::vector<std::byte> all(receives ? total : 0);
+    if (is_small) {
+      for (std::size_t rank = 0; receives && rank < packets.size(); ++rank)
+        std::copy_n(packets[rank].first.begin(), packets[rank].size, all.begin() + begins[rank]);
+      return all;
+    }
+    requests_.assign(1, MPI_REQUEST_NULL);
+    if (receivers == Receivers::all)
+      MPI_Iallgatherv(own.data(), sizes[static_cast<std::size_t>(me_)], MPI_BYTE, all.data(), sizes.data(),
+                      begins.data(), MPI_BYTE, MPI_COMM_WORLD, requests_.data());
+    else
+      MPI_Igatherv(own.data(), sizes[static_cast<std::size_t>(me_)], MPI_BYTE, all.data(), sizes.data(),
+                   begins.data(), MPI_BYTE, 0, MPI_COMM_WORLD, requests_.data());
+    wait(requests_, at);
+    return all;
+  }
+
+  double largest_of_all(double own, CallPlace at) override {
+    // the place as largest and least number: all ranks call from one place where both are the same
+    const auto place = static_cast<double>(hash_of(at));
+    const std::array<double, 3> sent{own, place, -place};
+    std::array<double, 3> largest{};
+    requests_.assign(1, MPI_REQUEST_NULL);
+    MPI_Iallreduce(sent.data(), largest.data(), static_cast<int>(sent.size()), MPI_DOUBLE, MPI_MAX,
+                   MPI_COMM_WORLD, requests_.data());
+    wait(requests_, at);
+    if (largest[1] != -largest[2]) refuse_other_place(at);
+    return largest[0];
+  }
+
+ private:
+  static constexpr int kTags = 30000;  // MPI has at least 32,767
+
+  /// Returns a length for MPI, which counts by int.
+  static int length(std::size_t count) {
+    if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw Error("a message between ranks is longer than 2 GB: take more ranks");
+    return static_cast<int>(count);
+  }
+
+  /// Counts the ranks on this machine that may use the same processors.
+  void count_sharing() {
+    MPI_Comm of_machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &of_machine);
+    int ranks = 1;
+    MPI_Comm_size(of_machine, &ranks);
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    sched_getaffinity(0, sizeof(own), &own);
+    std::vector<cpu_set_t> all(static_cast<std::size_t>(ranks));
+    MPI_Allgather(&own, sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE, of_machine);
+    sharing_ = static_cast<int>(
+        std::ranges::count_if(all, [&](const cpu_set_t& other) { return CPU_EQUAL(&own, &other) != 0; }));
+    MPI_Comm_free(&of_machine);
+  }
+
+  /// Waits for requests. Other processes get the processor where the wait is long.
+  void wait(std::vector<MPI_Request>& requests, CallPlace at) const {
+    constexpr int kSpins = 2000;
+    const auto begun = WaitClock::now();
+    int done = 0;
+    for (int spins = 0;; ++spins) {
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+      if (done != 0) return;
+      if (spins < kSpins) continue;
+      std::this_thread::yield();
+      if (longest_wait_ > 0.0 && Seconds(WaitClock::now() - begun).count() > longest_wait_)
+        throw Error("it waits for other ranks in " + text_of(at));
+    }
+  }
+
+  void require_one_place(const std::vector<Packet>& packets, CallPlace at) const {
+    for (const Packet& of_rank : packets)
+      if (of_rank.place != packets.front().place) refuse_other_place(at);
+  }
+  [[noreturn]] static void refuse_other_place(CallPlace at) {
+    throw Error("ranks are in different places of the program, this one in " + text_of(at) +
+                ": please report this as a fault of pyroclast");
+  }
+
+  int me_ = 0, count_ = 1, sharing_ = 1;
+  double longest_wait_ = 0.0;  ///< s; 0: any
+  std::vector<MPI_Request> requests_;
+};
+
+}  // namespace
+
+}  // namespace pyroclast
+
+extern "C" const pyroclast::MpiObject* pyroclast_mpi() {
+  static const std::string version = std::string(pyroclast::kVersion) + " " + std::string(pyroclast::kCommit);
+  static const pyroclast::MpiObject object{version.c_str(), []() -> std::unique_ptr<pyroclast::Processes> {
+                                             return std::make_unique<pyroclast::MpiProcesses>();
+                                           }};
+  return &object;
+}
