@@ -117,6 +117,26 @@ frame_interval = "30 s"
         self.assertGreater(forecast[1], foreseen("output.fields=false")[1])
         self.assertLess(foreseen("stages[0].interval=1 h", "stages[0].change=1000 K")[0], 3)
 
+    def test_check_foretells_what_ranks_hold_and_send(self):
+        chunks = {**os.environ, "PYROCLAST_CHUNK_BLOCKS": "25"}
+        words = ("check", CASES / "fire_one_side.toml", "--set", "blocks.count=100")
+        said = self.pyroclast(*words, "--ranks", 4, env=chunks).stdout
+        self.assertIn("ranks           4 share 6 chunks", said)  # platens are chunks of their own
+        rows = {what.strip(): (float(mean), float(most)) for what, mean, most in
+                re.findall(r"\n {16}(\S.+?) +([\d.]+) +([\d.]+)(?=\n)", said[said.index("\nranks  "):])}
+        self.assertEqual(list(rows), ["blocks", "zones over the mean", "blocks of other ranks that it holds too",
+                                      "neighbours", "sent after each step [kB]",
+                                      "sent after each stage of the heat solver [kB]", "memory [MB]"])
+        self.assertEqual(rows["zones over the mean"][0], 1.0)
+        self.assertAlmostEqual(4 * rows["blocks"][0], 102, delta=2)
+        for mean, most in rows.values():
+            self.assertLessEqual(mean, most)
+            self.assertGreater(mean, 0.0)
+        self.assertNotIn("ranks  ", self.pyroclast(*words).stdout)
+        refused = self.pyroclast(*words, "--ranks", 7, env=chunks, code=1)
+        self.assertEqual((refused.stdout, refused.stderr), ("", "error: 7 ranks cannot share a body of 6 chunks: "
+                                                                "take 6 ranks at most, or more blocks\n"))
+
     def test_time_without_a_processor_does_not_lengthen_the_time_that_check_tells(self):
         def foreseen(rest: float) -> float:
             """Seconds that check tells, where it stands still for `rest` seconds behind each 5 ms of its work."""

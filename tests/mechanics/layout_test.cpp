@@ -111,7 +111,7 @@ TEST(Layout, LeavesFewLanesOfContactPointsIdleInThreeDimensions) {
     const Layout<3>& layout = m.body().layout;
     EXPECT_GT(model.contact_count(), 0.95 * kLanes * (layout.point_packs - 1)) << blocks;
     EXPECT_LT(static_cast<double>(m.body().memory()), 280.0 * model.zone_count()) << blocks;
-    EXPECT_EQ(layout.chunks.blocks.count(), (blocks + kBlocksOfAChunk - 1) / kBlocksOfAChunk);
+    EXPECT_EQ(layout.chunks.blocks.count(), (blocks + blocks_of_a_chunk(3) - 1) / blocks_of_a_chunk(3));
     int most = 0;
     for (int f = 0; f < model.face_count(); ++f)
       most = std::max(most, model.face_contacts[f + 1] - model.face_contacts[f]);

@@ -21,6 +21,7 @@
 #include "pyroclast/thermal/conduction.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 #include "ranks_in_threads.hpp"
+#include "small_chunks.hpp"
 #include "stages/small_runs.hpp"
 #include "thermal/advance.hpp"
 
@@ -32,7 +33,7 @@ constexpr int kBlocksOfAPart = 8;
 /// A heated prism between platens; each zone and contact has a temperature of its own.
 struct Whole {
   explicit Whole(const std::string& text) : setup(read(text)) {
-    setup.moving->chunk_blocks = kBlocksOfAPart;
+    const SmallChunks chunks(kBlocksOfAPart);
     simulation = make_simulation(setup);
     simulation->field().begin_exposure(setup.temperatures);
     simulation->field().advance(1000.0, 300.0);

@@ -11,6 +11,7 @@
 
 #include "pyroclast/model/part.hpp"
 #include "ranks_in_threads.hpp"
+#include "small_chunks.hpp"
 #include "stages/small_runs.hpp"
 
 namespace pyroclast {
@@ -37,7 +38,6 @@ struct Asked {
 Left run_on(const Asked& asked, const std::shared_ptr<Ranks>& ranks) {
   Setup setup = read(asked.text);
   if (asked.blocks > 0) setup.specimen.blocks.count = asked.blocks;
-  if (setup.moving) setup.moving->chunk_blocks = kBlocksOfASmallChunk;
   const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
   Run run(*simulation, std::move(setup.stages));
   while (run.history().row_count() < asked.most_rows && run.next()) {
@@ -48,6 +48,7 @@ Left run_on(const Asked& asked, const std::shared_ptr<Ranks>& ranks) {
     const auto row = run.history().row(r);
     left.rows.emplace_back(row.begin(), row.end());
   }
+  if (!simulation->moves()) return left;
   const Model& model = simulation->model();
   const MotionReader& read = simulation->motion().read();
   for (auto [g, last] = model.gridpoint_chunks().own(); g < last; ++g)
@@ -77,6 +78,7 @@ std::string difference(const Left& a, const Left& b) {
 }
 
 void expect_same_bits(const Asked& asked, const std::vector<int>& counts) {
+  const SmallChunks chunks(kBlocksOfASmallChunk);
   const Left alone = run_on(asked, nullptr);
   ASSERT_GT(alone.rows.size(), 3U);
   for (const int count : counts) {
@@ -122,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Small, CaseOnRanks,
                                          std::pair{"disc_3d", 80}, std::pair{"brazilian", 170},
                                          std::pair{"direct_tension", 80}, std::pair{"notched_beam", 200},
                                          std::pair{"cyclic", 80}, std::pair{"anderberg_thelandersson", 80},
+                                         std::pair{"delamination_heat", 200}, std::pair{"thermal_wall", 100},
                                          std::pair{"fire_one_side", 100}, std::pair{"hot_strength", 80},
                                          std::pair{"residual_capacity", 80},
                                          std::pair{"restrained_heating", 80}, std::pair{"ring_cooling", 240},
@@ -135,6 +138,7 @@ TEST_P(CaseOnRanks, HasTheBitsOfOne) {
 }
 
 TEST(RunOnRanks, MoreRanksThanChunksAreRefused) {
+  const SmallChunks chunks(kBlocksOfASmallChunk);
   EXPECT_THROW(RanksInThreads::run(20, [](const auto& ranks) { run_on({deck(kUniform + kSettle)}, ranks); }),
                Error);
 }

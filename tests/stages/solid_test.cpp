@@ -47,7 +47,7 @@ SpecimenBody column_between_platens(const Setup& setup) {
   for (auto& c : model->contacts)
     c.interface = c.face == 0 || c.face == kCubes ? static_cast<int>(flat.interface_names.size()) - 1
                                                   : number_of(flat.interface_names, "mortar_mortar");
-  model->cut_into_chunks(kBlocksOfAChunk);
+  model->cut_into_chunks(blocks_of_a_chunk(3));
   const double height = kCubes * kEdge;
   const auto put = [&](const char* name, int first_block, int last_block, auto holds) {
     for (int g = model->block_gridpoints[first_block]; g < model->block_gridpoints[last_block]; ++g)

@@ -1,6 +1,6 @@
-// A run of a deck as `pyroclast run` has it, in a layout of its own choice: the environment variables
-// FEWEST_BLOCKS and CHUNK_BLOCKS give the fewest blocks of a bundle and the most of a chunk. Takes the
-// arguments that validation/reference gives to a program.
+// A run of a deck as `pyroclast run` has it, in a layout of its own choice: the environment variable
+// FEWEST_BLOCKS gives the fewest blocks of a bundle. Takes the arguments that validation/reference gives to a
+// program.
 
 #include <cstdlib>
 #include <filesystem>
@@ -29,7 +29,6 @@ int main(int argc, char** argv) {
 
   Setup setup = read_setup(Deck::open(deck, changes), deck.parent_path());
   setup.moving->mechanics.layout.fewest_blocks = std::stoi(std::getenv("FEWEST_BLOCKS"));
-  setup.moving->chunk_blocks = std::stoi(std::getenv("CHUNK_BLOCKS"));
   const auto simulation = make_simulation(setup);
   std::filesystem::create_directories(out);
   write_text_file(out / "manifest.json", R"({"commit": "this"})");

@@ -26,7 +26,8 @@ class Layout(unittest.TestCase):
     def run_with(self, fewest_blocks: int, chunk_blocks: int) -> dict:
         options = types.SimpleNamespace(cases="small", only=CASES, changes=[], jobs=2)
         out = self.folder / f"{fewest_blocks}-{chunk_blocks}.json"
-        with mock.patch.dict(os.environ, {"FEWEST_BLOCKS": str(fewest_blocks), "CHUNK_BLOCKS": str(chunk_blocks)}):
+        with mock.patch.dict(os.environ, {"FEWEST_BLOCKS": str(fewest_blocks),
+                                          "PYROCLAST_CHUNK_BLOCKS": str(chunk_blocks)}):
             reference.make(options, out, os.environ["LAYOUT_RUN"])
         return reference.read(out)
 

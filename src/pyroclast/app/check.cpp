@@ -16,6 +16,7 @@
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
+#include "pyroclast/simulation/body_on_ranks.hpp"
 
 namespace pyroclast::app {
 
@@ -116,6 +117,43 @@ void print_results(const Rehearsal& cost, bool has_fields) {
                       : fmt::format("{:.3g} GB", bytes / kGiga));
 }
 
+/// Tells what each of several ranks would hold and send.
+/// \param for_specimen  peak of the memory when the specimen was made, as every rank makes it, bytes
+/// \param for_whole     peak when the whole body could run, bytes
+void print_ranks(const std::vector<HeldByRank>& held, const Simulation& whole, double for_specimen,
+                 double for_whole) {
+  const Model& model = whole.model();
+  const auto count = static_cast<double>(held.size());
+  const auto tell = [&](const char* what, int decimals, auto number) {
+    double sum = 0.0, most = 0.0;
+    for (const HeldByRank& rank : held) {
+      sum += number(rank);
+      most = std::max<double>(most, number(rank));
+    }
+    fmt::print("                {:<44}{:>10.{}f}{:>10.{}f}\n", what, sum / count, decimals, most, decimals);
+  };
+  fmt::print(
+      "{:<60}{:>10}{:>10}\n",
+      fmt::format("ranks           {} share {} chunks; of a rank", held.size(), model.chunks().count()),
+      "mean", "most");
+  tell("blocks", 0, [](const HeldByRank& rank) { return rank.blocks; });
+  tell("zones over the mean", 2,
+       [&](const HeldByRank& rank) { return rank.zones * count / model.zone_count(); });
+  tell("blocks of other ranks that it holds too", 0,
+       [](const HeldByRank& rank) { return rank.foreign_blocks; });
+  tell("neighbours", 1, [](const HeldByRank& rank) { return rank.neighbours(); });
+  if (whole.moves())
+    tell("sent after each step [kB]", 1,
+         [&](const HeldByRank& rank) { return 1e-3 * rank.step_bytes(model.dimension()); });
+  if (!whole.field().is_uniform())
+    tell("sent after each stage of the heat solver [kB]", 1,
+         [](const HeldByRank& rank) { return 1e-3 * rank.stage_bytes(); });
+  tell("memory [MB]", 0, [&](const HeldByRank& rank) {
+    const double share = static_cast<double>(rank.zones + rank.foreign_zones) / model.zone_count();
+    return 1e-6 * (for_specimen + (for_whole - for_specimen) * share);
+  });
+}
+
 /// Tells what is known of a deck without the code that it names. Returns the exit code.
 int say_unchecked(const DeckOfRun& opened) {
   fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
@@ -132,8 +170,13 @@ int check(const RunOptions& options) {
   Setup& setup = opened.setup;
   if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
   opened.choices.before_making(opened);
-  const auto simulation = make_simulation(setup, opened.team);
+  auto specimen = make_checked_specimen(setup.specimen, opened.team.get(), !setup.heat.uniform);
+  const double for_specimen = peak_memory();
+  const auto simulation = make_simulation(setup, std::move(specimen), opened.team);
+  const double for_whole = peak_memory();
   const Model& model = simulation->model();
+  std::vector<HeldByRank> held;
+  if (options.ranks > 0) held = held_by_ranks(*simulation, options.ranks);
   fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
   say(fmt::format("{}{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup),
                   describe_own_laws(), describe(simulation->specimen()),
@@ -174,6 +217,7 @@ int check(const RunOptions& options) {
   fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
              name(opened.instructions), peak_memory() * 1e-6);
   print_results(cost, has_fields);
+  if (!held.empty()) print_ranks(held, *simulation, for_specimen, for_whole);
   return 0;
 }
 
@@ -185,6 +229,10 @@ Command add_check(CLI::App& cli) {
   add_seed(command, options->seed);
   add_changes(command, *options);
   add_processor(command, *options);
+  command
+      ->add_option("--ranks", options->ranks,
+                   "Tell what each of so many ranks, processes that share the body, would hold and send")
+      ->check(whole_number(1, kMostRanks));
   return {command, [options](const auto&) { return check(*options); }};
 }
 

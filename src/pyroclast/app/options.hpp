@@ -14,6 +14,7 @@
 namespace pyroclast::app {
 
 constexpr int kMostThreads = 1024;
+constexpr int kMostRanks = 100'000;
 
 /// Sources of contact laws that are not part of the program.
 struct OwnLawOptions {
@@ -34,6 +35,7 @@ struct RunOptions {
   bool page = true;  ///< false: no page of the run at its end
   bool watch = false;
   bool dry_run = false;              ///< true to tell what the run takes, and not to run
+  int ranks = 0;                     ///< ranks whose parts `check` foretells; 0: none
   int threads = 0;                   ///< most threads; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best available
   std::optional<std::int64_t> seed;  ///< seed in place of the deck's

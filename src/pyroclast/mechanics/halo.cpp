@@ -1,8 +1,8 @@
 #include "pyroclast/mechanics/halo.hpp"
 
-#include <map>
-#include <set>
 #include <type_traits>
+
+#include "pyroclast/model/part.hpp"
 
 namespace pyroclast {
 
@@ -34,23 +34,7 @@ void for_each_that_travels(StateArrays<Dim, FlatArray>& arrays, Travels travels,
 template <int Dim>
 Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(model.ranks()) {
   if (ranks_.count() == 1) return;
-  const std::vector<int> chunk_of = model.gridpoint_chunks().of_items();
-  const auto rank_of = [&](int gridpoint) { return model.part->rank_of_chunk[chunk_of[gridpoint]]; };
-  struct Gridpoints {
-    std::set<int> own, foreign;  // ascending here as in the whole
-  };
-  std::map<int, Gridpoints> of_rank;
-  const auto add = [&](int own, int foreign) {
-    if (rank_of(own) != ranks_.me() || rank_of(foreign) == ranks_.me()) return;
-    Gridpoints& shared = of_rank[rank_of(foreign)];
-    shared.own.insert(own);
-    shared.foreign.insert(foreign);
-  };
-  for (const Contact<Dim>& contact : model.contacts) {
-    add(contact.a, contact.b);
-    add(contact.b, contact.a);
-  }
-  for (const auto& [rank, gridpoints] : of_rank) {
+  for (const auto& [rank, gridpoints] : shared_gridpoints(model)) {
     Neighbour& neighbour = neighbours_.emplace_back();
     for (const int g : gridpoints.own) neighbour.sent.push_back(layout.gridpoint_slot[g]);
     for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);

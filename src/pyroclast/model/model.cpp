@@ -1,10 +1,12 @@
 #include "pyroclast/model/model.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/zone_shape.hpp"
 
@@ -59,12 +61,29 @@ int ModelOf<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
   block_gridpoints.push_back(static_cast<int>(position.size()));
   block_zones.push_back(static_cast<int>(zones.size()));
   block_material.push_back(material);
-  put_into_chunk(block_count() - 1, kBlocksOfAChunk);
+  put_into_chunk(block_count() - 1);
   return block_count() - 1;
 }
 
-void Model::put_into_chunk(int block, int most_blocks) {
-  const bool begins = block == 0 || block - chunk_blocks[chunk_blocks.size() - 2] >= most_blocks ||
+int blocks_of_a_chunk(int dimension) {
+  constexpr int kInPlane = 1024, kInSpace = 512;  // a block in space has some six times as many zones
+  const std::string stated = environment("PYROCLAST_CHUNK_BLOCKS");
+  if (stated.empty()) return dimension == 2 ? kInPlane : kInSpace;
+  int blocks = 0;
+  const char* const end = stated.data() + stated.size();
+  const auto [at, error] = std::from_chars(stated.data(), end, blocks);
+  if (error != std::errc() || at != end || blocks < 1)
+    throw Error(
+        fmt::format("PYROCLAST_CHUNK_BLOCKS={}: the blocks of a chunk are a whole number above 0; "
+                    "leave the variable out, it is for tests",
+                    stated));
+  return blocks;
+}
+
+Model::Model(int dimension) : blocks_of_a_chunk_(blocks_of_a_chunk(dimension)) {}
+
+void Model::put_into_chunk(int block) {
+  const bool begins = block == 0 || block - chunk_blocks[chunk_blocks.size() - 2] >= blocks_of_a_chunk_ ||
                       is_of_bearing(block) != is_of_bearing(block - 1);
   if (begins)
     chunk_blocks.push_back(block + 1);
@@ -73,8 +92,9 @@ void Model::put_into_chunk(int block, int most_blocks) {
 }
 
 void Model::cut_into_chunks(int most_blocks) {
+  blocks_of_a_chunk_ = most_blocks;
   chunk_blocks = {0};
-  for (int block = 0; block < block_count(); ++block) put_into_chunk(block, most_blocks);
+  for (int block = 0; block < block_count(); ++block) put_into_chunk(block);
 }
 
 ChunkList Model::chunks() const {

@@ -128,19 +128,23 @@ struct Model {
   void cut_into_chunks(int most_blocks);
 
  protected:
-  Model() = default;
+  explicit Model(int dimension);
   Model(const Model&) = default;
   Model(Model&&) = default;
   Model& operator=(const Model&) = default;
   Model& operator=(Model&&) = default;
-  void put_into_chunk(int block, int most_blocks);
+  void put_into_chunk(int block);
 
  private:
+  int blocks_of_a_chunk_;  ///< largest number of blocks in a chunk
+
   ChunkList chunks_of(const std::vector<int>& of_block) const;
 };
 
 template <int Dim>
 struct ModelOf final : Model {
+  ModelOf() : Model(Dim) {}
+
   std::vector<Vec<Dim>> position;               ///< gridpoints, reference configuration, m
   std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
   std::vector<Contact<Dim>> contacts;
@@ -153,7 +157,7 @@ struct ModelOf final : Model {
   std::vector<double> zone_volumes() const override;
 
   /// Appends a block and returns its index. The block's zones index its own gridpoints from 0. A chunk takes
-  /// up to kBlocksOfAChunk blocks; blocks of bearings stand in chunks of their own.
+  /// up to blocks_of_a_chunk blocks; blocks of bearings stand in chunks of their own.
   int add_block(const std::vector<Vec<Dim>>& gridpoints,
                 const std::vector<std::array<int, Dim + 1>>& block_zones, int material);
 
@@ -175,8 +179,10 @@ decltype(auto) with_dimension(const Model& model, F f) {
   return f(static_cast<const ModelOf<3>&>(model));
 }
 
-/// Largest number of blocks in a chunk. The last digits of sums depend on it.
-inline constexpr int kBlocksOfAChunk = 1024;
+/// Returns the largest number of blocks in a chunk of a body that is made from now on. The last digits of
+/// sums depend on it. Tests set another number by the environment variable PYROCLAST_CHUNK_BLOCKS. Throws
+/// Error where that is no whole number above 0.
+int blocks_of_a_chunk(int dimension);
 
 /// Gridpoints over which something is summed, ascending.
 struct GridpointSet {

@@ -30,8 +30,9 @@ Sets cut_sets(const Sets& whole, const std::vector<int>& here) {
 std::vector<int> ranks_of_chunks(const Model& whole, int ranks) {
   const ChunkList zones = whole.zone_chunks();
   if (ranks > zones.count())
-    throw Error(fmt::format("{} ranks cannot share a body of {} chunks: take {} ranks at most", ranks,
-                            zones.count(), zones.count()));
+    throw Error(
+        fmt::format("{} ranks cannot share a body of {} chunks: take {} ranks at most, or more blocks", ranks,
+                    zones.count(), zones.count()));
   std::vector<int> rank;
   for (int c = 0; c < zones.count(); ++c) {
     const std::int64_t twice_the_middle = zones[c] + zones[c + 1];
@@ -128,6 +129,25 @@ std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
   return with_dimension(whole, [&]<int Dim>(const ModelOf<Dim>& of_dimension) -> std::unique_ptr<Model> {
     return std::make_unique<ModelOf<Dim>>(part_of(of_dimension, ranks, rank_of_chunk, nodes));
   });
+}
+
+std::map<int, SharedGridpoints> shared_gridpoints(const Model& part) {
+  const std::vector<int> chunk_of = part.gridpoint_chunks().of_items();
+  const int me = part.ranks().me();
+  const auto rank_of = [&](int gridpoint) { return part.part->rank_of_chunk[chunk_of[gridpoint]]; };
+  std::map<int, SharedGridpoints> with;
+  const auto add = [&](int own, int foreign) {
+    if (rank_of(own) != me || rank_of(foreign) == me) return;
+    SharedGridpoints& shared = with[rank_of(foreign)];
+    shared.own.insert(own);
+    shared.foreign.insert(foreign);
+  };
+  for (int c = 0; c < part.contact_count(); ++c) {
+    const Joint& contact = part.joint(c);
+    add(contact.a, contact.b);
+    add(contact.b, contact.a);
+  }
+  return with;
 }
 
 template ModelOf<2> part_of(const ModelOf<2>&, std::shared_ptr<Ranks>, const std::vector<int>&,

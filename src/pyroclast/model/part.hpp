@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "pyroclast/model/model.hpp"
@@ -25,6 +27,15 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
 /// Makes the part of a body of either dimension, shared out by ranks_of_chunks.
 std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
                                const std::vector<int>& nodes = {});
+
+/// Gridpoints of a part that faces join to gridpoints of another rank: the own ones, and those of the other
+/// rank. Ascending here as in the whole.
+struct SharedGridpoints {
+  std::set<int> own, foreign;
+};
+
+/// Returns the gridpoints that a part shares with each of the other ranks.
+std::map<int, SharedGridpoints> shared_gridpoints(const Model& part);
 
 extern template ModelOf<2> part_of(const ModelOf<2>&, std::shared_ptr<Ranks>, const std::vector<int>&,
                                    const std::vector<int>&);

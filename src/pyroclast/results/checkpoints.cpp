@@ -84,6 +84,7 @@ std::string body_hash(const Simulation& simulation) {
   hash.add(model.block_gridpoints);
   hash.add(model.block_zones);
   hash.add(model.block_material);
+  hash.add(model.chunk_blocks);  // the order of a state
   with_dimension(model, [&](const auto& of_dimension) {
     hash.add(of_dimension.position);
     hash.add(of_dimension.zones);

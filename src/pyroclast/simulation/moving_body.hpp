@@ -19,7 +19,6 @@ struct MovingBody {
   std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
   std::vector<PlaneOfSymmetry> symmetry;
   MechanicsParameters mechanics;
-  int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
 };
 
 }  // namespace pyroclast

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/model/part.hpp"
+#include "pyroclast/simulation/body_on_ranks.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
 
 namespace pyroclast {
@@ -45,23 +45,6 @@ std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
   if (model->dimension() != 2 && model->thickness != 1.0)
     throw Error(fmt::format("the thickness of a body in space is {}, but it must be 1", model->thickness));
   return model;
-}
-
-/// Returns the part of a body that this rank holds; the whole body where there is one rank.
-std::unique_ptr<Model> part(std::unique_ptr<Model>& whole, const std::shared_ptr<Ranks>& ranks,
-                            const HeatConditions& heat, const std::vector<BlockMaterial>& block_materials) {
-  if (!ranks || ranks->count() == 1) return std::move(whole);
-  std::vector<int> nodes;
-  if (!heat.uniform) {
-    std::vector<bool> conducts;
-    for (const BlockMaterial& material : block_materials) conducts.push_back(!material.is_of_bearing);
-    nodes = with_dimension(*whole, [&](const auto& of_dimension) {
-      return join_through_contacts(of_dimension, conducts).of_gridpoint;
-    });
-  }
-  auto own = part_of(*whole, ranks, nodes);
-  if (!ranks->is_first()) whole.reset();
-  return own;
 }
 
 /// Returns the gap of each contact of a part as its owner has it: a part has contacts between foreign blocks,
@@ -129,7 +112,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
       whole_(required(std::move(body.model))),
-      model_(part(whole_, ranks, heat, block_materials)),
+      model_(part_of_rank(whole_, ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {

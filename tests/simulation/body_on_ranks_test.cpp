@@ -1,0 +1,96 @@
+// Promise: what is foretold of ranks is what they hold, and what they send to each other.
+
+#include "pyroclast/simulation/body_on_ranks.hpp"
+
+#include <mutex>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "counted_ranks.hpp"
+#include "ranks_in_threads.hpp"
+#include "small_chunks.hpp"
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+class RanksOfCases : public testing::TestWithParam<std::pair<std::string, int>> {};
+INSTANTIATE_TEST_SUITE_P(Small, RanksOfCases,
+                         testing::Values(std::pair{"starter", 100}, std::pair{"fire_one_side", 100},
+                                         std::pair{"thermal_wall", 100}, std::pair{"disc_3d", 80},
+                                         std::pair{"fire_one_side_3d", 60}),
+                         [](const auto& info) { return info.param.first; });
+
+TEST_P(RanksOfCases, AreAsForetold) {
+  const SmallChunks chunks(8);
+  const auto& [name, blocks] = GetParam();
+  const bool in_space = name == "fire_one_side_3d";  // a case of the plane with a depth
+  std::string text = shipped_case(in_space ? "fire_one_side" : name);
+  if (in_space) text = with(text, "thickness = \"1 m\"", "depth = \"60 mm\"");
+  auto setup = read(text);
+  setup.specimen.blocks.count = blocks;
+  if (in_space) setup.specimen.aggregates.fraction = 0.0;
+  const auto whole = make_simulation(setup);
+  for (const int count : {2, 5}) {
+    SCOPED_TRACE(testing::Message() << count << " ranks");
+    const auto held = held_by_ranks(*whole, count);
+    ASSERT_EQ(held.size(), static_cast<std::size_t>(count));
+    std::mutex mutex;
+    RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
+      const auto counted = std::make_shared<CountedRanks>(ranks);
+      const auto simulation = make_simulation(setup, whole->specimen(), nullptr, counted);
+      const Model& model = simulation->model();
+      counted->forget();
+      std::map<int, CountedRanks::Sent> by_motion, by_heat;
+      if (simulation->moves()) {
+        simulation->motion().advance(7);
+        by_motion = counted->sent;
+        EXPECT_EQ(counted->collectives, 0);
+        counted->forget();
+      }
+      if (!simulation->field().is_uniform()) {
+        simulation->field().begin_exposure(setup.temperatures);
+        simulation->field().advance(5.0, 60.0);
+        by_heat = counted->sent;
+      }
+      const std::lock_guard lock(mutex);
+      const HeldByRank& here = held[static_cast<std::size_t>(ranks->me())];
+      const auto own_blocks = model.chunks().own(), own_zones = model.zone_chunks().own();
+      EXPECT_EQ(here.blocks, own_blocks.last - own_blocks.first);
+      EXPECT_EQ(here.foreign_blocks, model.block_count() - here.blocks);
+      EXPECT_EQ(here.zones, own_zones.last - own_zones.first);
+      EXPECT_EQ(here.foreign_zones, model.zone_count() - here.zones);
+      ASSERT_EQ(by_motion.size(), here.gridpoints_sent.size());
+      for (const auto& [to, sent] : by_motion) {
+        EXPECT_EQ(sent.messages, 8) << "seven of displacements and one of velocities";
+        EXPECT_EQ(sent.numbers, 8U * model.dimension() * here.gridpoints_sent.at(to));
+      }
+      for (const auto& [to, nodes] : here.nodes_sent) {
+        ASSERT_TRUE(by_heat.contains(to));
+        EXPECT_EQ(by_heat.at(to).fewest, static_cast<std::size_t>(nodes));
+      }
+      if (simulation->moves()) {
+        EXPECT_FALSE(here.gridpoints_sent.empty());
+      }
+      EXPECT_EQ(simulation->field().is_uniform(), here.nodes_sent.empty());
+      EXPECT_GT(here.cut_points, 0);
+    });
+  }
+}
+
+TEST(HeldByRanks, AreRefusedWhereChunksAreTooFew) {
+  const SmallChunks chunks(30);
+  const auto whole = make_simulation(read(deck(kUniform + kSettle)));  // 60 blocks and two platens
+  EXPECT_EQ(held_by_ranks(*whole, 4).size(), 4U);
+  try {
+    held_by_ranks(*whole, 5);
+    FAIL() << "five ranks share four chunks";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "5 ranks cannot share a body of 4 chunks: take 4 ranks at most, or more blocks");
+  }
+}
+
+}  // namespace
+}  // namespace pyroclast
