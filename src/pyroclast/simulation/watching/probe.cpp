@@ -117,8 +117,7 @@ std::vector<std::optional<Probe>> Probe::at(const Model& model, const std::vecto
 double Probe::read(const std::vector<double>& gridpoints) const {
   double value = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) value += weights_[i] * gridpoints[gridpoints_[i]];
-  if (ranks_->count() == 1) return value;
-  return ranks_->collect(std::vector{value})[static_cast<std::size_t>(rank_)];
+  return ranks_->of(rank_, value);
 }
 
 }  // namespace pyroclast
