@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -19,15 +20,53 @@
 #include "pyroclast/base/ranks.hpp"
 
 /// Ranks as threads of one process, for tests: the collectives of a run without MPI. All ranks must call from
-/// the same place, and none may wait for long.
+/// the same place, and none may wait for long. Numbers of foreign items are NaN wherever no rank has sent
+/// them.
 namespace pyroclast {
 
 class RanksInThreads {
  public:
+  using Bytes = std::vector<std::byte>;
+
+  class OfThread final : public Ranks {
+   public:
+    OfThread(std::shared_ptr<RanksInThreads> board, int me) : board_(std::move(board)), me_(me) {}
+    int me() const override { return me_; }
+    int count() const override { return static_cast<int>(board_->own_.size()); }
+    bool spoil_foreign() const override { return true; }
+    void exchange(std::vector<Message>& messages, CallPlace at) override {
+      events_ += 'x';
+      board_->exchange(me_, messages, at);
+    }
+
+    /// Returns the calls so far: 'c' for a collective, 'x' for an exchange with neighbours, and what `note`
+    /// was given.
+    const std::string& events() const { return events_; }
+    void note(char event) { events_ += event; }
+
+   protected:
+    Bytes gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
+      events_ += 'c';
+      Bytes all;
+      for (const Bytes& bytes : board_->gather(me_, {own.begin(), own.end()}, at))
+        if (receivers == Receivers::all || me_ == 0) all.insert(all.end(), bytes.begin(), bytes.end());
+      return all;
+    }
+    double largest_of_all(double own, CallPlace at) override {
+      const std::vector<double> all = collect(std::vector{own}, at);
+      return *std::max_element(all.begin(), all.end());
+    }
+
+   private:
+    std::shared_ptr<RanksInThreads> board_;
+    int me_;
+    std::string events_;
+  };
+
   explicit RanksInThreads(int count) : own_(count), places_(count) {}
 
   /// Calls `f(ranks)` on a thread a rank. Throws again the first exception of any.
-  static void run(int count, const std::function<void(const std::shared_ptr<Ranks>&)>& f) {
+  static void run(int count, const std::function<void(const std::shared_ptr<OfThread>&)>& f) {
     auto board = std::make_shared<RanksInThreads>(count);
     std::vector<std::thread> threads;
     for (int me = 0; me < count; ++me)
@@ -43,35 +82,6 @@ class RanksInThreads {
   }
 
  private:
-  using Bytes = std::vector<std::byte>;
-
-  class OfThread final : public Ranks {
-   public:
-    OfThread(std::shared_ptr<RanksInThreads> board, int me) : board_(std::move(board)), me_(me) {}
-    int me() const override { return me_; }
-    int count() const override { return static_cast<int>(board_->own_.size()); }
-    void exchange(std::vector<Message>& messages, CallPlace at) override {
-      board_->exchange(me_, messages, at);
-    }
-
-   protected:
-    Bytes gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
-      Bytes all;
-      for (const Bytes& bytes : board_->gather(me_, {own.begin(), own.end()}, at))
-        if (receivers == Receivers::all || me_ == 0) all.insert(all.end(), bytes.begin(), bytes.end());
-      return all;
-    }
-    double largest_of_all(double own, CallPlace at) override {
-      double largest = own;
-      for (const double other : collect(std::vector{own}, at)) largest = std::max(largest, other);
-      return largest;
-    }
-
-   private:
-    std::shared_ptr<RanksInThreads> board_;
-    int me_;
-  };
-
   void fail(std::exception_ptr why) {
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::move(why);

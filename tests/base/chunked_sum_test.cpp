@@ -1,8 +1,14 @@
 #include "pyroclast/base/chunked_sum.hpp"
 
+#include <stdexcept>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "pyroclast/base/kept_sums.hpp"
+#include "ranks_in_threads.hpp"
 
 namespace pyroclast {
 namespace {
@@ -57,6 +63,53 @@ TEST(ChunkList, CutsAListOfSomeItemsWhereThatOfAllIsCut) {
   EXPECT_FALSE(some.is_foreign(2));
   EXPECT_EQ(all.of_some({}).begins(), (std::vector<int>{0, 0, 0, 0, 0}));
   EXPECT_EQ(all.of_some({39}).count(), 4);
+}
+
+/// Ten items in chunks of two, of which a rank holds those of its number.
+ChunkList chunks_of(Ranks& ranks) {
+  std::vector<bool> is_foreign;
+  for (int chunk = 0; chunk < 5; ++chunk) is_foreign.push_back((chunk < 2 ? 0 : 1) != ranks.me());
+  return ChunkList({0, 2, 4, 6, 8, 10}, is_foreign, ranks);
+}
+double third(int item) {
+  return 1.0 / (3 + item);
+}
+
+// Promise: collectives that travel together give what each gives alone, in one message.
+TEST(CollectivesTogether, GiveWhatEachGivesAlone) {
+  RanksInThreads::run(2, [](const auto& ranks) {
+    const ChunkList chunks = chunks_of(*ranks);
+    KeptSums kept;
+    kept.keep(chunks, third);
+    kept.keep(chunks, [](int item) { return item; });
+    const auto all = [&] {
+      const double me = ranks->me();
+      return std::tuple(chunked_sum(chunks, third), ranks->largest(me), ranks->least(me),
+                        ranks->any(me == 1.0), ranks->of(1, me), kept.totals(*ranks),
+                        ranks->collect(std::vector<int>(ranks->me(), 7)),
+                        ranks->together([&] { return ranks->sum(3); }));
+    };
+    const auto alone = all();
+    const std::string before = ranks->events();
+    EXPECT_EQ(ranks->together(all), alone);
+    EXPECT_EQ(ranks->events(), before + "c");
+    EXPECT_EQ(alone, std::tuple(chunked_sum(ChunkList({0, 2, 4, 6, 8, 10}), third), 1.0, 0.0, true, 1.0,
+                                std::vector{std::get<0>(alone), 45.0}, std::vector{7}, std::int64_t{6}));
+  });
+}
+
+// Promise: where it depends on a result which collectives are called, the call fails rather than to mix them
+// up, and the next one works.
+TEST(CollectivesTogether, MustNotDependOnEachOther) {
+  RanksInThreads::run(2, [](const auto& ranks) {
+    const double me = ranks->me();
+    EXPECT_THROW(ranks->together([&] { return ranks->largest(me) > 0.5 ? ranks->largest(1.0) : 0.0; }),
+                 std::logic_error);
+  });
+  RanksInThreads::run(2, [](const auto& ranks) {
+    EXPECT_THROW(ranks->together([]() -> int { throw std::runtime_error("own"); }), std::runtime_error);
+    EXPECT_EQ(ranks->together([&] { return ranks->sum(1); }), 2);
+  });
 }
 
 }  // namespace

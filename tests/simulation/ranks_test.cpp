@@ -1,5 +1,9 @@
 // Whole runs on several ranks have the bits of one rank. The ranks are threads here.
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -135,6 +139,103 @@ INSTANTIATE_TEST_SUITE_P(Small, CaseOnRanks,
 TEST_P(CaseOnRanks, HasTheBitsOfOne) {
   const auto& [name, blocks] = GetParam();
   expect_same_bits({shipped_case(name), blocks, 8}, {2, 3});
+}
+
+/// Splits the calls of a rank at a mark.
+std::vector<std::string> split(const std::string& events, char mark) {
+  std::vector<std::string> parts{""};
+  for (const char event : events) event == mark ? (void)parts.emplace_back() : parts.back().push_back(event);
+  return parts;
+}
+
+/// Returns the calls of a rank in twenty rows of a compression, batch by batch.
+std::vector<std::string> calls_of_press(const std::shared_ptr<RanksInThreads::OfThread>& ranks) {
+  Setup setup = read(deck(kUniform + kSettle + kFailure + kControl));
+  setup.moving->chunk_blocks = kBlocksOfASmallChunk;
+  const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
+  Run run(*simulation, std::move(setup.stages));
+  run.between_batches([&](Run&) { ranks->note('|'); });
+  while (run.stage_number() == 0 || run.history().row_count() % 20 != 0) run.next();
+  const std::size_t begun = ranks->events().size();
+  for (int row = 0; row < 20; ++row) run.next();
+  return split(ranks->events().substr(begun), '|');
+}
+
+// Promise: a batch of steps of a press makes no collective between its first and its last step. Behind it
+// come one for the point of the curve and the next velocity, and one for the row and the verdict.
+TEST(RunOnRanks, ABatchOfAPressTakesTwoCollectives) {
+  RanksInThreads::run(2, [](const auto& ranks) {
+    const auto batches = calls_of_press(ranks);
+    ASSERT_GT(batches.size(), 20U);
+    for (const std::string& batch : batches) {
+      EXPECT_LE(std::ranges::count(batch, 'c'), 2) << batch;
+      if (const auto first = batch.find('x'), last = batch.rfind('x'); first != std::string::npos) {
+        EXPECT_EQ(batch.substr(first, last - first).find('c'), std::string::npos) << batch;
+      }
+    }
+  });
+}
+
+/// Prism in a fire on its left, and the course of its temperatures.
+const std::string kFire =
+    "[heat]\nfield = \"conduction\"\n[[heat.boundaries]]\nfaces = \"left\"\nkind = \"convection\"\n"
+    "coefficient = \"500 W/(m2 K)\"\ngas_temperature = { builtin = \"iso834\" }\n"
+    "[[heat.boundaries]]\nfaces = \"right\"\nkind = \"temperature\"\ntemperature = \"20 degC\"\n";
+
+struct Heated {
+  HeatWork work;
+  std::vector<std::array<double, 3>> means;  ///< mean, least and greatest temperature, degC
+};
+
+/// \param begins  called before the temperatures begin to change
+Heated heat_on(
+    int blocks, const std::shared_ptr<Ranks>& ranks, const std::function<void()>& begins = [] {}) {
+  std::string text = deck(kSettle + kExpose) + kFire;
+  for (int material = 0; material < 2; ++material)
+    text = with(text, "conductivity = \"40 W/(m K)\"", "conductivity = \"1 W/(m K)\"");
+  Setup setup = read(text);
+  setup.specimen.blocks.count = blocks;
+  setup.moving->chunk_blocks = kBlocksOfASmallChunk;
+  const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
+  TemperatureField& field = simulation->field();
+  field.begin_exposure(setup.temperatures);
+  begins();
+  Heated heated;
+  for (int i = 1; i <= 12; ++i) {
+    field.advance(1000.0, 10.0 * i);
+    heated.means.push_back({field.mean(), field.minimum(), field.maximum()});
+  }
+  heated.work = field.conduction()->work();
+  return heated;
+}
+
+// Promise: what limits a heat step are the zones of the whole. A foreign node at the fringe of a part lacks
+// zones, so its capacity is too small, and speeds there are too large.
+TEST(RunOnRanks, LimitsAsManyHeatStepsAsOne) {
+  const Heated alone = heat_on(200, nullptr);
+  EXPECT_GT(alone.work.limited_steps, 0);
+  EXPECT_LT(alone.work.limited_steps, alone.work.steps);
+  for (const int count : {2, 3, 7})
+    RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
+      const Heated heated = heat_on(200, ranks);
+      EXPECT_EQ(heated.work.limited_steps, alone.work.limited_steps);
+      EXPECT_EQ(heated.work.stages, alone.work.stages);
+      EXPECT_EQ(heated.means, alone.means);
+    });
+}
+
+// Promise: a stage of a heat step takes one exchange with neighbours, two where flows are limited. A step
+// takes a collective for its limits, and each trial one for its verdict.
+TEST(RunOnRanks, AHeatStepTakesTwoCollectives) {
+  RanksInThreads::run(2, [](const auto& ranks) {
+    const Heated heated = heat_on(200, ranks, [&] { ranks->note('|'); });
+    const std::string events = split(ranks->events(), '|').back();
+    const auto exchanges = std::ranges::count(events, 'x'), collectives = std::ranges::count(events, 'c');
+    EXPECT_GT(exchanges, heated.work.stages);
+    EXPECT_LE(exchanges, 2 * heated.work.stages);
+    const auto ends = static_cast<std::int64_t>(heated.means.size());  // of advances; each reads temperatures
+    EXPECT_LE(collectives, 2 * heated.work.steps + heated.work.retries + 2 * ends);
+  });
 }
 
 TEST(RunOnRanks, MoreRanksThanChunksAreRefused) {

@@ -92,16 +92,18 @@ class ChunkList {
 /// \param add   called as `add(item, sum)`; adds the contribution of an item to the sum of its chunk
 template <class Sum, class Add>
 Sum chunked_sum(const ChunkList& chunks, Add add, CallPlace at = CallPlace::here()) {
-  std::vector<Sum> of_chunk;
-  of_chunk.reserve(static_cast<std::size_t>(chunks.count()));
-  for (int chunk = 0; chunk < chunks.count(); ++chunk) {
-    if (chunks.is_foreign(chunk)) continue;
-    Sum& sum = of_chunk.emplace_back();
-    for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sum);
-  }
-  if (chunks.ranks().count() > 1) of_chunk = chunks.ranks().collect(of_chunk, at);
+  const auto own = [&] {
+    std::vector<Sum> of_chunk;
+    of_chunk.reserve(static_cast<std::size_t>(chunks.count()));
+    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+      if (chunks.is_foreign(chunk)) continue;
+      Sum& sum = of_chunk.emplace_back();
+      for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sum);
+    }
+    return of_chunk;
+  };
   Sum total{};
-  for (const Sum& sum : of_chunk) total += sum;
+  for (const Sum& sum : chunks.ranks().collect_made<Sum>(own, at)) total += sum;
   return total;
 }
 
@@ -116,14 +118,17 @@ double chunked_sum(const ChunkList& chunks, Value value, CallPlace at = CallPlac
 template <class Sum, class Add>
 std::vector<Sum> chunked_sums(const ChunkList& chunks, std::size_t count, Add add,
                               CallPlace at = CallPlace::here()) {
-  std::vector<Sum> of_chunk;
-  for (int chunk = 0; chunk < chunks.count(); ++chunk) {
-    if (chunks.is_foreign(chunk)) continue;
-    of_chunk.resize(of_chunk.size() + count);
-    const std::span<Sum> sums(of_chunk.data() + (of_chunk.size() - count), count);
-    for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sums);
-  }
-  if (chunks.ranks().count() > 1) of_chunk = chunks.ranks().collect(of_chunk, at);
+  const auto own = [&] {
+    std::vector<Sum> of_chunk;
+    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+      if (chunks.is_foreign(chunk)) continue;
+      of_chunk.resize(of_chunk.size() + count);
+      const std::span<Sum> sums(of_chunk.data() + (of_chunk.size() - count), count);
+      for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sums);
+    }
+    return of_chunk;
+  };
+  const std::vector<Sum> of_chunk = chunks.ranks().collect_made<Sum>(own, at);
   std::vector<Sum> totals(count);
   for (std::size_t i = 0; i < of_chunk.size(); ++i) totals[i % count] += of_chunk[i];
   return totals;

@@ -1,5 +1,9 @@
 #include "pyroclast/base/ranks.hpp"
 
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
 namespace pyroclast {
 
 namespace {
@@ -18,7 +22,76 @@ class OneRank final : public Ranks {
   double largest_of_all(double own, CallPlace /*at*/) override { return own; }
 };
 
+/// Number of a collective in a message: what it is, and how many bytes a rank gives.
+struct Head {
+  std::uint64_t place, bytes;
+};
+
+Head head_of(CallPlace at, std::size_t bytes) {
+  const std::uint64_t file = std::hash<std::string_view>()(at.file);
+  return {31 * file + static_cast<std::uint64_t>(at.line), bytes};
+}
+
+void append(std::vector<std::byte>& to, std::span<const std::byte> bytes) {
+  to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+/// Takes a number or a struct off the front of bytes.
+template <class T>
+T take_off(std::span<const std::byte>& bytes) {
+  T taken;
+  std::memcpy(&taken, bytes.data(), sizeof(T));
+  bytes = bytes.subspan(sizeof(T));
+  return taken;
+}
+
+[[noreturn]] void fail(CallPlace at) {
+  throw std::logic_error(std::string(at.file) + ":" + std::to_string(at.line) +
+                         ": a collective was called that other ranks did not call, or not the first time");
+}
+
 }  // namespace
+
+void Ranks::put(std::span<const std::byte> own, CallPlace at) {
+  gathering_->collectives.push_back({at, {own.begin(), own.end()}});
+}
+
+/// Lets what all collectives gave travel: from each rank their count, then a head and bytes of each.
+void Ranks::send(CallPlace at) {
+  auto& collectives = gathering_->collectives;
+  gathering_->has_travelled = true;
+  const std::uint64_t count = collectives.size();
+  if (count == 0) return;
+  std::vector<std::byte> own;
+  append(own, std::as_bytes(std::span(&count, 1)));
+  for (auto& [place, bytes] : collectives) {
+    const Head head = head_of(place, bytes.size());
+    append(own, std::as_bytes(std::span(&head, 1)));
+    append(own, bytes);
+    bytes.clear();
+  }
+  const std::vector<std::byte> all = gather(own, Receivers::all, at);
+  for (std::span<const std::byte> left(all); !left.empty();) {
+    if (take_off<std::uint64_t>(left) != count) fail(at);
+    for (auto& [place, bytes] : collectives) {
+      const Head head = take_off<Head>(left);
+      if (head.place != head_of(place, 0).place) fail(place);
+      append(bytes, left.first(head.bytes));
+      left = left.subspan(head.bytes);
+    }
+  }
+}
+
+std::vector<std::byte> Ranks::take(CallPlace at) {
+  auto& [collectives, has_travelled, taken] = *gathering_;
+  if (taken == collectives.size() || !(collectives[taken].at == at)) fail(at);
+  return std::move(collectives[taken++].bytes);
+}
+
+void Ranks::require_all_taken() const {
+  if (gathering_->taken != gathering_->collectives.size())
+    fail(gathering_->collectives[gathering_->taken].at);
+}
 
 Ranks& one_rank() {
   static OneRank ranks;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace pyroclast {
@@ -43,19 +46,37 @@ class Ranks {
   /// Returns the items of all ranks, in the order of the ranks.
   template <class T>
   std::vector<T> collect(const std::vector<T>& own, CallPlace at = CallPlace::here()) {
-    static_assert(std::is_trivially_copyable_v<T>, "what travels is plain data");
-    if (count() == 1) return own;
-    return items_of<T>(gather(std::as_bytes(std::span(own)), Receivers::all, at));
+    return collect_made<T>([&] { return own; }, at);
   }
-  /// Returns the same on the first rank, and nothing on the others.
+  /// Returns the items of all ranks, in the order of the ranks.
+  /// \param make  returns the items of this rank; not called where they have travelled, see together
+  template <class T, class Make>
+  std::vector<T> collect_made(Make make, CallPlace at) {
+    static_assert(std::is_trivially_copyable_v<T>, "what travels is plain data");
+    if (count() == 1) return make();
+    if (gathering_ && gathering_->has_travelled) return items_of<T>(take(at));
+    std::vector<T> own = make();
+    if (!gathering_) return items_of<T>(gather(std::as_bytes(std::span(own)), Receivers::all, at));
+    put(std::as_bytes(std::span(own)), at);
+    return own;
+  }
+  /// Returns the items of all ranks on the first, and nothing on the others. Not within `together`.
   template <class T>
   std::vector<T> collect_at_first(const std::vector<T>& own, CallPlace at = CallPlace::here()) {
     static_assert(std::is_trivially_copyable_v<T>, "what travels is plain data");
     if (count() == 1) return own;
     return items_of<T>(gather(std::as_bytes(std::span(own)), Receivers::first, at));
   }
+  /// Returns the number that a rank has.
+  double of(int rank, double own, CallPlace at = CallPlace::here()) {
+    const std::vector<double> all = collect(rank == me() ? std::vector{own} : std::vector<double>(), at);
+    return all.empty() ? own : all.front();
+  }
   double largest(double own, CallPlace at = CallPlace::here()) {
-    return count() == 1 ? own : largest_of_all(own, at);
+    if (count() == 1) return own;
+    if (!gathering_) return largest_of_all(own, at);
+    const std::vector<double> all = collect(std::vector{own}, at);
+    return *std::max_element(all.begin(), all.end());
   }
   double least(double own, CallPlace at = CallPlace::here()) { return -largest(-own, at); }
   /// Tells whether a condition holds on any rank.
@@ -65,6 +86,27 @@ class Ranks {
     for (const std::int64_t of_rank : collect(std::vector<std::int64_t>{own}, at)) total += of_rank;
     return total;
   }
+  /// Calls `f` and returns its result, with all collectives of `f` in one message. Where there are several
+  /// ranks, `f` is called twice. First each collective puts down what this rank gives, and returns that
+  /// alone. Then all of it travels, and at the second call each collective returns what all ranks gave. So
+  /// `f` must change nothing, and what it gives to a collective, and to which, must not depend on the result
+  /// of another one. Calls within `f` take part in its message.
+  template <class F>
+  auto together(F f, CallPlace at = CallPlace::here()) {
+    if (count() == 1 || gathering_) return f();
+    const Gathering::End end(gathering_);
+    gathering_.emplace();
+    f();
+    send(at);
+    auto result = f();
+    require_all_taken();
+    return result;
+  }
+
+  /// Tells whether numbers of foreign items are to be NaN wherever their owner has not sent them. Tests ask
+  /// for it: whatever reads a number that is not there shows.
+  virtual bool spoil_foreign() const { return false; }
+
   /// Sends each neighbour its message and receives the neighbour's. Neighbours name each other, with the
   /// lengths that the other one expects.
   virtual void exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) = 0;
@@ -83,6 +125,32 @@ class Ranks {
     if (!items.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
     return items;
   }
+
+  /// Collectives of a call of `together`, in their order.
+  struct Gathering {
+    struct OfCollective {
+      CallPlace at;
+      std::vector<std::byte> bytes;  ///< bytes of this rank, then those of all ranks
+    };
+    /// Ends a gathering, also where `f` throws.
+    struct End {
+      explicit End(std::optional<Gathering>& of) : gathering(of) {}
+      End(const End&) = delete;
+      End& operator=(const End&) = delete;
+      ~End() { gathering.reset(); }
+      std::optional<Gathering>& gathering;
+    };
+    std::vector<OfCollective> collectives;
+    bool has_travelled = false;
+    std::size_t taken = 0;  ///< collectives that have their results
+  };
+
+  void put(std::span<const std::byte> own, CallPlace at);
+  std::vector<std::byte> take(CallPlace at);
+  void send(CallPlace at);
+  void require_all_taken() const;
+
+  std::optional<Gathering> gathering_;
 };
 
 /// Returns the one rank of a body that no other process holds a part of.

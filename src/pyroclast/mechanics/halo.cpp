@@ -1,5 +1,6 @@
 #include "pyroclast/mechanics/halo.hpp"
 
+#include <limits>
 #include <type_traits>
 
 #include "pyroclast/model/part.hpp"
@@ -40,6 +41,34 @@ Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(m
     for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);
     messages_.push_back({rank, {}, {}});
   }
+  if (ranks_.spoil_foreign())
+    for (int g = 0; g < model.gridpoint_count(); ++g)
+      if (rank_of(g) != ranks_.me()) spoilt_.push_back(layout.gridpoint_slot[g]);
+}
+
+template <int Dim>
+void Halo<Dim>::spoil(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
+  if (spoilt_.empty()) return;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  // after a step the velocities of the last call are out of date
+  const auto is_spoilt = [&](Travels of_array) {
+    return of_array == Travels::never || of_array == travels ||
+           (of_array == Travels::each_call && travels == Travels::each_step);
+  };
+  for_each_array(
+      [&](const ArrayInfo& info, auto& array) {
+        using T = std::decay_t<decltype(*array.data())>;
+        const bool is_of_gridpoints = info.per == Per::gridpoint_pack || info.per == Per::gridpoint_slot;
+        if (!is_of_gridpoints || array.empty() || !is_spoilt(info.travels)) return;
+        if constexpr (std::is_same_v<T, double>) {
+          for (const int slot : spoilt_) array[slot] = nan;
+        } else if constexpr (std::is_same_v<T, VectorPack<Dim>> || std::is_same_v<T, Vec<Dim>>) {
+          if (info.lasts == Lasts::made) return;  // a position
+          for (const int slot : spoilt_)
+            for (int i = 0; i < Dim; ++i) component<Dim>(array, slot, i) = nan;
+        }
+      },
+      arrays);
 }
 
 template <int Dim>
@@ -56,6 +85,7 @@ void Halo<Dim>::exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
         for (int i = 0; i < Dim; ++i) *next++ = component<Dim>(array, slot, i);
     });
   }
+  spoil(arrays, travels);
   ranks_.exchange(messages_);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto next = messages_[n].received.begin();

@@ -20,6 +20,9 @@ class Halo {
   /// Gives foreign gridpoints the numbers that their owners have.
   /// \param travels  kind of the arrays that travel now
   void exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels);
+  /// Where the ranks ask for it, makes numbers of foreign gridpoints NaN, see Ranks::spoil_foreign: those
+  /// that owners alone have, and those that travel now or later. Positions stay.
+  void spoil(StateArrays<Dim, FlatArray>& arrays, Travels travels = Travels::never);
 
  private:
   /// Slots of gridpoints whose numbers travel to and from a neighbour, in one order on both ranks.
@@ -30,6 +33,7 @@ class Halo {
   Ranks& ranks_;
   std::vector<Neighbour> neighbours_;
   std::vector<Message> messages_;  ///< messages by neighbour
+  std::vector<int> spoilt_;        ///< slots of foreign gridpoints, where tests spoil them
 };
 
 extern template class Halo<2>;

@@ -16,6 +16,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       law.update(s, begin, end, measured);
     });
   };
+  halo_.spoil(body.arrays);
   // A call ends before its last step where other work took the cores, and fewer threads go on.
   for (int left = steps, moved = 0; left > 0; left -= moved) {
     const int threads =

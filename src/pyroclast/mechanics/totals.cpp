@@ -102,6 +102,11 @@ double Dissipation::total() const {
 
 template <int Dim>
 EnergyLedger Totals<Dim>::energy() const {
+  return body_.model.ranks().together([&] { return energies(); });
+}
+
+template <int Dim>
+EnergyLedger Totals<Dim>::energies() const {
   struct Sums {
     double zones = 0.0, kinetic = 0.0, local_damping = 0.0, viscous_damping = 0.0, loading = 0.0;
     void operator+=(const Sums& o) {
@@ -147,13 +152,16 @@ double Totals<Dim>::mean_unbalanced_force() const {
 
 template <int Dim>
 double Totals<Dim>::unbalanced_ratio() const {
-  const double unbalanced =
-      chunked_sum(body_.layout.chunks.bundles, [&](int b) { return body_.state.bundle_sums[b].unbalanced; });
-  const double applied =
-      chunked_sum(body_.layout.chunks.bundles, [&](int b) { return body_.state.bundle_sums[b].applied; }) +
-      chunked_sum(body_.layout.chunks.face_packs,
-                  [&](int pack) { return body_.state.face_sums[pack].applied; });
-  return unbalanced / std::max(applied, body_.least_force);
+  return body_.model.ranks().together([&] {
+    const auto& chunks = body_.layout.chunks;
+    const auto& state = body_.state;
+    const double unbalanced =
+        chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].unbalanced; });
+    const double applied =
+        chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].applied; }) +
+        chunked_sum(chunks.face_packs, [&](int pack) { return state.face_sums[pack].applied; });
+    return unbalanced / std::max(applied, body_.least_force);
+  });
 }
 
 template <int Dim>

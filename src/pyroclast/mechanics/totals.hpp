@@ -40,6 +40,7 @@ class Totals {
   double largest_relative_jump() const;
 
  private:
+  EnergyLedger energies() const;
   Dissipation dissipated() const;
 
   const Body<Dim>& body_;

@@ -30,7 +30,8 @@ constexpr double kLatestStrain = 0.02;
 constexpr double kExpectedStrain = 0.001;
 /// Strain limit of a stage that ends at a strain of the test, which it reaches before.
 constexpr double kNoStopStrain = 1.0;
-/// Mean strain rate of a controlled velocity over its dissipation_rate, about: 0.8e-3 to 1.3e-3 were measured.
+/// Mean strain rate of a controlled velocity over its dissipation_rate, about: 0.8e-3 to 1.3e-3 were
+/// measured.
 constexpr double kStrainOfControl = 1.1e-3;
 
 /// Reads the control of a velocity that changes between `velocity` and `fastest_velocity`.
@@ -131,11 +132,13 @@ void Compress::close_gap(Simulation& simulation, int most_steps) {
 
 void Compress::begin_loading(Simulation& simulation) {
   simulation.press().begin_stage();
-  take_point(simulation);  // while a force that is held still acts: forces are those of the last step
+  // while a force that is held still acts: forces are those of the last step
+  const CompressionPoint point = point_of(simulation.press(), simulation.motion());
+  take_point(simulation, point);
   simulation.press().control_by_motion(0.0);
   kept_.is_loading = true;
   kept_.next_frame = keys_.frame_strain;
-  kept_.dissipated = simulation.motion().totals().energy().dissipated.total();
+  kept_.dissipated = point.energy.dissipated.total();
 }
 
 /// Returns the steps in which the platen moves by a strain at its full velocity.
@@ -145,8 +148,8 @@ std::int64_t Compress::steps_in(const Simulation& simulation, double strain) con
   return static_cast<std::int64_t>(std::clamp(steps, 1.0, kMostSteps));
 }
 
-void Compress::take_point(Simulation& simulation) {
-  kept_.curve.add(simulation.press(), simulation.motion());
+void Compress::take_point(const Simulation& simulation, const CompressionPoint& point) {
+  kept_.curve.add(point, simulation.motion().time());
   const double time = static_cast<double>(kept_.steps) * simulation.motion().time_step();
   if (time < kPassages * kept_.wave_time) return;
   kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
@@ -178,7 +181,7 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
   kept_.steps += steps;
   kept_.steps_left -= steps;
   kept_.steps_to_point -= steps;
-  if (kept_.steps_to_point == 0) take_point(simulation);
+  if (kept_.steps_to_point == 0) take_point(simulation, point_of(simulation.press(), motion));
   return kept_.steps_left == 0;
 }
 
@@ -196,13 +199,14 @@ bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   kept_.steps += steps;
   kept_.steps_left -= steps;
   if (kept_.steps_left > 0) return false;
+  point_ = point_of(simulation.press(), motion);
   const auto came_by = [&](double& way, double strain) {
     way += kept_.velocity * (kStepsPerChoice * motion.time_step());
     if (way < strain * simulation.press().height()) return false;
     way = 0.0;
     return true;
   };
-  if (came_by(kept_.way_to_point, kPointStrain)) take_point(simulation);
+  if (came_by(kept_.way_to_point, kPointStrain)) take_point(simulation, *point_);
   return came_by(kept_.way, keys_.history_strain);
 }
 
@@ -215,25 +219,25 @@ void Compress::choose_velocity(const Simulation& simulation) {
     kept_.velocity = keys_.velocity * std::min(1.0, share + 0.5 * most);
     return;
   }
-  const double change = std::clamp(-kGain * std::log(excess(simulation, time)), -kSlowDown * most, most);
+  const CompressionPoint point = point_ ? *point_ : point_of(simulation.press(), simulation.motion());
+  const double change = std::clamp(-kGain * std::log(excess(point, time)), -kSlowDown * most, most);
   kept_.velocity = std::clamp(kept_.velocity * std::exp(change), keys_.velocity, keys_.control->fastest);
 }
 
 /// Returns how far the motion is from the tolerances; above 1 it is out of them. Forces out of balance go
 /// with the velocity, kinetic energy with its square.
 /// \param time  time since the last call, s
-double Compress::excess(const Simulation& simulation, double time) {
+double Compress::excess(const CompressionPoint& point, double time) {
   const VelocityControl& control = *keys_.control;
-  const EnergyLedger energy = simulation.motion().totals().energy();
+  const EnergyLedger& energy = point.energy;
   const double elastic = energy.elastic();
   const double power =
       (energy.dissipated.total() - std::exchange(kept_.dissipated, energy.dissipated.total())) / time;
-  const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
-  const double largest = std::max(kept_.largest_stress, 0.5 * (top + bottom));
+  const double largest = std::max(kept_.largest_stress, point.stress());
   if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
-  return std::max({simulation.motion().totals().unbalanced_ratio() / control.unbalanced_ratio,
+  return std::max({point.unbalanced_ratio / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
-                   std::abs(top - bottom) / largest / control.platen_difference,
+                   std::abs(point.stress_top - point.stress_bottom) / largest / control.platen_difference,
                    power / elastic / control.dissipation_rate});
 }
 
@@ -251,14 +255,19 @@ double Compress::left(const Simulation& simulation) const {
   return keys_.stop_strain - press.stage_strain();
 }
 
-Verdict Compress::judge(Simulation& simulation) {
-  const double strain = simulation.press().stage_strain();
-  if (direction() * left(simulation) <= 0.0) return {.over = true};
-  if (std::abs(strain) >= keys_.stop_strain)
+void Compress::look(const Simulation& simulation) {
+  strain_seen_ = simulation.press().stage_strain();
+  left_seen_ = left(simulation);
+  stress_seen_ = simulation.press().stress();
+}
+
+Verdict Compress::judge(Simulation&) {
+  if (direction() * left_seen_ <= 0.0) return {.over = true};
+  if (std::abs(strain_seen_) >= keys_.stop_strain)
     return {.over = true, .last = true, .outcome = Outcome::not_reached};
-  if (kept_.peak.is_found() && simulation.press().stress() < keys_.stop_fraction * kept_.peak.size())
+  if (kept_.peak.is_found() && stress_seen_ < keys_.stop_fraction * kept_.peak.size())
     return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
-  if (std::abs(strain) < kept_.next_frame) return {};
+  if (std::abs(strain_seen_) < kept_.next_frame) return {};
   kept_.next_frame += keys_.frame_strain;
   return {.frame = true};
 }
@@ -329,6 +338,7 @@ void Compress::visit_state(StateVisitor& visitor) {
   auto& [gap_steps_left, is_loading, is_upwards, first_left, wave_time, steps, steps_left, steps_to_point,
          velocity, way, way_to_point, dissipated, curve, peak, largest_stress, next_frame] =
       kept_;  // another member does not compile until it has a name here
+  if (visitor.replaces()) point_.reset();
   visitor.visit("gap_steps_left", gap_steps_left, state::within(0, kMostSteps));
   visitor.visit("is_loading", is_loading);
   visitor.visit("is_upwards", is_upwards);

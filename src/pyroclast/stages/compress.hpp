@@ -49,6 +49,7 @@ class Compress : public Stage {
   std::string doing() const override { return kept_.is_loading ? "" : "moving the platen to the specimen"; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
+  void look(const Simulation& simulation) override;
   Verdict judge(Simulation& simulation) override;
   double progress(const Simulation& simulation) const override;
   StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
@@ -63,10 +64,10 @@ class Compress : public Stage {
   bool move_at_velocity(Simulation& simulation, int most_steps);
   bool move_controlled(Simulation& simulation, int most_steps);
   void choose_velocity(const Simulation& simulation);
-  double excess(const Simulation& simulation, double time);
+  double excess(const CompressionPoint& point, double time);
   double foreseen_strain() const;
   double foreseen_steps(const Simulation& simulation, double way) const;
-  void take_point(Simulation& simulation);
+  void take_point(const Simulation& simulation, const CompressionPoint& point);
   std::optional<std::size_t> row_of_peak(const History& history, RowRange rows) const;
   double left(const Simulation& simulation) const;
   double direction() const { return kept_.is_upwards ? -1.0 : 1.0; }
@@ -94,6 +95,10 @@ class Compress : public Stage {
     double largest_stress = 0.0;  ///< largest stress after the first wave, Pa
     double next_frame = 0.0;      ///< strain of the stage at the next frame
   } kept_;
+  /// Point after the last steps of a controlled velocity, until the next velocity is chosen.
+  std::optional<CompressionPoint> point_;
+  /// Strain of the stage, way to its end and stress at the last look.
+  double strain_seen_ = 0.0, left_seen_ = 0.0, stress_seen_ = 0.0;
 };
 
 StageKind compress_kind();

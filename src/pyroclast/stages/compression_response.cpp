@@ -175,12 +175,19 @@ StageReport unloading_report(const CompressionCurve& curve) {
 
 }  // namespace
 
-void CompressionCurve::add(const Press& press, const Motion& motion) {
-  strain.push_back(press.stage_strain());
-  stress.push_back(press.stress());
-  platen_difference.push_back(std::abs(press.stress_top() - press.stress_bottom()));
-  kinetic_over_strain.push_back(motion.totals().energy().kinetic_over_elastic());
-  time.push_back(motion.time());
+CompressionPoint point_of(const Press& press, const Motion& motion) {
+  return motion.model().ranks().together([&] {
+    return CompressionPoint{press.stage_strain(), press.stress_top(), press.stress_bottom(),
+                            motion.totals().energy(), motion.totals().unbalanced_ratio()};
+  });
+}
+
+void CompressionCurve::add(const CompressionPoint& point, double time_of_motion) {
+  strain.push_back(point.strain);
+  stress.push_back(point.stress());
+  platen_difference.push_back(std::abs(point.stress_top - point.stress_bottom));
+  kinetic_over_strain.push_back(point.energy.kinetic_over_elastic());
+  time.push_back(time_of_motion);
 }
 
 void CompressionCurve::visit_state(StateVisitor& visitor) {

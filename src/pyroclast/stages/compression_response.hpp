@@ -20,6 +20,19 @@ inline constexpr double kRisesAgain = 0.005;
 /// Passages of the first stress wave through the specimen after which the stress is no longer that of a wave.
 inline constexpr double kPassages = 2.0;
 
+/// What a compression asks of the body after some steps.
+struct CompressionPoint {
+  double strain = 0.0;                           ///< strain since the stage began
+  double stress_top = 0.0, stress_bottom = 0.0;  ///< Pa
+  EnergyLedger energy;
+  double unbalanced_ratio = 0.0;
+
+  double stress() const { return 0.5 * (stress_top + stress_bottom); }
+};
+
+/// Reads the press and the body.
+CompressionPoint point_of(const Press& press, const Motion& motion);
+
 /// Curve of one compression, at even strains whatever the rows of the history are; compression positive.
 struct CompressionCurve {
   std::vector<double> strain;               ///< strain since the stage began
@@ -29,8 +42,9 @@ struct CompressionCurve {
   std::vector<double> time;                 ///< s
 
   std::size_t count() const { return stress.size(); }
-  /// Adds a point with the present readings of the press.
-  void add(const Press& press, const Motion& motion);
+  /// Adds a point.
+  /// \param time_of_motion  time of the mechanics since the start, s
+  void add(const CompressionPoint& point, double time_of_motion);
   void visit_state(StateVisitor& visitor);
 };
 

@@ -179,21 +179,24 @@ void Drive::halt(Simulation& simulation) {
     if (action.kind == ActionKind::velocity) simulation.halt(action.set, action.components.front());
 }
 
+void Drive::look(const Simulation& simulation) {
+  watch_.look(simulation);
+  ratio_seen_ = simulation.motion().totals().unbalanced_ratio();
+}
+
 Verdict Drive::judge(Simulation& simulation) {
   Verdict verdict;
   const bool is_lost = control_ && control_->is_lost();
   if (control_) control_->look();
   const double now = time(simulation);
-  verdict.over = watch_.judge(simulation, now, is_lost ? control_->keys().record : "");
+  verdict.over = watch_.judge(now, is_lost ? control_->keys().record : "");
   if (is_lost && !verdict.over) verdict = {.over = true, .last = true, .outcome = Outcome::control_lost};
   // The loads are those of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =
       now - 0.5 * static_cast<double>(steps_per_adjustment(simulation)) * simulation.motion().time_step();
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const DriveAction& a) { return at_most(a.ramp_time, acted); });
-  if (keys_.unbalanced_ratio && ramps_are_over &&
-      simulation.motion().totals().unbalanced_ratio() < *keys_.unbalanced_ratio)
-    verdict.over = true;
+  if (keys_.unbalanced_ratio && ramps_are_over && ratio_seen_ < *keys_.unbalanced_ratio) verdict.over = true;
   if (!verdict.over && kept_.steps >= duration_in_steps(simulation)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
@@ -205,7 +208,7 @@ Verdict Drive::judge(Simulation& simulation) {
   }
   if (verdict.over) halt(simulation);
   const auto frames = static_cast<std::int64_t>(whole_below(now / keys_.frame_interval));
-  verdict.frame = watch_.has_fallen(simulation) || frames > kept_.frames;
+  verdict.frame = watch_.has_fallen() || frames > kept_.frames;
   kept_.frames = std::max(kept_.frames, frames);
   return verdict;
 }

@@ -27,6 +27,7 @@ class Drive : public Stage {
   void check_beside(const Drive& under_way, const Simulation& simulation, const Supports& supports) const;
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
+  void look(const Simulation& simulation) override;
   Verdict judge(Simulation& simulation) override;
   double progress(const Simulation& simulation) const override;
   StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
@@ -63,6 +64,7 @@ class Drive : public Stage {
     bool is_driven = false;  ///< true while the body is driven on
     BodyFigures body;
   } kept_;
+  double ratio_seen_ = 0.0;  ///< unbalanced ratio at the last look
 };
 
 StageKind drive_kind();

@@ -126,13 +126,18 @@ bool Load::advance(Simulation& simulation, int most_steps) {
   return kept_.steps % kLoadStepsPerLook == 0;
 }
 
+void Load::look(const Simulation& simulation) {
+  strain_seen_ = simulation.press().specimen_strain();
+  ratio_seen_ = simulation.motion().totals().unbalanced_ratio();
+}
+
 Verdict Load::judge(Simulation& simulation) {
-  if (simulation.press().specimen_strain() - kept_.first_strain > keys_.failure_strain)
+  if (strain_seen_ - kept_.first_strain > keys_.failure_strain)
     return {.over = true, .last = true, .outcome = Outcome::crushed};
   const Motion& motion = simulation.motion();
   // The ramp may end before the force is adjusted to all of it.
   if (share_held_from(kept_.steps - kStepsPerForce, motion.time_step()) < 1.0) return {};
-  if (motion.totals().unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
+  if (ratio_seen_ < keys_.unbalanced_ratio) return {.over = true};
   const double after_ramp = static_cast<double>(kept_.steps) - keys_.ramp_time / motion.time_step();
   if (after_ramp >= static_cast<double>(keys_.most_steps))
     return {.over = true, .last = true, .outcome = Outcome::not_settled};

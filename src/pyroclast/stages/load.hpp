@@ -28,6 +28,7 @@ class Load : public Stage {
   double held_stress() const override { return keys_.stress; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
+  void look(const Simulation& simulation) override;
   Verdict judge(Simulation& simulation) override;
   double progress(const Simulation& simulation) const override;
   StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
@@ -46,6 +47,8 @@ class Load : public Stage {
     double first_stress = 0.0;  ///< stress held before the stage, Pa
     double first_strain = 0.0;  ///< strain of the specimen before the stage
   } kept_;
+  /// Strain of the specimen and unbalanced ratio at the last look.
+  double strain_seen_ = 0.0, ratio_seen_ = 0.0;
 };
 
 StageKind load_kind();

@@ -40,6 +40,7 @@ void OpeningControl::check(const Simulation& simulation) const {
 }
 
 void OpeningControl::begin(const Simulation& simulation) {
+  steps_per_adjustment_ = 0;
   kept_.first_opening = kept_.last_opening = simulation.record(keys().record).read(simulation);
 }
 
@@ -52,16 +53,21 @@ double OpeningControl::largest_stiffness(const Simulation& simulation) const {
 }
 
 std::int64_t OpeningControl::steps_per_adjustment(const Simulation& simulation) const {
+  if (steps_per_adjustment_ > 0) return steps_per_adjustment_;
   const double share = keys().stiffness / largest_stiffness(simulation);
+  steps_per_adjustment_ = kControlIntervals.back().steps;
   for (const auto& [steps, stable] : kControlIntervals)
-    if (share * static_cast<double>(steps * steps) * kControlIntervals.back().stable <= stable) return steps;
-  return kControlIntervals.back().steps;
+    if (share * static_cast<double>(steps * steps) * kControlIntervals.back().stable <= stable) {
+      steps_per_adjustment_ = steps;
+      break;
+    }
+  return steps_per_adjustment_;
 }
 
 void OpeningControl::steer(const Simulation& simulation, double time, std::int64_t interval,
                            const LoadBefore& before, LoadsBySet& loads) {
   const Record& record = simulation.record(keys().record);
-  const double opening = record.read(simulation);
+  const double opening = simulation.model().ranks().together([&] { return record.read(simulation); });
   kept_.pair_work += kept_.pair_force * (opening - kept_.last_opening);
   kept_.last_opening = opening;
   const double behind = kept_.first_opening + keys().rate * time - opening;
@@ -145,6 +151,7 @@ void OpeningControl::add_to(StageReport& report, double work) const {
 void OpeningControl::visit_state(StateVisitor& visitor) {
   auto& [first_opening, last_opening, load_factor, pair_force, largest_pair, largest_factor,
          largest_with_pair, largest_load, pair_work, is_lost] = kept_;  // a new member needs a name here
+  if (visitor.replaces()) steps_per_adjustment_ = 0;
   visitor.visit("first_opening", first_opening);
   visitor.visit("last_opening", last_opening);
   visitor.visit("load_factor", load_factor);

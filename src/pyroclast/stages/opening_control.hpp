@@ -69,6 +69,8 @@ class OpeningControl {
     double pair_work = 0.0;     ///< work of the pair, J
     bool is_lost = false;       ///< true where the opening left its prescribed value
   } kept_;
+  /// Steps of an interval, which follow from the masses of the sets; 0 until they are asked for.
+  mutable std::int64_t steps_per_adjustment_ = 0;
 };
 
 }  // namespace pyroclast

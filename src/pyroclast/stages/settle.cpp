@@ -49,8 +49,12 @@ bool Settle::advance(Simulation& simulation, int most_steps) {
   return kept_.steps_to_look == 0;
 }
 
+void Settle::look(const Simulation& simulation) {
+  ratio_seen_ = simulation.motion().totals().unbalanced_ratio();
+}
+
 Verdict Settle::judge(Simulation& simulation) {
-  if (simulation.motion().totals().unbalanced_ratio() < keys_.unbalanced_ratio) {
+  if (ratio_seen_ < keys_.unbalanced_ratio) {
     simulation.set_zero();
     return {.over = true};
   }

@@ -19,6 +19,7 @@ class Settle : public Stage {
   StageNeeds needs() const override { return {}; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
+  void look(const Simulation& simulation) override;
   Verdict judge(Simulation& simulation) override;
   double progress(const Simulation&) const override { return 0.0; }  // cannot be foreseen
   StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
@@ -32,6 +33,7 @@ class Settle : public Stage {
     std::int64_t steps = 0;  ///< steps since the stage began
     std::int64_t steps_to_look = 0;
   } kept_;
+  double ratio_seen_ = 0.0;  ///< unbalanced ratio at the last look
 };
 
 StageKind settle_kind();

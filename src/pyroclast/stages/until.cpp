@@ -15,10 +15,6 @@ constexpr double kMostNoise = 0.1;
 /// Share of its peak below which a record is behind the peak; the next peak is greater by as much.
 constexpr double kBehindPeak = 1.0 - PeakRule().fall;
 
-double size_of(const Simulation& simulation, const std::string& record) {
-  return std::abs(simulation.record(record).read(simulation));
-}
-
 }  // namespace
 
 RecordWatch::RecordWatch(const DriveKeys& drive) : drive_(drive) {
@@ -32,32 +28,44 @@ RecordWatch::RecordWatch(const DriveKeys& drive) : drive_(drive) {
       leading_ = first->name;
 }
 
+RecordWatch::Seen RecordWatch::read(const Simulation& simulation) const {
+  return simulation.model().ranks().together([&] {
+    Seen seen;
+    for (const RecordParameters& record : drive_.records)
+      seen.values.push_back(simulation.record(record.name).read(simulation));
+    seen.energy = simulation.motion().totals().energy();
+    return seen;
+  });
+}
+
+double RecordWatch::value(const Seen& seen, std::string_view record) const {
+  const auto found = std::ranges::find(drive_.records, record, &RecordParameters::name);
+  return seen.values.at(static_cast<std::size_t>(found - drive_.records.begin()));
+}
+
 void RecordWatch::begin(const Simulation& simulation) {
   kept_.record_peaks.assign(drive_.records.size(), {});
   kept_.peaks.assign(drive_.until.size(), {});
   kept_.last.clear();
-  for (const EndCondition& until : drive_.until)
-    kept_.last.push_back(simulation.record(until.record).read(simulation));
-  const EnergyLedger energy = simulation.motion().totals().energy();
-  kept_.first_work = energy.loading;
-  kept_.most_kinetic = std::abs(energy.kinetic);
+  const Seen seen = read(simulation);
+  for (const EndCondition& until : drive_.until) kept_.last.push_back(value(seen, until.record));
+  kept_.first_work = seen.energy.loading;
+  kept_.most_kinetic = std::abs(seen.energy.kinetic);
 }
 
 void RecordWatch::take_peaks(const Simulation& simulation, double driven, bool is_driven) {
-  kept_.is_beyond_noise = kept_.is_beyond_noise || is_beyond_noise(kMostNoise, simulation);
-  std::vector<double> values;
-  for (const RecordParameters& record : drive_.records)
-    values.push_back(simulation.record(record.name).read(simulation));
-  for (std::size_t i = 0; i < values.size(); ++i)
+  const Seen seen = read(simulation);
+  kept_.is_beyond_noise = kept_.is_beyond_noise || is_beyond_noise(kMostNoise, seen.energy);
+  for (std::size_t i = 0; i < seen.values.size(); ++i)
     kept_.record_peaks[i].take(i, driven, is_driven && kept_.is_beyond_noise, simulation.motion().time(),
-                               values);
+                               seen.values);
   for (std::size_t i = 0; i < drive_.until.size(); ++i) {
     const EndCondition& until = drive_.until[i];
     if (until.kind != EndCondition::Kind::share_of_peak || !is_driven) continue;
-    const double size = size_of(simulation, until.record);
+    const double size = std::abs(value(seen, until.record));
     const double most_noise = std::min(kMostNoise, 1.0 - until.value);
     if (kept_.peaks[i].size() > 0.0 ||
-        (until.least_peak ? size > *until.least_peak : is_beyond_noise(most_noise, simulation)))
+        (until.least_peak ? size > *until.least_peak : is_beyond_noise(most_noise, seen.energy)))
       kept_.peaks[i].take(driven, size, rule_of_records(kept_.peaks[i]));
   }
 }
@@ -65,16 +73,15 @@ void RecordWatch::take_peaks(const Simulation& simulation, double driven, bool i
 /// Tells whether noise is below a share of what records show of the stage. Forces go with the root of an
 /// energy. So the kinetic energy, at any call so far, must be below the square of that share of the work of
 /// the loads. A stage that loads nothing shakes nothing.
-bool RecordWatch::is_beyond_noise(double share, const Simulation& simulation) {
-  const EnergyLedger energy = simulation.motion().totals().energy();
+bool RecordWatch::is_beyond_noise(double share, const EnergyLedger& energy) {
   kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
   return !drive_.loads() || kept_.most_kinetic <= share * share * std::abs(energy.loading - kept_.first_work);
 }
 
-bool RecordWatch::judge(const Simulation& simulation, double time, std::string_view lost) {
+bool RecordWatch::judge(double time, std::string_view lost) {
   bool is_over = false;
   for (std::size_t i = 0; i < drive_.until.size(); ++i) {
-    if (!is_met(i, simulation, time, lost)) continue;
+    if (!is_met(i, time, lost)) continue;
     is_over = true;
     if (drive_.until[i].kind == EndCondition::Kind::share_of_peak)
       for (RecordPeak& peak : kept_.record_peaks) peak.end();
@@ -83,11 +90,10 @@ bool RecordWatch::judge(const Simulation& simulation, double time, std::string_v
   return is_over;
 }
 
-bool RecordWatch::is_met(std::size_t condition, const Simulation& simulation, double time,
-                         std::string_view lost) {
+bool RecordWatch::is_met(std::size_t condition, double time, std::string_view lost) {
   const EndCondition& until = drive_.until[condition];
   double& last = kept_.last[condition];
-  const double value = simulation.record(until.record).read(simulation);
+  const double value = this->value(seen_, until.record);
   const double rate = std::abs(value - last) / (time - kept_.last_look);
   last = value;
   if (until.record == lost) return false;
@@ -107,10 +113,10 @@ bool RecordWatch::is_met(std::size_t condition, const Simulation& simulation, do
   return false;
 }
 
-bool RecordWatch::has_fallen(const Simulation& simulation) {
+bool RecordWatch::has_fallen() {
   if (!leading_) return false;
-  if (kept_.leading_peak == 0.0 && !is_beyond_noise(kMostNoise, simulation)) return false;
-  const double size = size_of(simulation, *leading_);
+  if (kept_.leading_peak == 0.0 && !is_beyond_noise(kMostNoise, seen_.energy)) return false;
+  const double size = std::abs(value(seen_, *leading_));
   kept_.leading_peak = std::max(kept_.leading_peak, size);
   if (size >= kBehindPeak * kept_.leading_peak || kept_.framed_peak >= kBehindPeak * kept_.leading_peak)
     return false;

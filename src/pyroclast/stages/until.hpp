@@ -21,15 +21,18 @@ class RecordWatch {
 
   void begin(const Simulation& simulation);
   /// Takes the values of the records into their peaks. An unloading by command is no fall from a peak:
-  /// nothing counts until the body is driven farther than ever. \param driven     time for which the body was
-  /// driven on, s \param is_driven  true while the body is driven on
+  /// nothing counts until the body is driven farther than ever.
+  /// \param driven     time for which the body was driven on, s
+  /// \param is_driven  true while the body is driven on
   void take_peaks(const Simulation& simulation, double driven, bool is_driven);
+  /// Takes what `judge` and `has_fallen` ask of the body, see Stage::look.
+  void look(const Simulation& simulation) { seen_ = read(simulation); }
   /// Judges the conditions at a look. Returns whether one of them is met.
   /// \param time  time of the stage, s
   /// \param lost  name of a record that ran away from its control, and so passes any value; may be empty
-  bool judge(const Simulation& simulation, double time, std::string_view lost);
+  bool judge(double time, std::string_view lost);
   /// Tells whether the leading record has just come down from a peak that has no frame yet.
-  bool has_fallen(const Simulation& simulation);
+  bool has_fallen();
   /// Tells whether there is a leading record: the first force, else stress.
   bool has_leading() const { return leading_.has_value(); }
 
@@ -41,8 +44,15 @@ class RecordWatch {
   void visit_state(StateVisitor& visitor);
 
  private:
-  bool is_beyond_noise(double share, const Simulation& simulation);
-  bool is_met(std::size_t condition, const Simulation& simulation, double time, std::string_view lost);
+  /// What the watch asks of the body.
+  struct Seen {
+    std::vector<double> values;  ///< values of the records
+    EnergyLedger energy;
+  };
+  Seen read(const Simulation& simulation) const;
+  double value(const Seen& seen, std::string_view record) const;
+  bool is_beyond_noise(double share, const EnergyLedger& energy);
+  bool is_met(std::size_t condition, double time, std::string_view lost);
   std::string describe_unmet(std::size_t condition) const;
 
   const DriveKeys& drive_;
@@ -59,6 +69,7 @@ class RecordWatch {
     double most_kinetic = 0.0;     ///< largest kinetic energy while peaks do not count yet, J
     bool is_beyond_noise = false;  ///< true once the motion is no noise, so that peaks count
   } kept_;
+  Seen seen_;  ///< seen at the last look
 };
 
 }  // namespace pyroclast

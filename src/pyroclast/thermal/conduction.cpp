@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +30,9 @@ constexpr std::int64_t kZonesPerBatch = 4'000'000;
 /// Change of temperature that limits take away in a step, over `kAllowedBeyond`, above which they stay on: a
 /// step that is done twice costs more than one that is limited without need.
 constexpr double kLimitsMatter = 0.1;
+
+/// Stages of a step whose sums are kept until they travel to other ranks.
+constexpr std::int64_t kMostKept = 1000;
 
 const Interval& checked(const Interval& range) {
   if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
@@ -86,7 +90,7 @@ std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& sha
   return volume;
 }
 
-/// Returns the strictest step of all nodes. By Gershgorin's theorem no rate of decay exceeds the largest row
+/// Returns the strictest step of own nodes. By Gershgorin's theorem no rate of decay exceeds the largest row
 /// sum over capacity.
 template <class Capacity>
 HeatStepLimit strictest(const std::vector<double>& rows, double safety, const ChunkList& nodes,
@@ -96,10 +100,12 @@ HeatStepLimit strictest(const std::vector<double>& rows, double safety, const Ch
     const double step = safety * 2.0 * capacity(node) / rows[node];
     if (step < limit.step) limit = {step, node};
   }
-  const double own = limit.step;
-  limit.step = nodes.ranks().least(own);
-  if (limit.step < own) limit.node = -1;
   return limit;
+}
+
+/// Returns the factor of the boundaries in the limit of a step, see Conduction::own_limit.
+double weight_of_boundary(bool limits_flows) {
+  return limits_flows ? 2.0 : 1.0;
 }
 
 }  // namespace
@@ -201,6 +207,7 @@ void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
     if (size[node] == size_before[old]) state_.enthalpy[node] = was.enthalpy[old];
   }
   halo_.spread(state_.temperature);  // of a foreign node a part may lack gridpoints
+  halo_.spoil(state_.enthalpy);
 }
 
 /// Returns the share of each gridpoint: an equal part of every zone, all of the material of its block.
@@ -296,6 +303,7 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
   state_.enthalpy.resize(temperature.size());
   for (int node = 0; node < nodes_.count(); ++node)
     state_.enthalpy[node] = store_.enthalpy(node, temperature[node]);
+  halo_.spoil(state_.enthalpy);
   state_.stored_at_start = total_enthalpy();
   state_.ledger = {};
   state_.bounds = nothing();
@@ -312,13 +320,13 @@ void Conduction<Dim>::set_uniform_temperature(double temperature) {
 // ---- Running ---------------------------------------------------------------------------------------------
 
 template <int Dim>
-bool Conduction<Dim>::advance_step(double end, std::int64_t& stages) {
+bool Conduction<Dim>::advance_step(double end, std::int64_t& stages, const std::vector<double>* begin) {
   if (trial_.under_way)
     require(end == trial_.end, "heat conduction", "the time to step towards [s]", end,
             "that of the step under way");
   else
     begin_run(end);
-  return time() == end || continue_step(end, stages);
+  return time() == end || continue_step(end, stages, begin);
 }
 
 template <int Dim>
@@ -344,7 +352,7 @@ void Conduction<Dim>::begin_run(double end) {
     before_run_.temperature.push_back(state_.temperature[node]);
     before_run_.enthalpy.push_back(state_.enthalpy[node]);
   }
-  hold_prescribed();
+  const KeptSums heat_of_jump = hold_prescribed();
   Interval reach = boundary_.reach(time(), end);
   // Where nothing takes the exact solution out of the range, all excess is numerical.
   const double doubtful = kDoubtfulExcess * (grid_.range().upper - grid_.range().lower);
@@ -355,38 +363,59 @@ void Conduction<Dim>::begin_run(double end) {
   allowed_above_ = grid_.range().holds(wider.upper, absolute_zero) ? any : doubtful;
   include(state_.bounds, reach);
   include(state_.bounds, prescriptions_.reach(time(), end));
-  safe_step_ = range_limit(end).step;
-  if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
+  begin_step(end, heat_of_jump);
 }
 
-/// Goes on with a step, or begins one, by at most `stages` stages, which it counts down; returns true when
-/// the step is completed.
+/// Begins the first trial of a step. The limits of the step travel in one message, where the step is foreseen
+/// without them.
 template <int Dim>
-bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
+void Conduction<Dim>::begin_step(double end, const KeptSums& heat_of_jump) {
+  const bool is_over = time() == end;
+  const Limits limits = state_.limits || parameters_.always_limits ? Limits::flows : Limits::none;
+  const double weight = weight_of_boundary(limits != Limits::none);
   const double remaining = end - time();
-  if (!trial_.under_way) {
-    // Two equal steps to the end rather than a last one that is tiny.
-    const double step = state_.next_step >= remaining
-                            ? remaining
-                            : std::min(state_.next_step, std::max(0.5 * remaining, safe_step_));
-    trial_.under_way = true;
-    trial_.end = end;
-    trial_.limit = present_limit(step).step;
-    trial_.limits = Limits::none;
-    trial_.stages_done = trial_.retries = 0;
-    begin_trial(step, state_.limits || parameters_.always_limits ? Limits::flows : Limits::none);
-  }
+  // Two equal steps to the end rather than a last one that is tiny.
+  const auto step_above = [&](double safe_step) {
+    return state_.next_step >= remaining ? remaining
+                                         : std::min(state_.next_step, std::max(0.5 * remaining, safe_step));
+  };
+  const double foreseen = step_above(0.0);
+  const double range_here = own_range_limit(end).step;
+  const double limit_here = is_over ? 0.0 : own_limit(foreseen, weight, extremes()).step;
+  Ranks& ranks = model_.ranks();
+  const auto [heat, safe_step, limit] = ranks.together([&] {
+    return std::array{heat_of_jump.totals(ranks).front(), ranks.least(range_here), ranks.least(limit_here)};
+  });
+  state_.ledger.prescribed += heat;
+  safe_step_ = safe_step;
+  if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
+  if (is_over) return;
+  const double step = step_above(safe_step_);
+  trial_.under_way = true;
+  trial_.end = end;
+  trial_.limit = step == foreseen ? limit : present_limit(step, weight).step;
+  trial_.limits = limits;
+  trial_.stages_done = trial_.retries = 0;
+  begin_trial(step, limits);
+}
+
+/// Goes on with a step by at most `stages` stages, which it counts down; returns true when the step is
+/// completed.
+template <int Dim>
+bool Conduction<Dim>::continue_step(double end, std::int64_t& stages, const std::vector<double>* begin) {
+  const double remaining = end - time();
+  Found found;
   for (;;) {
     for (; trial_.next_stage < trial_.stages.count(); ++trial_.next_stage, --stages) {
       if (stages <= 0) return false;
       run_stage(trial_.stages[trial_.next_stage]);
     }
-    agree_on_trial();
+    found = judge_trial(begin);
     const bool smallest = trial_.step <= safe_step_;
     const double half = std::max(0.5 * trial_.step, safe_step_);
-    if (!smallest && trial_.change > parameters_.largest_change) {
+    if (is_too_large()) {
       begin_trial(half, trial_.limits);
-    } else if (trial_.limits != Limits::strict && oversteps()) {
+    } else if (found.oversteps) {
       begin_trial(trial_.step, trial_.limits == Limits::none ? Limits::flows : Limits::strict);
     } else if (trial_.below > allowed_below_ || trial_.above > allowed_above_) {
       if (smallest) refuse_excess();
@@ -396,22 +425,67 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
     }
     ++trial_.retries;
   }
-  accept_trial();
+  accept_trial(found);
   if (trial_.step == remaining) state_.time = end;
   return true;
 }
 
-/// Takes the largest changes of all ranks for those of the trial.
+/// Tells whether a temperature changed by more than is allowed in a step that may be smaller.
 template <int Dim>
-void Conduction<Dim>::agree_on_trial() {
-  if (model_.ranks().count() == 1) return;
-  for (const auto& [change, below, above, left_out] : model_.ranks().collect(
-           std::vector{std::array{trial_.change, trial_.below, trial_.above, trial_.left_out}})) {
-    trial_.change = std::max(trial_.change, change);
-    trial_.below = std::max(trial_.below, below);
-    trial_.above = std::max(trial_.above, above);
-    trial_.left_out = std::max(trial_.left_out, left_out);
+bool Conduction<Dim>::is_too_large() const {
+  return trial_.step > safe_step_ && trial_.change > parameters_.largest_change;
+}
+
+/// Finds what decides over the trial, and what follows once it is accepted, in one message.
+template <int Dim>
+typename Conduction<Dim>::Found Conduction<Dim>::judge_trial(const std::vector<double>* begin) {
+  KeptSums sums;
+  prescriptions_.keep_sum(sums, [&](int node) { return trial_.increment[node]; });
+  sums.keep(node_chunks_, [&](int node) {
+    const double speed = (trial_.temperature[node] - state_.temperature[node]) / trial_.step;
+    return volume_[node] * speed * speed;
+  });
+  const bool oversteps_here = !is_too_large() && trial_.limits != Limits::strict && oversteps();
+  const double change_here = trial_change();
+  double since_here = 0.0;
+  if (begin)
+    for (auto [node, last] = node_chunks_.own(); node < last; ++node)
+      since_here = std::max(since_here, std::abs((*begin)[node] - trial_.temperature[node]));
+  Ranks& ranks = model_.ranks();
+  Found found = ranks.together([&] {
+    Found all;
+    all.change = ranks.largest(trial_.change);
+    all.below = ranks.largest(trial_.below);
+    all.above = ranks.largest(trial_.above);
+    all.left_out = ranks.largest(trial_.left_out);
+    all.oversteps = ranks.any(oversteps_here);
+    const std::vector<double> totals = sums.totals(ranks);
+    all.prescribed = totals[0];
+    all.squares = totals[1];
+    all.largest_change = ranks.largest(change_here);
+    all.since_begin = ranks.largest(since_here);
+    all.inflows = trial_.inflows.totals(ranks);
+    return all;
+  });
+  trial_.change = found.change;
+  trial_.below = found.below;
+  trial_.above = found.above;
+  trial_.left_out = found.left_out;
+  book_inflows(found.inflows);
+  return found;
+}
+
+/// Adds the heat of the stages that are done to the ledger of the trial.
+/// \param inflows  sums of trial_.inflows
+template <int Dim>
+void Conduction<Dim>::book_inflows(const std::vector<double>& inflows) {
+  const std::size_t of_boundary = boundary_.count();
+  for (std::span<const double> left(inflows); !left.empty(); left = left.subspan(of_boundary + 1)) {
+    const double time = trial_.stages[trial_.booked++].weight * trial_.step;
+    trial_.heat.boundary.add(time, boundary_.by_kind(left.first(of_boundary)));
+    trial_.heat.prescribed -= time * left[of_boundary];
   }
+  trial_.inflows.clear();
 }
 
 /// Returns the scheme of a trial. With limits that is forward Euler, which oversteps no bounds, where they
@@ -428,7 +502,8 @@ template <int Dim>
 void Conduction<Dim>::begin_trial(double step, Limits limits) {
   // A node would pass the temperatures that draw it from outside where a step takes all of its heat by more
   // than one way; so boundaries count twice.
-  if (limits != Limits::none && trial_.limits == Limits::none) trial_.limit = present_limit(step, 2.0).step;
+  if (limits != Limits::none && trial_.limits == Limits::none)
+    trial_.limit = present_limit(step, weight_of_boundary(true)).step;
   trial_.step = step;
   trial_.left_out = 0.0;
   const HeatScheme scheme = trial_scheme(limits, step / trial_.limit);
@@ -438,33 +513,36 @@ void Conduction<Dim>::begin_trial(double step, Limits limits) {
   trial_.next_stage = 0;
   trial_.change = trial_.below = trial_.above = 0.0;
   trial_.heat = {};
+  trial_.inflows.clear();
+  trial_.booked = 0;
   trial_.temperature = state_.temperature;
   std::fill(trial_.increment.begin(), trial_.increment.end(), 0.0);
   std::fill(trial_.before.begin(), trial_.before.end(), 0.0);
+  halo_.spoil(trial_.increment);
 }
 
 template <int Dim>
 void Conduction<Dim>::run_stage(const TimeStage& stage) {
   const double step = trial_.step;
-  const Inflow inflow = compute_inflow(time() + stage.begin * step);
-  trial_.heat.boundary.add(stage.weight * step, inflow.boundary);
-  trial_.heat.prescribed -= stage.weight * step * inflow.held;
+  compute_inflow(time() + stage.begin * step);
+  const bool travels = model_.ranks().count() > 1;  // at the end of the step, or when much is kept
+  if (!travels || (trial_.next_stage - trial_.booked) >= kMostKept)
+    book_inflows(trial_.inflows.totals(model_.ranks()));
   prescriptions_.read(time() + stage.end * step, grid_.range());
   update_nodes(stage);
   ++trial_.stages_done;
 }
 
-/// Computes the right side of Eq. (1), integrated over each node's part of the body.
+/// Computes the right side of Eq. (1), integrated over each node's part of the body. Keeps the sums of the
+/// heat that flows in through the boundaries, and into nodes whose temperature is prescribed.
 template <int Dim>
-typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
-  Inflow sum;
+void Conduction<Dim>::compute_inflow(double time) {
   const bool limits = trial_.limits != Limits::none;
   limits ? zones_.update_apart(trial_.temperature) : zones_.update(trial_.temperature);
   if (gaps_) gaps_->update(trial_.temperature);
-  sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
+  boundary_.inflow(time, trial_.temperature, boundary_heat_, trial_.inflows);
   if (limits) limit_flows(time);
-  sum.held = prescriptions_.sum([&](int node) { return inflow(node); });
-  return sum;
+  prescriptions_.keep_sum(trial_.inflows, [&](int node) { return inflow(node); });
 }
 
 /// Lets heat from cold to hot flow only as far as it takes no node, in one stable step, beyond its neighbours
@@ -502,7 +580,8 @@ void Conduction<Dim>::limit_flows(double time) {
   trial_.left_out = std::max(trial_.left_out, zones_.add_uphill(shares_, capacity));
 }
 
-/// Tells whether the trial took a node beyond its neighbours, or beyond the bounds, farther than it may come.
+/// Tells whether the trial took an own node beyond its neighbours, or beyond the bounds, farther than it may
+/// come.
 template <int Dim>
 bool Conduction<Dim>::oversteps() {
   std::fill(reach_.begin(), reach_.end(), nothing());
@@ -526,7 +605,7 @@ bool Conduction<Dim>::oversteps() {
       if (now < range.lower - kAllowedBeyond || now > range.upper + kAllowedBeyond) found = true;
     }
   });
-  return model_.ranks().any(found);
+  return found;
 }
 
 /// Returns how far beyond the range a node at one of its ends would be, K, see NodeEnthalpy; 0 for other
@@ -577,16 +656,13 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage) {
 }
 
 template <int Dim>
-void Conduction<Dim>::accept_trial() {
-  trial_.heat.prescribed += prescriptions_.sum([&](int node) { return trial_.increment[node]; });
+void Conduction<Dim>::accept_trial(const Found& found) {
+  trial_.heat.prescribed += found.prescribed;
   for (int node = 0; node < nodes_.count(); ++node) state_.enthalpy[node] += trial_.increment[node];
-  const double squares = chunked_sum(node_chunks_, [&](int node) {
-    const double speed = (trial_.temperature[node] - state_.temperature[node]) / trial_.step;
-    return volume_[node] * speed * speed;
-  });
-  state_.largest_change = trial_change();
+  state_.largest_change = found.largest_change;
+  change_since_begin_ = found.since_begin;
   std::swap(state_.temperature, trial_.temperature);
-  state_.rate = std::sqrt(squares / total_volume_);
+  state_.rate = std::sqrt(found.squares / total_volume_);
   state_.largest_overshoot = std::max({state_.largest_overshoot, trial_.below, trial_.above});
   state_.ledger.boundary.add(1.0, trial_.heat.boundary);
   state_.ledger.prescribed += trial_.heat.prescribed;
@@ -601,7 +677,7 @@ void Conduction<Dim>::accept_trial() {
   before_run_.holds = false;
 }
 
-/// Returns the largest change of a temperature over the trial, with the jumps of prescribed ones at its
+/// Returns the largest change of an own temperature over the trial, with the jumps of prescribed ones at its
 /// beginning.
 template <int Dim>
 double Conduction<Dim>::trial_change() const {
@@ -615,7 +691,7 @@ double Conduction<Dim>::trial_change() const {
     const double start = before_run_.holds ? before_run_.temperature[i] : state_.temperature[node];
     largest = std::max(largest, std::abs(trial_.temperature[node] - start));
   }
-  return model_.ranks().largest(largest);
+  return largest;
 }
 
 /// Chooses the next step so that the largest change stays a little below what is allowed.
@@ -632,16 +708,17 @@ void Conduction<Dim>::adapt_step() {
       std::min(cut_short ? std::max(state_.next_step, wanted) : wanted, parameters_.largest_step);
 }
 
-/// Gives prescribed nodes their temperatures, and books the heat that the jump to them needs.
+/// Gives prescribed nodes their temperatures. Returns the sum of the heat that the jump to them needs.
 template <int Dim>
-void Conduction<Dim>::hold_prescribed() {
+KeptSums Conduction<Dim>::hold_prescribed() {
   const auto needed = [&](int node) { return store_.enthalpy(node, prescriptions_.temperature(node)); };
-  state_.ledger.prescribed +=
-      prescriptions_.sum([&](int node) { return needed(node) - state_.enthalpy[node]; });
+  KeptSums heat;
+  prescriptions_.keep_sum(heat, [&](int node) { return needed(node) - state_.enthalpy[node]; });
   for (int node : prescriptions_.nodes()) {
     state_.temperature[node] = prescriptions_.temperature(node);
     state_.enthalpy[node] = needed(node);
   }
+  return heat;
 }
 
 template <int Dim>
@@ -659,35 +736,58 @@ void Conduction<Dim>::undo_begin(HeatState& state) const {
 
 // ---- Limits ----------------------------------------------------------------------------------------------
 
-/// Returns the limit of a step while no temperature changes by more than the largest change.
+/// Returns the least and the greatest temperature, on which the limit depends where heat crosses gaps.
+template <int Dim>
+Interval Conduction<Dim>::extremes() const {
+  Interval here = nothing();
+  if (!gaps_) return here;
+  for (const double t : state_.temperature) include(here, t);
+  return model_.ranks().together([&] {
+    return Interval{model_.ranks().least(here.lower), model_.ranks().largest(here.upper)};
+  });
+}
+
+/// Returns the limit of a step by own nodes, while no temperature changes by more than the largest change.
 /// \param weight_of_boundary  factor of the boundaries: 1 for a step that is stable, 2 for one in which no
 ///                            node passes its neighbours; the rows of zones hold twice the flow from hot to
 ///                            cold anyhow
 template <int Dim>
-HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_boundary) const {
+HeatStepLimit Conduction<Dim>::own_limit(double step, double weight_of_boundary,
+                                         const Interval& extremes) const {
   auto rows = zones_.row_bound(state_.temperature);
+  const auto changed = [&](double t) {
+    return std::min(t + parameters_.largest_change, grid_.range().upper);
+  };
   auto hottest = state_.temperature;
-  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
+  for (double& t : hottest) t = changed(t);
   boundary_.add_slope(time(), time() + step, hottest, weight_of_boundary, rows);
-  if (gaps_) {
-    const double coldest = model_.ranks().least(*std::ranges::min_element(state_.temperature));
-    gaps_->add_row_bound({std::max(coldest - parameters_.largest_change, grid_.range().lower),
-                          model_.ranks().largest(*std::ranges::max_element(hottest))},
-                         hottest, rows);
-  }
+  if (gaps_)
+    gaps_->add_row_bound(
+        {std::max(extremes.lower - parameters_.largest_change, grid_.range().lower), changed(extremes.upper)},
+        hottest, rows);
   return strictest(rows, parameters_.safety, node_chunks_,
                    [&](int node) { return store_.least_capacity(node, state_.temperature[node]); });
 }
 
-/// Returns the limit of a step that is valid whatever the temperatures.
+/// Returns the limit of a step by own nodes that is valid whatever the temperatures.
 template <int Dim>
-HeatStepLimit Conduction<Dim>::range_limit(double end) const {
+HeatStepLimit Conduction<Dim>::own_range_limit(double end) const {
   auto rows = zones_.row_bound();
   const std::vector<double> hottest(rows.size(), grid_.range().upper);
   boundary_.add_slope(time(), end, hottest, 1.0, rows);
   if (gaps_) gaps_->add_row_bound(grid_.range(), hottest, rows);
   return strictest(rows, parameters_.safety, node_chunks_,
                    [&](int node) { return store_.least_capacity(node); });
+}
+
+/// Returns the limit of a step, see own_limit.
+template <int Dim>
+HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_boundary) const {
+  HeatStepLimit limit = own_limit(step, weight_of_boundary, extremes());
+  const double own = limit.step;
+  limit.step = model_.ranks().least(own);
+  if (limit.step < own) limit.node = -1;
+  return limit;
 }
 
 template <int Dim>
@@ -700,8 +800,9 @@ void Conduction<Dim>::refuse_excess() {
   const auto beyond = [&](int node) {
     return std::abs(store_.excess(node, state_.enthalpy[node] + trial_.increment[node]));
   };
-  int node = 0;
-  for (int other = 1; other < nodes_.count(); ++other)
+  const auto [first, last] = node_chunks_.own();
+  int node = first;
+  for (int other = first; other < last; ++other)
     if (beyond(other) > beyond(node)) node = other;
   drop_trial();
   const Vec<Dim>& x = model_.position[nodes_.gridpoint[node]];

@@ -132,7 +132,8 @@ class Conduction final : public HeatSolver {
   /// which it counts down. Returns whether the step is completed; until then `state` is as it was when the
   /// step began. Where a call breaks a step off changes no bit. Throws Error when a temperature leaves the
   /// range, naming the place, and when a step towards another time is under way.
-  bool advance_step(double end, std::int64_t& stages) override;
+  /// \param begin  temperatures by node, °C, for change_since_begin; may be null
+  bool advance_step(double end, std::int64_t& stages, const std::vector<double>* begin = nullptr) override;
   /// Forgets the stages done of a step that is not completed; the next step does them again.
   void drop_trial() override;
   /// Returns the stages that take some tenths of a second on one thread, by the number of zones.
@@ -158,6 +159,9 @@ class Conduction final : public HeatSolver {
   /// Returns the largest change of any temperature in the last step, with the jumps of prescribed ones at its
   /// beginning, K.
   double largest_change() const override { return state_.largest_change; }
+  /// Returns the largest change of any temperature from `begin` to the end of the last step, see
+  /// advance_step, K.
+  double change_since_begin() const override { return change_since_begin_; }
   /// Returns the stable step of forward Euler at the present temperatures, safety included.
   HeatStepLimit step_limit() const override;
   /// Returns the range of the temperatures that the body had at first, that were prescribed since then and
@@ -173,11 +177,6 @@ class Conduction final : public HeatSolver {
   static constexpr double kAllowedBeyond = 0.1;
 
  private:
-  /// Inflow of heat, W; `held` flows into nodes whose temperature is prescribed.
-  struct Inflow {
-    HeatByKind boundary;
-    double held = 0.0;
-  };
   /// Limits that keep a step within the bounds of heat.
   enum class Limits : std::uint8_t {
     none,
@@ -199,8 +198,10 @@ class Conduction final : public HeatSolver {
     double change = 0.0;
     /// Largest excess beyond the temperature range at the end, K.
     double below = 0.0, above = 0.0;
-    HeatLedger heat;                                    ///< ledger without `stored`
-    std::vector<double> temperature;                    ///< °C
+    HeatLedger heat;                  ///< ledger without `stored`
+    KeptSums inflows;                 ///< inflows of the stages that are not in the ledger yet, W
+    std::int64_t booked = 0;          ///< stages that are
+    std::vector<double> temperature;  ///< °C
     std::vector<double> increment, before, first_rate;  ///< terms of a stage, see TimeStage
   };
   /// Values of the state that the beginning of a run changed, until its first step is completed.
@@ -224,17 +225,30 @@ class Conduction final : public HeatSolver {
   std::vector<std::vector<NodeShare>> gridpoint_shares() const;
   void add_to_boundary(const Applied& applied);
   void begin_run(double end);
-  bool continue_step(double end, std::int64_t& stages);
+  void begin_step(double end, const KeptSums& heat_of_jump);
+  bool continue_step(double end, std::int64_t& stages, const std::vector<double>* begin);
   void begin_trial(double step, Limits limits);
-  void agree_on_trial();
+  /// What all ranks find of a trial, beside what stands in `trial_`.
+  struct Found {
+    double change = 0.0, below = 0.0, above = 0.0, left_out = 0.0;  ///< as in Trial
+    bool oversteps = false;
+    double prescribed = 0.0;      ///< heat that prescribed nodes took in, J
+    double squares = 0.0;         ///< volume times the square of the temperature's rate, m³ K²/s²
+    double largest_change = 0.0;  ///< see largest_change
+    double since_begin = 0.0;     ///< see change_since_begin
+    std::vector<double> inflows;  ///< W
+  };
+  Found judge_trial(const std::vector<double>* begin);
+  bool is_too_large() const;
   bool oversteps();
+  void book_inflows(const std::vector<double>& inflows);
   void limit_flows(double time);
   HeatScheme trial_scheme(Limits limits, double ratio) const;
   void run_stage(const TimeStage& stage);
-  void accept_trial();
+  void accept_trial(const Found& found);
   double trial_change() const;
   void adapt_step();
-  Inflow compute_inflow(double time);
+  void compute_inflow(double time);
   void update_nodes(const TimeStage& stage);
   double total_enthalpy() const;
   double excess(int node, double temperature, double enthalpy) const;
@@ -242,10 +256,12 @@ class Conduction final : public HeatSolver {
     const double heat = zones_.inflow(node) + boundary_heat_[node];
     return gaps_ ? heat + gaps_->inflow(node) : heat;
   }
-  void hold_prescribed();
+  KeptSums hold_prescribed();
   void undo_begin(HeatState& state) const;
+  Interval extremes() const;
+  HeatStepLimit own_limit(double step, double weight_of_boundary, const Interval& extremes) const;
+  HeatStepLimit own_range_limit(double end) const;
   HeatStepLimit present_limit(double step, double weight_of_boundary = 1.0) const;
-  HeatStepLimit range_limit(double end) const;
   [[noreturn]] void refuse_excess();
 
   const ModelOf<Dim>& model_;
@@ -276,7 +292,8 @@ class Conduction final : public HeatSolver {
   HeatState state_;
   Trial trial_;
   BeforeRun before_run_;
-  double safe_step_ = 0.0;  ///< step that is stable in this run whatever the temperatures, s
+  double change_since_begin_ = 0.0;  ///< K
+  double safe_step_ = 0.0;           ///< step that is stable in this run whatever the temperatures, s
   /// Allowed excess of this run beyond the temperature range, K.
   double allowed_below_ = 0.0, allowed_above_ = 0.0;
   /// Range of each node to which something may take it beyond its neighbours.

@@ -178,21 +178,25 @@ void HeatBoundary::add_reach(double time, std::vector<Interval>& ranges) const {
   }
 }
 
-HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperature,
-                                std::vector<double>& heat) const {
+void HeatBoundary::inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat,
+                          KeptSums& sums) const {
   for (const auto& entry : entries_)
     for (const auto& patch : entry.patches) heat[patch.node] = 0.0;
-  HeatByKind sum;
   for (const auto& entry : entries_) {
     const FaceLaw law = std::visit([&](const auto& c) { return law_at(c, time); }, entry.condition);
-    const double of_entry = chunked_sum(entry.chunks, [&](int i) {
+    sums.keep(entry.chunks, [&](int i) {
       const auto& patch = entry.patches[i];
       const double inflow = patch.area * law.flux(temperature[patch.node]);
       heat[patch.node] += inflow;
       return inflow;
     });
-    std::visit([&](const auto& c) { part(sum, c) += of_entry; }, entry.condition);
   }
+}
+
+HeatByKind HeatBoundary::by_kind(std::span<const double> of_conditions) const {
+  HeatByKind sum;
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    std::visit([&](const auto& c) { part(sum, c) += of_conditions[i]; }, entries_[i].condition);
   return sum;
 }
 

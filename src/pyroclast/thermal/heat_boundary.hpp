@@ -1,8 +1,9 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/base/kept_sums.hpp"
 #include "pyroclast/thermal/boundary_condition.hpp"
 
 namespace pyroclast {
@@ -51,8 +52,14 @@ class HeatBoundary {
   /// Widens the range of each boundary node by the reach of its conditions at one time.
   void add_reach(double time, std::vector<Interval>& ranges) const;
 
+  std::size_t count() const { return entries_.size(); }
   /// Writes the heat that flows into each boundary node, W; leaves the other entries as they are.
-  HeatByKind inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat) const;
+  /// \param sums  keeps the inflow by each condition, W
+  void inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat,
+              KeptSums& sums) const;
+  /// Sums inflows by kind.
+  /// \param of_conditions  inflow by each condition, W
+  HeatByKind by_kind(std::span<const double> of_conditions) const;
 
   /// Adds to each boundary node a bound of how fast its outflow grows with its temperature, W/K, between two
   /// times, s.

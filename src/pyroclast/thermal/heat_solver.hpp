@@ -75,7 +75,7 @@ class HeatSolver {
   /// Returns the conductance of each contact, see GapConduction::conductances.
   virtual std::vector<double> conductances(const std::vector<double>& temperature) const = 0;
 
-  virtual bool advance_step(double end, std::int64_t& stages) = 0;
+  virtual bool advance_step(double end, std::int64_t& stages, const std::vector<double>* begin = nullptr) = 0;
   virtual void drop_trial() = 0;
   virtual std::int64_t stages_per_batch() const = 0;
   virtual void visit_state(StateVisitor& visitor) = 0;
@@ -89,6 +89,7 @@ class HeatSolver {
   /// Returns the temperature of the hottest gas that heat flows from or to now, °C; none without gases.
   virtual std::optional<double> hottest_gas() const = 0;
   virtual double largest_change() const = 0;
+  virtual double change_since_begin() const = 0;
   virtual HeatStepLimit step_limit() const = 0;
   virtual HeatWork work() const = 0;
 };

@@ -1,6 +1,7 @@
 #include "pyroclast/thermal/node_halo.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace pyroclast {
@@ -16,6 +17,8 @@ NodeHalo::NodeHalo(const Model& model, const ThermalNodes& nodes, const ChunkLis
   std::vector<Wanted> own_wishes;
   for (int node = 0; node < nodes.count(); ++node)
     if (!own.contain(node)) own_wishes.push_back({ranks_->me(), node, in_whole[nodes.gridpoint[node]]});
+  if (ranks_->spoil_foreign())
+    for (const Wanted& wanted : own_wishes) spoilt_.push_back(wanted.node);
   struct Answer {
     int owner;
     Wanted wanted;
@@ -39,6 +42,12 @@ NodeHalo::NodeHalo(const Model& model, const ThermalNodes& nodes, const ChunkLis
   }
 }
 
+void NodeHalo::spoil(double* numbers, std::size_t of_each) const {
+  for (const int node : spoilt_)
+    std::fill_n(numbers + static_cast<std::size_t>(node) * of_each, of_each,
+                std::numeric_limits<double>::quiet_NaN());
+}
+
 void NodeHalo::exchange(double* numbers, std::size_t of_each) {
   if (neighbours_.empty()) return;
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
@@ -49,6 +58,7 @@ void NodeHalo::exchange(double* numbers, std::size_t of_each) {
     for (const int node : neighbours_[n].sent)
       next = std::copy_n(numbers + static_cast<std::size_t>(node) * of_each, of_each, next);
   }
+  spoil(numbers, of_each);
   ranks_->exchange(messages_);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto next = messages_[n].received.begin();

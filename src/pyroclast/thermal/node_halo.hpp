@@ -25,9 +25,12 @@ class NodeHalo {
     static_assert(sizeof(Numbers) % sizeof(double) == 0);
     exchange(reinterpret_cast<double*>(of_nodes.data()), sizeof(Numbers) / sizeof(double));
   }
+  /// Where the ranks ask for it, makes the numbers of foreign nodes NaN, see Ranks::spoil_foreign.
+  void spoil(std::vector<double>& of_nodes) const { spoil(of_nodes.data(), 1); }
 
  private:
   void exchange(double* numbers, std::size_t of_each);
+  void spoil(double* numbers, std::size_t of_each) const;
 
   /// Nodes whose numbers travel to and from a neighbour, in one order on both ranks.
   struct Neighbour {
@@ -37,6 +40,7 @@ class NodeHalo {
   Ranks* ranks_ = &one_rank();
   std::vector<Neighbour> neighbours_;
   std::vector<Message> messages_;  ///< messages by neighbour
+  std::vector<int> spoilt_;        ///< foreign nodes, where tests spoil them
 };
 
 }  // namespace pyroclast

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/base/kept_sums.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 
@@ -32,10 +32,10 @@ class Prescriptions {
   double temperature(int node) const { return held_at_[of_node_[node]]; }
   /// Returns the held nodes, ascending.
   const std::vector<int>& nodes() const { return nodes_; }
-  /// Sums a function of the held nodes.
+  /// Sums a function of the held nodes, and keeps the sum.
   template <class Function>
-  double sum(Function of_node) const {
-    return chunked_sum(chunks_, [&](int i) { return of_node(nodes_[i]); });
+  void keep_sum(KeptSums& sums, Function of_node) const {
+    sums.keep(chunks_, [&](int i) { return of_node(nodes_[i]); });
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "pyroclast/thermal/temperature_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,12 +20,6 @@ namespace {
 constexpr double kReached = 0.95;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
 
 }  // namespace
 
@@ -123,9 +118,10 @@ bool TemperatureField::advance(std::int64_t stages) {
   while (conduction_->time() < until && change < kReached * largest_change) {
     const double now = conduction_->time();
     const double foreseen = fastest_ > 0.0 ? now + (largest_change - change) / fastest_ : until;
-    if (!conduction_->advance_step(foreseen > now ? std::min(foreseen, until) : until, stages)) return false;
+    if (!conduction_->advance_step(foreseen > now ? std::min(foreseen, until) : until, stages, &begin))
+      return false;
     fastest_ = conduction_->largest_change() / (conduction_->time() - now);
-    advance_.change = model_.ranks().largest(largest_difference(begin, conduction_->temperature()));
+    advance_.change = conduction_->change_since_begin();
     if (conduction_->rate() < steady_rate) break;
     if (stages == 0) return false;
   }
@@ -175,19 +171,20 @@ void TemperatureField::update() {
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     zones_[z] = mean_of_zone(model_, static_cast<int>(z), gridpoints_);
   }
-  mean_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z] * zones_[z]; }) / volume_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const auto [a, b] = contact_gridpoints_[c];
     contacts_[c] = 0.5 * (gridpoints_[a] + gridpoints_[b]);
   }
-  minimum_ = kInfinity;
-  maximum_ = -kInfinity;
-  for (int g : specimen_gridpoints_) {
-    minimum_ = std::min(minimum_, gridpoints_[g]);
-    maximum_ = std::max(maximum_, gridpoints_[g]);
-  }
-  minimum_ = model_.ranks().least(minimum_);
-  maximum_ = model_.ranks().largest(maximum_);
+  Interval here{kInfinity, -kInfinity};
+  for (int g : specimen_gridpoints_) include(here, gridpoints_[g]);
+  const auto read = [&] {
+    const double sum = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z] * zones_[z]; });
+    return std::array{sum / volume_, model_.ranks().least(here.lower), model_.ranks().largest(here.upper)};
+  };
+  const auto [mean, least, greatest] = model_.ranks().together(read);
+  mean_ = mean;
+  minimum_ = least;
+  maximum_ = greatest;
   if (is_uniform()) mean_ = minimum_;  // without the rounding of a mean
 }
 

@@ -35,6 +35,7 @@ Loads::Entry& Loads::entry(const std::string& set) {
   Entry entry;
   entry.set = gridpoint_set(motion_.model(), gridpoints);
   entry.faces = faces_in(model, gridpoints);
+  entry.has_faces = model.ranks().any(!entry.faces.empty());
   entry.shares = tributary_areas(gridpoints, entry.faces);
   const double whole = chunked_sum(entry.set.chunks, [&](int i) { return entry.shares[i]; });
   for (double& share : entry.shares) share = whole > 0.0 ? share / whole : 1.0 / entry.set.whole_count;
@@ -85,7 +86,7 @@ void Loads::set(const std::map<std::string, SetLoad>& loads) {
     for (int i = motion_.model().dimension(); i < 3; ++i)
       if (load.force[i] != 0.0)
         throw Error(fmt::format("a force on set \"{}\" acts across the plane of this body", set));
-    if (load.pressure != 0.0 && !motion_.model().ranks().any(!changed.faces.empty()))
+    if (load.pressure != 0.0 && !changed.has_faces)
       throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
   }
   for (const auto& [set, load] : loads) entry(set).load = load;
@@ -125,17 +126,30 @@ void Loads::apply() {
 double Loads::way(const Entry& entry) const {
   const auto on = forces(entry);
   const auto along = chunked_sum<Vec<3>>(entry.set.chunks, [&](int i, Vec<3>& total) { total += on[i]; });
+  const Vec<3> moved = motion_.totals().mean_displacement(entry.set);
   const double size = norm(along);
-  return size > 0.0 ? dot(motion_.totals().mean_displacement(entry.set), along) / size : 0.0;
+  return size > 0.0 ? dot(moved, along) / size : 0.0;
+}
+
+/// Returns the ways of all loaded sets.
+std::vector<double> Loads::ways() const {
+  return motion_.model().ranks().together([&] {
+    std::vector<double> ways;
+    for (const auto& [name, entry] : entries_) ways.push_back(way(entry));
+    return ways;
+  });
 }
 
 void Loads::mark() {
-  for (auto& [name, entry] : entries_) entry.marked = way(entry);
+  const std::vector<double> now = ways();
+  for (std::size_t i = 0; auto& [name, entry] : entries_) entry.marked = now[i++];
 }
 
 double Loads::give() const {
   double most = 0.0;
-  for (const auto& [name, entry] : entries_) most = std::max(most, way(entry) - entry.marked);
+  const std::vector<double> now = ways();
+  for (std::size_t i = 0; const auto& [name, entry] : entries_)
+    most = std::max(most, now[i++] - entry.marked);
   return most / size_;
 }
 

@@ -56,12 +56,14 @@ class Loads {
     std::vector<int> places;     ///< places of the set's gridpoints in loaded_
     std::vector<double> shares;  ///< shares of the force, by gridpoint of the set
     std::vector<Face> faces;     ///< faces of the outline in the set
+    bool has_faces = false;      ///< true where the set of the whole has such faces
     double marked = 0.0;         ///< way along the load at the mark, m
   };
 
   Entry& entry(const std::string& set);
   void list_loaded();
   double way(const Entry& entry) const;
+  std::vector<double> ways() const;
   std::vector<Vec<3>> forces(const Entry& entry) const;
   void apply();
 

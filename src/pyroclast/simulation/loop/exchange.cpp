@@ -92,7 +92,8 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   const bool may_fail = platen_follows();
   if (kept_.is_handed_over) {
     simulation.loads().mark();
-    kept_.strain_before = kept_.last_strain = shortening(simulation);
+    kept_.strain_before = kept_.last_strain =
+        simulation.model().ranks().together([&] { return shortening(simulation); });
   }
   kept_.is_handed_over = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;
@@ -102,12 +103,11 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   simulation.motion().advance(static_cast<int>(steps));
   kept_.cycles += steps;
   if (steps < to_check) return false;
-  const double now = shortening(simulation);
+  const auto [now, is_supported, is_still] = read(simulation);
   kept_.ran_away = may_fail && now - kept_.strain_before > coupling_.failure_strain;
   if (kept_.ran_away) return true;
   if (kept_.cycles >= coupling_.least_cycles) {
-    const bool is_supported = !simulation.has_press() || simulation.press().is_supported();
-    kept_.converged = is_supported && is_still(simulation);
+    kept_.converged = is_supported && is_still;
     if (kept_.converged) return true;
     if (!is_supported && platen_follows()) set_down(simulation.press());
   }
@@ -117,15 +117,28 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   return false;
 }
 
+Exchange::Seen Exchange::read(const Simulation& simulation) const {
+  return simulation.model().ranks().together([&] {
+    Seen seen{shortening(simulation)};
+    if (kept_.cycles < coupling_.least_cycles) return seen;
+    seen.is_supported = !simulation.has_press() || simulation.press().is_supported();
+    seen.is_still = is_still(simulation);
+    return seen;
+  });
+}
+
+/// Tells whether the body is at rest. Takes all sums before it decides, see Ranks::together.
 bool Exchange::is_still(const Simulation& simulation) const {
-  const Motion& motion = simulation.motion();
-  if (imbalance(simulation) >= coupling_.platen_difference) return false;
-  if (motion.totals().unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
+  const MotionTotals& totals = simulation.motion().totals();
+  const double out_of_balance = imbalance(simulation), ratio = totals.unbalanced_ratio();
+  const double mean_force = simulation.has_press() ? 0.0 : totals.mean_unbalanced_force();
+  if (out_of_balance >= coupling_.platen_difference) return false;
+  if (ratio < coupling_.unbalanced_ratio) return true;
   // A body that expands freely bears no forces to compare with. Forces that are out of balance at each block
   // alike, as where all of the body still grows, add up over the body.
   const double block = simulation.numbers().block_size;
   return !simulation.has_press() &&
-         motion.totals().mean_unbalanced_force() * (simulation.body_size() / block) <
+         mean_force * (simulation.body_size() / block) <
              kAsGoodAsNone * coupling_.platen_difference * simulation.area_across(block);
 }
 

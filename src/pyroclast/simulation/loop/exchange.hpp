@@ -76,6 +76,13 @@ class Exchange {
  private:
   bool move_evenly(Simulation& simulation);
   void set_down(const Press& press);
+  /// What an exchange asks of the body between its steps.
+  struct Seen {
+    double shortening = 0.0;  ///< how far the body has given way to its loads, as a strain
+    bool is_supported = true;
+    bool is_still = false;
+  };
+  Seen read(const Simulation& simulation) const;
   bool is_still(const Simulation& simulation) const;
   bool platen_follows() const { return coupling_.platen == PlatenControl::force; }
 

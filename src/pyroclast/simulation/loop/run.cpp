@@ -234,8 +234,12 @@ std::vector<std::optional<double>> Run::measure() const {
   return row;
 }
 
+/// Adds a row to the history, and lets the stage look; all sums travel in one message.
 void Run::add_row() {
-  history_.add_row(measure());
+  history_.add_row(simulation_.model().ranks().together([&] {
+    if (stage_is_begun_) stages_[stage_]->look(simulation_);
+    return measure();
+  }));
 }
 
 void Run::end_stage(const Verdict& verdict) {

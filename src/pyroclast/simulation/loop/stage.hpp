@@ -169,8 +169,9 @@ struct StageReport {
 
 /// Stage: an operation on a simulation that goes on until its verdict says that it is over.
 ///
-/// A run calls `begin`, and then repeatedly calls `advance` until a look is due, takes the look, and asks
-/// `judge`. All numbers that a stage keeps between two batches are shown to `visit_state`.
+/// A run calls `begin`, and then repeatedly calls `advance` until a look is due, takes the look, in which
+/// the stage may `look` too, and asks `judge`. All numbers that a stage keeps between two batches are shown
+/// to `visit_state`.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -206,6 +207,9 @@ class Stage {
   /// solver as it takes at once (HeatSolver::stages_per_batch). Returns true when a look is due. Where
   /// batches end changes no result.
   virtual bool advance(Simulation& simulation, int most_steps) = 0;
+  /// Takes what `judge` asks of the body. What it takes travels with the row of the history, see
+  /// Ranks::together; so it may be called twice.
+  virtual void look(const Simulation&) {}
   /// Judges each look that `advance` asked for.
   virtual Verdict judge(Simulation& simulation) = 0;
   /// Returns the share that is done, 0 to 1, as far as it can be foreseen.

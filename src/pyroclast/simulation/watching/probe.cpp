@@ -116,26 +116,19 @@ std::vector<std::optional<Probe>> Probe::at(const Model& model, const std::vecto
   return probes;
 }
 
-double Probe::read_here(const std::vector<double>& gridpoints) const {
+double Probe::read(const std::vector<double>& gridpoints) const {
   double value = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) value += weights_[i] * gridpoints[gridpoints_[i]];
-  return value;
-}
-
-double Probe::read(const std::vector<double>& gridpoints) const {
-  const double here = read_here(gridpoints);
-  if (ranks_->count() == 1) return here;
-  return ranks_->collect(std::vector{here})[static_cast<std::size_t>(rank_)];
+  return ranks_->of(rank_, value);
 }
 
 std::vector<double> Probe::read_all(const std::vector<Probe>& probes, const std::vector<double>& gridpoints) {
-  std::vector<double> here;
-  for (const Probe& probe : probes) here.push_back(probe.read_here(gridpoints));
-  if (probes.empty() || probes.front().ranks_->count() == 1) return here;
-  const std::vector<double> of_ranks = probes.front().ranks_->collect(here);
-  for (std::size_t i = 0; i < probes.size(); ++i)
-    here[i] = of_ranks[static_cast<std::size_t>(probes[i].rank_) * probes.size() + i];
-  return here;
+  const auto read = [&] {
+    std::vector<double> values;
+    for (const Probe& probe : probes) values.push_back(probe.read(gridpoints));
+    return values;
+  };
+  return probes.empty() ? read() : probes.front().ranks_->together(read);
 }
 
 }  // namespace pyroclast

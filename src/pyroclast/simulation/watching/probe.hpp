@@ -34,7 +34,6 @@ class Probe {
 
  private:
   Probe() = default;
-  double read_here(const std::vector<double>& gridpoints) const;
 
   std::string name_;
   std::vector<int> gridpoints_;  ///< corners of the zone
