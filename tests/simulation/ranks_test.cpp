@@ -151,7 +151,6 @@ std::vector<std::string> split(const std::string& events, char mark) {
 /// Returns the calls of a rank in twenty rows of a compression, batch by batch.
 std::vector<std::string> calls_of_press(const std::shared_ptr<RanksInThreads::OfThread>& ranks) {
   Setup setup = read(deck(kUniform + kSettle + kFailure + kControl));
-  setup.moving->chunk_blocks = kBlocksOfASmallChunk;
   const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
   Run run(*simulation, std::move(setup.stages));
   run.between_batches([&](Run&) { ranks->note('|'); });
@@ -195,7 +194,6 @@ Heated heat_on(
     text = with(text, "conductivity = \"40 W/(m K)\"", "conductivity = \"1 W/(m K)\"");
   Setup setup = read(text);
   setup.specimen.blocks.count = blocks;
-  setup.moving->chunk_blocks = kBlocksOfASmallChunk;
   const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
   TemperatureField& field = simulation->field();
   field.begin_exposure(setup.temperatures);

@@ -96,7 +96,7 @@ RunChoices choices_of(const RunOptions& options) {
   choices.threads = options.threads;
   choices.instructions = options.instructions;
   choices.checkpoint = options.checkpoint;
-  choices.ranks = options.ranks;
+  choices.ranks = options.held_by;
   choices.laws = sources_of(options.laws);
   choices.before_making = [speech = options.speech](const DeckOfRun& opened) {
     const int blocks = opened.setup.specimen.blocks.count;

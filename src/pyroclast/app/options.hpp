@@ -45,7 +45,7 @@ struct RunOptions {
   std::optional<double> checkpoint;  ///< wall time between two checkpoints in place of the deck's, s
   OwnLawOptions laws;
   Speech speech = Speech::usual;
-  std::shared_ptr<Ranks> ranks;  ///< ranks that hold the body; null: one
+  std::shared_ptr<Ranks> held_by;  ///< ranks that hold the body; null: one
   std::string command;           ///< command as typed, for the manifest
 };
 

@@ -241,7 +241,7 @@ int run_from_start(const RunOptions& options) {
 /// Runs a deck on the ranks of an MPI job. The first one alone writes and speaks.
 int run_on_ranks(RunOptions options) {
   return on_ranks([&](const RanksOfRun& given) {
-    options.ranks = given.ranks;
+    options.held_by = given.ranks;
     if (options.threads == 0) options.threads = given.threads;
     if (!given.ranks->is_first()) options.speech = Speech::quiet;
     return run_from_start(options);

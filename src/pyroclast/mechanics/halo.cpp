@@ -41,9 +41,10 @@ Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(m
     for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);
     messages_.push_back({rank, {}, {}});
   }
-  if (ranks_.spoil_foreign())
-    for (int g = 0; g < model.gridpoint_count(); ++g)
-      if (rank_of(g) != ranks_.me()) spoilt_.push_back(layout.gridpoint_slot[g]);
+  if (!ranks_.spoil_foreign()) return;
+  const ChunkList::Items own = model.gridpoint_chunks().own();
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    if (!own.contain(g)) spoilt_.push_back(layout.gridpoint_slot[g]);
 }
 
 template <int Dim>
