@@ -32,6 +32,22 @@ struct Message {
   std::vector<double> sent, received;
 };
 
+/// Collectives of a call of Ranks::together, in their order.
+struct Gathering {
+  struct OfCollective {
+    CallPlace at;
+    std::vector<std::byte> bytes;  ///< bytes of this rank, then those of all ranks
+  };
+  std::vector<OfCollective> collectives;
+  bool has_travelled = false;
+  std::size_t taken = 0;  ///< collectives that have their results
+};
+/// Ends a gathering, also where its function throws.
+struct GatheringEnd {
+  std::optional<Gathering>& gathering;
+  ~GatheringEnd() { gathering.reset(); }
+};
+
 /// Ranks: the processes that hold the parts of one body, see PartOfBody. The functions are collectives: all
 /// ranks call them in the same order. Results are the same on all ranks, and do not depend on which rank came
 /// first.
@@ -69,6 +85,7 @@ class Ranks {
   }
   /// Returns the number that a rank has.
   double of(int rank, double own, CallPlace at = CallPlace::here()) {
+    if (count() == 1) return own;
     const std::vector<double> all = collect(rank == me() ? std::vector{own} : std::vector<double>(), at);
     return all.empty() ? own : all.front();
   }
@@ -94,7 +111,7 @@ class Ranks {
   template <class F>
   auto together(F f, CallPlace at = CallPlace::here()) {
     if (count() == 1 || gathering_) return f();
-    const Gathering::End end(gathering_);
+    const GatheringEnd end{gathering_};
     gathering_.emplace();
     f();
     send(at);
@@ -125,25 +142,6 @@ class Ranks {
     if (!items.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
     return items;
   }
-
-  /// Collectives of a call of `together`, in their order.
-  struct Gathering {
-    struct OfCollective {
-      CallPlace at;
-      std::vector<std::byte> bytes;  ///< bytes of this rank, then those of all ranks
-    };
-    /// Ends a gathering, also where `f` throws.
-    struct End {
-      explicit End(std::optional<Gathering>& of) : gathering(of) {}
-      End(const End&) = delete;
-      End& operator=(const End&) = delete;
-      ~End() { gathering.reset(); }
-      std::optional<Gathering>& gathering;
-    };
-    std::vector<OfCollective> collectives;
-    bool has_travelled = false;
-    std::size_t taken = 0;  ///< collectives that have their results
-  };
 
   void put(std::span<const std::byte> own, CallPlace at);
   std::vector<std::byte> take(CallPlace at);

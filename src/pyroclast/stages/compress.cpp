@@ -262,7 +262,7 @@ void Compress::look(const Simulation& simulation) {
 }
 
 Verdict Compress::judge(Simulation&) {
-  if (direction() * left_seen_ <= 0.0) return {.over = true};
+  if (direction() * *left_seen_ <= 0.0) return {.over = true};
   if (std::abs(strain_seen_) >= keys_.stop_strain)
     return {.over = true, .last = true, .outcome = Outcome::not_reached};
   if (kept_.peak.is_found() && stress_seen_ < keys_.stop_fraction * kept_.peak.size())
@@ -273,7 +273,9 @@ Verdict Compress::judge(Simulation&) {
 }
 
 double Compress::progress(const Simulation& simulation) const {
-  return kept_.is_loading ? std::clamp(1.0 - left(simulation) / kept_.first_left, 0.0, 1.0) : 0.0;
+  if (!kept_.is_loading) return 0.0;
+  const double now = left_seen_ ? *left_seen_ : left(simulation);
+  return std::clamp(1.0 - now / kept_.first_left, 0.0, 1.0);
 }
 
 /// Returns the first row of the stage that is not before the peak; none without a peak.
@@ -338,7 +340,10 @@ void Compress::visit_state(StateVisitor& visitor) {
   auto& [gap_steps_left, is_loading, is_upwards, first_left, wave_time, steps, steps_left, steps_to_point,
          velocity, way, way_to_point, dissipated, curve, peak, largest_stress, next_frame] =
       kept_;  // another member does not compile until it has a name here
-  if (visitor.replaces()) point_.reset();
+  if (visitor.replaces()) {
+    point_.reset();
+    left_seen_.reset();
+  }
   visitor.visit("gap_steps_left", gap_steps_left, state::within(0, kMostSteps));
   visitor.visit("is_loading", is_loading);
   visitor.visit("is_upwards", is_upwards);

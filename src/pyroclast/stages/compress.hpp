@@ -97,8 +97,9 @@ class Compress : public Stage {
   } kept_;
   /// Point after the last steps of a controlled velocity, until the next velocity is chosen.
   std::optional<CompressionPoint> point_;
-  /// Strain of the stage, way to its end and stress at the last look.
-  double strain_seen_ = 0.0, left_seen_ = 0.0, stress_seen_ = 0.0;
+  /// Strain of the stage, and stress, at the last look.
+  double strain_seen_ = 0.0, stress_seen_ = 0.0;
+  std::optional<double> left_seen_;  ///< distance to the end at the last look; none where the state is new
 };
 
 StageKind compress_kind();
