@@ -44,9 +44,10 @@ class CountedRanks final : public Ranks {
   bool is_alone = false;
 
  protected:
-  std::vector<std::byte> gather(std::span<const std::byte> own, CallPlace at) override {
+  std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
     ++collectives;
-    return inner_->collect(std::vector<std::byte>(own.begin(), own.end()), at);
+    const std::vector<std::byte> bytes(own.begin(), own.end());
+    return receivers == Receivers::all ? inner_->collect(bytes, at) : inner_->collect_at_first(bytes, at);
   }
   double largest_of_all(double own, CallPlace at) override {
     ++collectives;

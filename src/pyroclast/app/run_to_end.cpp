@@ -205,8 +205,7 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
     while (session.next()) {
       if (run.stage_number() != stage) progress.begin_stage(steps_after(session));
       stage = run.stage_number();
-      // what a line tells is measured by all ranks
-      if (ranks.any(progress.line_is_due() || log.speech() == Speech::verbose))
+      if (progress.line_is_due() || log.speech() == Speech::verbose)
         log.say_now(progress_line(run, progress));
     }
     return session.finish();

@@ -1,7 +1,6 @@
 #include "pyroclast/simulation/body_on_ranks.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -45,9 +44,12 @@ ThermalNodes joined_nodes(const Model& model, const HeatConditions& heat,
       model, [&](const auto& of_dimension) { return join_through_contacts(of_dimension, conducts); });
 }
 
-int sum_of(const std::map<int, int>& numbers) {
-  return std::accumulate(numbers.begin(), numbers.end(), 0,
-                         [](int sum, const auto& of_rank) { return sum + of_rank.second; });
+/// Returns the bytes of messages of so many items each, by rank.
+double message_bytes(const std::map<int, int>& messages, int numbers_of_an_item) {
+  std::size_t bytes = 0;
+  for (const auto& [rank, items] : messages)
+    bytes += sizeof(double) * static_cast<std::size_t>(items * numbers_of_an_item);
+  return static_cast<double>(bytes);
 }
 
 }  // namespace
@@ -69,11 +71,11 @@ int HeldByRank::neighbours() const {
 }
 
 double HeldByRank::step_bytes(int dimension) const {
-  return static_cast<double>(sizeof(double)) * dimension * sum_of(gridpoints_sent);
+  return message_bytes(gridpoints_sent, dimension);
 }
 
 double HeldByRank::stage_bytes() const {
-  return static_cast<double>(sizeof(double)) * sum_of(nodes_sent);
+  return message_bytes(nodes_sent, 1);
 }
 
 std::vector<HeldByRank> held_by_ranks(const Simulation& whole, int ranks) {
