@@ -200,7 +200,7 @@ class Conduction final : public HeatSolver {
     double below = 0.0, above = 0.0;
     HeatLedger heat;                  ///< ledger without `stored`
     KeptSums inflows;                 ///< inflows of the stages that are not in the ledger yet, W
-    std::int64_t booked = 0;          ///< stages that are
+    std::int64_t booked = 0;          ///< stages whose inflows are there
     std::vector<double> temperature;  ///< °C
     std::vector<double> increment, before, first_rate;  ///< terms of a stage, see TimeStage
   };
