@@ -104,12 +104,16 @@ TEST(Layout, LeavesFewLanesIdle) {
 }
 
 // The same of polyhedra, whose faces have 3 to some 12 corners: 5 % is what faces of rare numbers may cost.
+// Faces between two chunks share lanes with no others: at 5,000 blocks they cost 4 %.
 TEST(Layout, LeavesFewLanesOfContactPointsIdleInThreeDimensions) {
   for (const int blocks : {1000, 5000}) {
     const ModelOf<3> model = bodies::laguerre_cells(blocks, 0.1, 1);
     const auto m = bodies::mechanics(model, mortar_contact(), bodies::quasi_static<3>());
     const Layout<3>& layout = m.body().layout;
-    EXPECT_GT(model.contact_count(), 0.95 * kLanes * (layout.point_packs - 1)) << blocks;
+    EXPECT_GT(model.contact_count(), 0.93 * kLanes * (layout.point_packs - 1)) << blocks;
+    ModelOf<3> one_chunk = model;
+    one_chunk.cut_into_chunks(blocks);
+    EXPECT_GT(model.contact_count(), 0.95 * kLanes * (Layout<3>(one_chunk).point_packs - 1)) << blocks;
     EXPECT_LT(static_cast<double>(m.body().memory()), 280.0 * model.zone_count()) << blocks;
     EXPECT_EQ(layout.chunks.blocks.count(), (blocks + blocks_of_a_chunk(3) - 1) / blocks_of_a_chunk(3));
     int most = 0;

@@ -117,11 +117,15 @@ void print_results(const Rehearsal& cost, bool has_fields) {
                       : fmt::format("{:.3g} GB", bytes / kGiga));
 }
 
+/// Peaks of the memory of one process, bytes.
+struct Peaks {
+  double specimen = 0.0;  ///< when the specimen was made
+  double model = 0.0;     ///< when its model was made too: so far every rank makes the whole
+  double whole = 0.0;     ///< when the whole body could run
+};
+
 /// Tells what each of several ranks would hold and send.
-/// \param for_specimen  peak of the memory when the specimen was made, as every rank makes it, bytes
-/// \param for_whole     peak when the whole body could run, bytes
-void print_ranks(const std::vector<HeldByRank>& held, const Simulation& whole, double for_specimen,
-                 double for_whole) {
+void print_ranks(const std::vector<HeldByRank>& held, const Simulation& whole, const Peaks& peaks) {
   const Model& model = whole.model();
   const auto count = static_cast<double>(held.size());
   const auto tell = [&](const char* what, int decimals, auto number) {
@@ -150,7 +154,7 @@ void print_ranks(const std::vector<HeldByRank>& held, const Simulation& whole, d
          [](const HeldByRank& rank) { return 1e-3 * rank.stage_bytes(); });
   tell("memory [MB]", 0, [&](const HeldByRank& rank) {
     const double share = static_cast<double>(rank.zones + rank.foreign_zones) / model.zone_count();
-    return 1e-6 * (for_specimen + (for_whole - for_specimen) * share);
+    return 1e-6 * std::max(peaks.model, peaks.specimen + (peaks.whole - peaks.specimen) * share);
   });
 }
 
@@ -171,9 +175,11 @@ int check(const RunOptions& options) {
   if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
   opened.choices.before_making(opened);
   auto specimen = make_checked_specimen(setup.specimen, opened.team.get(), !setup.heat.uniform);
-  const double for_specimen = peak_memory();
+  Peaks peaks{peak_memory()};
+  if (options.ranks > 0) make_model(specimen, setup.thickness, setup.moving);
+  peaks.model = peak_memory();
   const auto simulation = make_simulation(setup, std::move(specimen), opened.team);
-  const double for_whole = peak_memory();
+  peaks.whole = peak_memory();
   const Model& model = simulation->model();
   std::vector<HeldByRank> held;
   if (options.ranks > 0) held = held_by_ranks(*simulation, options.ranks);
@@ -217,7 +223,7 @@ int check(const RunOptions& options) {
   fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
              name(opened.instructions), peak_memory() * 1e-6);
   print_results(cost, has_fields);
-  if (!held.empty()) print_ranks(held, *simulation, for_specimen, for_whole);
+  if (!held.empty()) print_ranks(held, *simulation, peaks);
   return 0;
 }
 

@@ -26,7 +26,7 @@ struct HeldByRank {
   // by the rank that receives
   std::map<int, int> gridpoints_sent;  ///< gridpoints whose displacements travel after each step
   /// Thermal nodes whose temperatures travel after each stage of the heat solver, and twice as many numbers
-  /// where flows are limited. Nodes that cracks part later are not counted.
+  /// where flows are limited. A node that gaps part counts as one.
   std::map<int, int> nodes_sent;
 
   /// Returns the number of ranks to which a message goes.
