@@ -160,16 +160,18 @@ class MpiProcesses final : public Processes {
     MPI_Comm_free(&of_machine);
   }
 
-  /// Waits for requests. Other processes get the processor where the wait is long.
+  /// Waits for requests. A rank that waits long sleeps: who sleeps gets a shared processor back as soon as a
+  /// message is there, while one that merely yields it waits until others have used up their time.
   void wait(std::vector<MPI_Request>& requests, CallPlace at) const {
-    constexpr int kSpins = 2000;
+    constexpr int kSpins = 1000;
+    constexpr std::chrono::microseconds kSleep{20};
     const auto begun = WaitClock::now();
     int done = 0;
     for (int spins = 0;; ++spins) {
       MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
       if (done != 0) return;
       if (spins < kSpins) continue;
-      std::this_thread::yield();
+      std::this_thread::sleep_for(kSleep);
       if (longest_wait_ > 0.0 && Seconds(WaitClock::now() - begun).count() > longest_wait_)
         throw Error("it waits for other ranks in " + text_of(at));
     }
