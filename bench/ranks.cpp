@@ -133,7 +133,7 @@ OnRanks on_ranks(const Asked& asked, const Simulation& whole, int count) {
     part.ranks->forget();
     for (int i = 0; i < asked.batches; ++i) batches[me].push_back(part.batch());
     const std::int64_t within = part.ranks->collectives;
-    part.run->measure();
+    part.ranks->together([&] { return part.run->measure(); });  // as a run does
     if (me == 0) {
       all.within_batch = within;
       all.of_look = part.ranks->collectives - within;

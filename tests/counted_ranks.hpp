@@ -49,10 +49,6 @@ class CountedRanks final : public Ranks {
     const std::vector<std::byte> bytes(own.begin(), own.end());
     return receivers == Receivers::all ? inner_->collect(bytes, at) : inner_->collect_at_first(bytes, at);
   }
-  double largest_of_all(double own, CallPlace at) override {
-    ++collectives;
-    return inner_->largest(own, at);
-  }
 
  private:
   std::shared_ptr<Ranks> inner_;

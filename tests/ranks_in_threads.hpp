@@ -52,10 +52,6 @@ class RanksInThreads {
         if (receivers == Receivers::all || me_ == 0) all.insert(all.end(), bytes.begin(), bytes.end());
       return all;
     }
-    double largest_of_all(double own, CallPlace at) override {
-      const std::vector<double> all = collect(std::vector{own}, at);
-      return *std::max_element(all.begin(), all.end());
-    }
 
    private:
     std::shared_ptr<RanksInThreads> board_;
@@ -92,9 +88,8 @@ class RanksInThreads {
     const bool done =
         changed_.wait_for(lock, std::chrono::seconds(60), [&] { return failure_ || condition(); });
     if (failure_) throw std::runtime_error("another rank has failed");
-    if (!done) throw std::runtime_error("a rank waits for others in " + text(at));
+    if (!done) throw std::runtime_error("a rank waits for others in " + at.text());
   }
-  static std::string text(CallPlace at) { return std::string(at.file) + ":" + std::to_string(at.line); }
 
   /// The last rank that comes copies what all have put down; then the next collective may begin.
   std::vector<Bytes> gather(int me, Bytes own, CallPlace at) {
@@ -105,7 +100,7 @@ class RanksInThreads {
     if (++arrived_ == static_cast<int>(own_.size())) {
       for (const CallPlace& place : places_)
         if (!(place == at))
-          throw std::runtime_error("ranks call different collectives: " + text(place) + ", " + text(at));
+          throw std::runtime_error("ranks call different collectives: " + place.text() + ", " + at.text());
       all_ = own_;
       arrived_ = 0;
       ++round_;
@@ -124,7 +119,7 @@ class RanksInThreads {
       auto& mail = mail_[{message.rank, me}];
       wait(lock, at, [&] { return !mail.empty(); });
       if (mail.front().size() != message.received.size())
-        throw std::runtime_error("a message has another length than was expected in " + text(at));
+        throw std::runtime_error("a message has another length than was expected in " + at.text());
       message.received = std::move(mail.front());
       mail.pop_front();
     }

@@ -1,5 +1,7 @@
 """A run on the ranks of an MPI job is that of one process, and its errors are told once. PYROCLAST names the program."""
 
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import subprocess
@@ -13,11 +15,11 @@ CASE = str(ROOT / "cases/starter.toml")
 SMALL = ["--set", "blocks.count=250", "--set", "stages[1].velocity=4 mm/s", "--no-figures"]
 HAS_MPI = (pathlib.Path(PROGRAM).parents[1] / "lib/pyroclast/pyroclast_mpi.so").exists()
 NEEDS_MPI = unittest.skipUnless(HAS_MPI, "the program was built without MPI")
-# as in validation/ranks
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-       "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_mpi_yield_when_idle": "0",
-       "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-       "PRTE_MCA_hwloc_default_binding_policy": "none", "PYROCLAST_CHUNK_BLOCKS": "16", "PYROCLAST_RANKS_LIMIT": "60"}
+SCRIPT = str(ROOT / "validation" / "ranks")
+loader = importlib.machinery.SourceFileLoader("ranks", SCRIPT)
+validation_ranks = importlib.util.module_from_spec(importlib.util.spec_from_loader("ranks", loader))
+loader.exec_module(validation_ranks)
+MPI = {**validation_ranks.MPI, "PYROCLAST_CHUNK_BLOCKS": "16", "PYROCLAST_RANKS_LIMIT": "60"}
 SOON = 10  # s, within which all ranks end after an error
 
 

@@ -100,9 +100,7 @@ RunChoices choices_of(const RunOptions& options) {
   choices.laws = sources_of(options.laws);
   choices.before_making = [speech = options.speech](const DeckOfRun& opened) {
     const int blocks = opened.setup.specimen.blocks.count;
-    if (blocks < kManyBlocks || (opened.choices.ranks && !opened.choices.ranks->is_first()) ||
-        speech == Speech::quiet)
-      return;
+    if (blocks < kManyBlocks || speech == Speech::quiet) return;
     fmt::print("making the specimen of {} blocks ...\n", blocks);
     std::fflush(stdout);
   };

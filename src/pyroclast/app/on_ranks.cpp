@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <new>
 #include <thread>
-#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -33,8 +32,7 @@ const MpiObject& mpi_object() {
   if (!std::filesystem::exists(file))
     throw Error(
         "--mpi: this program was built without MPI: configure it with -DPYROCLAST_MPI=ON, which needs Open "
-        "MPI "
-        "or MPICH");
+        "MPI or MPICH");
   // what MPI loads later looks for its symbols among all
   void* const object = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (object == nullptr) throw Error(fmt::format("--mpi: {} cannot be loaded: {}", file.string(), dlerror()));

@@ -49,6 +49,12 @@ class ChunkList {
     return count() == 0 ? Items{} : Items{(*this)[first], (*this)[last]};
   }
   bool is_own(int item) const { return own().contain(item); }
+  /// Calls `f(first, last)` for each own chunk, with its first item and the one behind its last.
+  template <class F>
+  void for_each_own(F f) const {
+    for (int chunk = 0; chunk < count(); ++chunk)
+      if (!is_foreign(chunk)) f((*this)[chunk], (*this)[chunk + 1]);
+  }
   /// Returns the number of items on all ranks, each counted by its owner: a collective.
   int whole_count(CallPlace at = CallPlace::here()) const {
     const auto [first, last] = own();
@@ -95,11 +101,10 @@ Sum chunked_sum(const ChunkList& chunks, Add add, CallPlace at = CallPlace::here
   const auto own = [&] {
     std::vector<Sum> of_chunk;
     of_chunk.reserve(static_cast<std::size_t>(chunks.count()));
-    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
-      if (chunks.is_foreign(chunk)) continue;
+    chunks.for_each_own([&](int first, int last) {
       Sum& sum = of_chunk.emplace_back();
-      for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sum);
-    }
+      for (int item = first; item < last; ++item) add(item, sum);
+    });
     return of_chunk;
   };
   Sum total{};
@@ -120,12 +125,11 @@ std::vector<Sum> chunked_sums(const ChunkList& chunks, std::size_t count, Add ad
                               CallPlace at = CallPlace::here()) {
   const auto own = [&] {
     std::vector<Sum> of_chunk;
-    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
-      if (chunks.is_foreign(chunk)) continue;
+    chunks.for_each_own([&](int first, int last) {
       of_chunk.resize(of_chunk.size() + count);
       const std::span<Sum> sums(of_chunk.data() + (of_chunk.size() - count), count);
-      for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) add(item, sums);
-    }
+      for (int item = first; item < last; ++item) add(item, sums);
+    });
     return of_chunk;
   };
   const std::vector<Sum> of_chunk = chunks.ranks().collect_made<Sum>(own, at);

@@ -1,5 +1,6 @@
 #include "pyroclast/base/environment.hpp"
 
+#include <charconv>
 #include <cstdlib>
 #include <sstream>
 
@@ -38,6 +39,14 @@ constexpr const char* kPlaces[] = {
 std::string environment(const char* name) {
   const char* const value = std::getenv(name);
   return value != nullptr ? value : "";
+}
+
+std::optional<int> number_in_environment(const char* name) {
+  const std::string text = environment(name);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
 }
 
 void forget_current_folder() {

@@ -14,11 +14,10 @@ class KeptSums {
   /// Sums the values of the items of own chunks, and keeps the sums. All lists have the same chunks.
   template <class Value>
   void keep(const ChunkList& chunks, Value value) {
-    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
-      if (chunks.is_foreign(chunk)) continue;
+    chunks.for_each_own([&](int first, int last) {
       double& sum = of_chunk_.emplace_back();
-      for (int item = chunks[chunk]; item < chunks[chunk + 1]; ++item) sum += value(item);
-    }
+      for (int item = first; item < last; ++item) sum += value(item);
+    });
     ++count_;
   }
   void clear() {

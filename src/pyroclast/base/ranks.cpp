@@ -1,8 +1,6 @@
 #include "pyroclast/base/ranks.hpp"
 
 #include <stdexcept>
-#include <string>
-#include <string_view>
 
 namespace pyroclast {
 
@@ -19,18 +17,12 @@ class OneRank final : public Ranks {
                                 CallPlace /*at*/) override {
     return {own.begin(), own.end()};
   }
-  double largest_of_all(double own, CallPlace /*at*/) override { return own; }
 };
 
 /// Number of a collective in a message: what it is, and how many bytes a rank gives.
 struct Head {
   std::uint64_t place, bytes;
 };
-
-Head head_of(CallPlace at, std::size_t bytes) {
-  const std::uint64_t file = std::hash<std::string_view>()(at.file);
-  return {31 * file + static_cast<std::uint64_t>(at.line), bytes};
-}
 
 void append(std::vector<std::byte>& to, std::span<const std::byte> bytes) {
   to.insert(to.end(), bytes.begin(), bytes.end());
@@ -46,7 +38,7 @@ T take_off(std::span<const std::byte>& bytes) {
 }
 
 [[noreturn]] void fail(CallPlace at) {
-  throw std::logic_error(std::string(at.file) + ":" + std::to_string(at.line) +
+  throw std::logic_error(at.text() +
                          ": a collective was called that other ranks did not call, or not the first time");
 }
 
@@ -65,7 +57,7 @@ void Ranks::send(CallPlace at) {
   std::vector<std::byte> own;
   append(own, std::as_bytes(std::span(&count, 1)));
   for (auto& [place, bytes] : collectives) {
-    const Head head = head_of(place, bytes.size());
+    const Head head{place.hash(), bytes.size()};
     append(own, std::as_bytes(std::span(&head, 1)));
     append(own, bytes);
     bytes.clear();
@@ -75,7 +67,7 @@ void Ranks::send(CallPlace at) {
     if (take_off<std::uint64_t>(left) != count) fail(at);
     for (auto& [place, bytes] : collectives) {
       const Head head = take_off<Head>(left);
-      if (head.place != head_of(place, 0).place) fail(place);
+      if (head.place != place.hash()) fail(place);
       append(bytes, left.first(head.bytes));
       left = left.subspan(head.bytes);
     }

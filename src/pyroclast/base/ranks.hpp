@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -23,6 +24,14 @@ struct CallPlace {
   }
   bool operator==(const CallPlace& other) const {
     return line == other.line && std::strcmp(file, other.file) == 0;
+  }
+  /// Returns "file:line".
+  std::string text() const { return std::string(file) + ":" + std::to_string(line); }
+  /// Returns a number for the place (FNV-1a), the same in all processes of a program.
+  std::uint64_t hash() const {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const char c : text()) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+    return hash;
   }
 };
 
@@ -91,9 +100,8 @@ class Ranks {
   }
   double largest(double own, CallPlace at = CallPlace::here()) {
     if (count() == 1) return own;
-    if (!gathering_) return largest_of_all(own, at);
     const std::vector<double> all = collect(std::vector{own}, at);
-    return *std::max_element(all.begin(), all.end());
+    return *std::max_element(all.begin(), all.end());  // in one order, so that NaN is the same on all ranks
   }
   double least(double own, CallPlace at = CallPlace::here()) { return -largest(-own, at); }
   /// Tells whether a condition holds on any rank.
@@ -133,7 +141,6 @@ class Ranks {
   /// Returns the bytes of all ranks, in the order of the ranks; nothing on a rank that does not receive.
   virtual std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers,
                                         CallPlace at) = 0;
-  virtual double largest_of_all(double own, CallPlace at) = 0;
 
  private:
   template <class T>

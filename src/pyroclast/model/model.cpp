@@ -1,7 +1,6 @@
 #include "pyroclast/model/model.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -67,17 +66,16 @@ int ModelOf<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
 
 int blocks_of_a_chunk(int dimension) {
   constexpr int kInPlane = 1024, kInSpace = 512;  // a block in space has some six times as many zones
-  const std::string stated = environment("PYROCLAST_CHUNK_BLOCKS");
+  constexpr const char* kVariable = "PYROCLAST_CHUNK_BLOCKS";
+  const std::string stated = environment(kVariable);
   if (stated.empty()) return dimension == 2 ? kInPlane : kInSpace;
-  int blocks = 0;
-  const char* const end = stated.data() + stated.size();
-  const auto [at, error] = std::from_chars(stated.data(), end, blocks);
-  if (error != std::errc() || at != end || blocks < 1)
+  const auto blocks = number_in_environment(kVariable);
+  if (!blocks || *blocks < 1)
     throw Error(
-        fmt::format("PYROCLAST_CHUNK_BLOCKS={}: the blocks of a chunk are a whole number above 0; "
-                    "leave the variable out, it is for tests",
-                    stated));
-  return blocks;
+        fmt::format("{}={}: the blocks of a chunk are a whole number above 0; leave the variable out, it is "
+                    "for tests",
+                    kVariable, stated));
+  return *blocks;
 }
 
 Model::Model(int dimension) : blocks_of_a_chunk_(blocks_of_a_chunk(dimension)) {}

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <string>
 #include <thread>
 
@@ -22,17 +21,6 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 using WaitClock = std::chrono::steady_clock;
-
-std::string text_of(CallPlace at) {
-  return std::string(at.file) + ":" + std::to_string(at.line);
-}
-
-/// Returns a number for a place in the code (FNV-1a), exact as a double.
-std::uint64_t hash_of(CallPlace at) {
-  std::uint64_t hash = 14695981039346656037U;
-  for (const char c : text_of(at)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return hash >> 12U;
-}
 
 /// Numbers of a rank that all ranks learn at once; bytes beyond it need a second message.
 struct Packet {
@@ -61,7 +49,7 @@ class MpiProcesses final : public Processes {
 
   void exchange(std::vector<Message>& messages, CallPlace at) override {
     requests_.clear();
-    const int tag = static_cast<int>(hash_of(at) % kTags);
+    const int tag = static_cast<int>(at.hash() % kTags);
     for (Message& message : messages)
       MPI_Irecv(message.received.data(), length(message.received.size()), MPI_DOUBLE, message.rank, tag,
                 MPI_COMM_WORLD, &requests_.emplace_back());
@@ -85,7 +73,7 @@ class MpiProcesses final : public Processes {
 
  protected:
   std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
-    Packet packet{.size = own.size(), .place = hash_of(at)};
+    Packet packet{.size = own.size(), .place = at.hash()};
     std::copy_n(own.begin(), std::min(own.size(), packet.first.size()), packet.first.begin());
     std::vector<Packet> packets(static_cast<std::size_t>(count_));
     requests_.assign(1, MPI_REQUEST_NULL);
@@ -119,19 +107,6 @@ class MpiProcesses final : public Processes {
                    begins.data(), MPI_BYTE, 0, MPI_COMM_WORLD, requests_.data());
     wait(requests_, at);
     return all;
-  }
-
-  double largest_of_all(double own, CallPlace at) override {
-    // the place as largest and least number: all ranks call from one place where both are the same
-    const auto place = static_cast<double>(hash_of(at));
-    const std::array<double, 3> sent{own, place, -place};
-    std::array<double, 3> largest{};
-    requests_.assign(1, MPI_REQUEST_NULL);
-    MPI_Iallreduce(sent.data(), largest.data(), static_cast<int>(sent.size()), MPI_DOUBLE, MPI_MAX,
-                   MPI_COMM_WORLD, requests_.data());
-    wait(requests_, at);
-    if (largest[1] != -largest[2]) refuse_other_place(at);
-    return largest[0];
   }
 
  private:
@@ -173,17 +148,15 @@ class MpiProcesses final : public Processes {
       if (spins < kSpins) continue;
       std::this_thread::sleep_for(kSleep);
       if (longest_wait_ > 0.0 && Seconds(WaitClock::now() - begun).count() > longest_wait_)
-        throw Error("it waits for other ranks in " + text_of(at));
+        throw Error("it waits for other ranks in " + at.text());
     }
   }
 
-  void require_one_place(const std::vector<Packet>& packets, CallPlace at) const {
+  static void require_one_place(const std::vector<Packet>& packets, CallPlace at) {
     for (const Packet& of_rank : packets)
-      if (of_rank.place != packets.front().place) refuse_other_place(at);
-  }
-  [[noreturn]] static void refuse_other_place(CallPlace at) {
-    throw Error("ranks are in different places of the program, this one in " + text_of(at) +
-                ": please report this as a fault of pyroclast");
+      if (of_rank.place != packets.front().place)
+        throw Error("ranks are in different places of the program, this one in " + at.text() +
+                    ": please report this as a fault of pyroclast");
   }
 
   int me_ = 0, count_ = 1, sharing_ = 1;

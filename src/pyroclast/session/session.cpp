@@ -37,7 +37,6 @@ Inputs same_on_all_ranks(const DeckOfRun& opened, Inputs inputs) {
   if (!ranks) return inputs;
   struct Identity {
     std::array<char, 80> program{}, inputs{};
-    bool operator==(const Identity&) const = default;
   };
   Identity own;
   fmt::format_to_n(own.program.data(), own.program.size() - 1, "{} {}", kVersion, kCommit);

@@ -26,7 +26,6 @@ class Imagined final : public Ranks {
                                 CallPlace /*at*/) override {
     refuse();
   }
-  double largest_of_all(double /*own*/, CallPlace /*at*/) override { refuse(); }
 
  private:
   [[noreturn]] static void refuse() { throw std::logic_error("nothing travels between imagined ranks"); }

@@ -67,7 +67,7 @@ std::int64_t OpeningControl::steps_per_adjustment(const Simulation& simulation) 
 void OpeningControl::steer(const Simulation& simulation, double time, std::int64_t interval,
                            const LoadBefore& before, LoadsBySet& loads) {
   const Record& record = simulation.record(keys().record);
-  const double opening = simulation.model().ranks().together([&] { return record.read(simulation); });
+  const double opening = simulation.ranks().together([&] { return record.read(simulation); });
   kept_.pair_work += kept_.pair_force * (opening - kept_.last_opening);
   kept_.last_opening = opening;
   const double behind = kept_.first_opening + keys().rate * time - opening;

@@ -29,7 +29,7 @@ RecordWatch::RecordWatch(const DriveKeys& drive) : drive_(drive) {
 }
 
 RecordWatch::Seen RecordWatch::read(const Simulation& simulation) const {
-  return simulation.model().ranks().together([&] {
+  return simulation.ranks().together([&] {
     Seen seen;
     for (const RecordParameters& record : drive_.records)
       seen.values.push_back(simulation.record(record.name).read(simulation));

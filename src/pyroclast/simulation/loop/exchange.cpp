@@ -93,7 +93,7 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   if (kept_.is_handed_over) {
     simulation.loads().mark();
     kept_.strain_before = kept_.last_strain =
-        simulation.model().ranks().together([&] { return shortening(simulation); });
+        simulation.ranks().together([&] { return shortening(simulation); });
   }
   kept_.is_handed_over = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;
@@ -118,7 +118,7 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
 }
 
 Exchange::Seen Exchange::read(const Simulation& simulation) const {
-  return simulation.model().ranks().together([&] {
+  return simulation.ranks().together([&] {
     Seen seen{shortening(simulation)};
     if (kept_.cycles < coupling_.least_cycles) return seen;
     seen.is_supported = !simulation.has_press() || simulation.press().is_supported();

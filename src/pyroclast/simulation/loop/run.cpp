@@ -236,7 +236,7 @@ std::vector<std::optional<double>> Run::measure() const {
 
 /// Adds a row to the history, and lets the stage look; all sums travel in one message.
 void Run::add_row() {
-  history_.add_row(simulation_.model().ranks().together([&] {
+  history_.add_row(simulation_.ranks().together([&] {
     if (stage_is_begun_) stages_[stage_]->look(simulation_);
     return measure();
   }));

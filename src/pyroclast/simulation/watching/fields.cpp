@@ -264,22 +264,24 @@ std::vector<const LawTable*> laws_in_order(const Motion& motion) {
   return laws;
 }
 
+/// Returns how many items belong to a contact; 0 for items of blocks.
+int items_of_contact(Item item, int dimension) {
+  return item == Item::contact ? 1 : item == Item::contact_end ? ends_of_contact(dimension) : 0;
+}
+
 /// Returns the items of a part of a body whose values this rank tells, in the order of the whole where the
 /// values of all ranks follow each other; contacts chunk by chunk.
 std::vector<int> own_items(Item item, const Model& model) {
   std::vector<int> items;
-  const auto add = [&](ChunkList::Items own) {
-    for (int i = own.first; i < own.last; ++i) items.push_back(i);
-  };
-  if (item == Item::gridpoint)
-    add(model.gridpoint_chunks().own());
-  else if (item == Item::zone)
-    add(model.zone_chunks().own());
-  if (item == Item::gridpoint || item == Item::zone) return items;
+  const int of_contact = items_of_contact(item, model.dimension());
+  if (of_contact == 0) {
+    const ChunkList chunks = item == Item::gridpoint ? model.gridpoint_chunks() : model.zone_chunks();
+    for (auto [i, last] = chunks.own(); i < last; ++i) items.push_back(i);
+    return items;
+  }
   const ContactsByChunk by_chunk = contacts_by_chunk(model);
-  const int of_each = item == Item::contact ? 1 : ends_of_contact(model.dimension());
   for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i)
-    for (int end = 0; end < of_each; ++end) items.push_back(of_each * by_chunk.contacts[i] + end);
+    for (int end = 0; end < of_contact; ++end) items.push_back(of_contact * by_chunk.contacts[i] + end);
   return items;
 }
 
@@ -297,17 +299,16 @@ std::vector<T> in_order(const std::vector<T>& values, int components, const std:
 template <class T>
 std::vector<std::vector<T>> of_all_ranks(const std::vector<Field>& fields, const std::vector<int>& items,
                                          std::vector<std::vector<T>> values, const Model& model) {
-  const Item item = fields.front().item;
-  const bool by_contact = item == Item::contact || item == Item::contact_end;
+  const int of_contact = items_of_contact(fields.front().item, model.dimension());
   std::vector<int> numbers;
-  if (by_contact) {
-    const int of_each = item == Item::contact ? 1 : ends_of_contact(model.dimension());
-    for (const int i : items) numbers.push_back(model.part->contact[i / of_each] * of_each + i % of_each);
+  if (of_contact > 0) {
+    for (const int i : items)
+      numbers.push_back(model.part->contact[i / of_contact] * of_contact + i % of_contact);
     numbers = model.ranks().collect_at_first(numbers);
   }
   for (std::size_t f = 0; f < fields.size(); ++f) {
     values[f] = model.ranks().collect_at_first(values[f]);
-    if (by_contact)
+    if (of_contact > 0)
       values[f] = in_order(values[f], components_of(fields[f].kind, model.dimension()), numbers);
   }
   return values;
@@ -352,11 +353,10 @@ int count_of(Item item, const Model& model) {
     case Item::zone:
       return model.zone_count();
     case Item::contact:
-      return model.contact_count();
     case Item::contact_end:
       break;
   }
-  return ends_of_contact(model.dimension()) * model.contact_count();
+  return items_of_contact(item, model.dimension()) * model.contact_count();
 }
 
 int components_of(ValueKind kind, int dimension) {
