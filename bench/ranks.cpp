@@ -65,6 +65,7 @@ struct OnRank {
   std::unique_ptr<Simulation> simulation;
   std::unique_ptr<Run> run;  ///< for its looks
   Shortest step, look, packing;
+  double inner_share = 0.0;  ///< share of own zones that move while messages travel
 
   OnRank(const Asked& asked, const MadeSpecimen& specimen, std::shared_ptr<CountedRanks> of)
       : ranks(std::move(of)) {
@@ -73,6 +74,7 @@ struct OnRank {
     run = std::make_unique<Run>(*simulation, std::move(setup.stages));
     if (simulation->has_press()) simulation->press().control_by_motion(kVelocity);
     simulation->motion().advance(kFirstSteps);
+    find_inner_share();
   }
 
   double batch() {
@@ -89,6 +91,20 @@ struct OnRank {
     std::size_t bytes = 0;
     with_mechanics([&](const auto& mechanics) { bytes = mechanics.body().memory(); });
     return bytes;
+  }
+  void find_inner_share() {
+    int inner = 0, own = 0;
+    with_mechanics([&]<int Dim>(const Mechanics<Dim>& mechanics) {
+      const Layout<Dim>& layout = mechanics.body().layout;
+      const std::vector<int> sent = Halo<Dim>(mechanics.model(), layout).bundles_sent();
+      const auto [first, last] = layout.chunks.bundles.own();
+      for (int b = first; b < last; ++b) {
+        const int zones = layout.bundles[b].zone_packs();
+        own += zones;
+        if (!layout.bundles[b].is_part && !std::ranges::binary_search(sent, b)) inner += zones;
+      }
+    });
+    inner_share = static_cast<double>(inner) / own;
   }
   /// Times a halo by itself, on a copy of the arrays.
   void time_packing(int times) {
@@ -205,6 +221,10 @@ void print(const Asked& asked, OnRank& whole, std::vector<OnRanks>& all) {
       return static_cast<double>(of.parts[static_cast<std::size_t>(r)]->arrays());
     }) / static_cast<double>(whole.arrays());
   });
+  row("zones that move while messages travel, least [% of own]", "{:.0f}", [](auto& of) {
+    return 100.0 -
+           of.most([&](int r) { return 100.0 * (1.0 - of.parts[static_cast<std::size_t>(r)]->inner_share); });
+  });
   row("messages of a rank after each step, mean", "{:.1f}",
       [&](auto& of) { return of.sum(of_neighbours(of)) / ranks_of(of); });
   row("messages, most", "{:.0f}", [&](auto& of) { return of.most(of_neighbours(of)); });
@@ -237,10 +257,18 @@ void print(const Asked& asked, OnRank& whole, std::vector<OnRanks>& all) {
   row(fmt::format("messages at {:.0f} us each and {:.0f} GB/s [us]", 1e6 * kLatency, 1e-9 * kBandwidth)
           .c_str(),
       "{:.1f}", [&](auto& of) { return 1e6 * messages(of); });
+  const auto in_view = [&](const OnRanks& of) {
+    return of.most([&](int r) {
+      const OnRank& part = *of.parts[static_cast<std::size_t>(r)];
+      const double inner = part.inner_share * part.step.seconds;
+      return std::max(0.0, of_neighbours(of)(r) * kLatency + of_bytes(of)(r) / kBandwidth - inner);
+    });
+  };
+  row("what is left of them behind inner zones [us]", "{:.1f}", [&](auto& of) { return 1e6 * in_view(of); });
   row("step, a core and a memory of its own for each rank [us]", "{:.1f}",
-      [&](auto& of) { return 1e6 * (slowest(of) + messages(of)); });
+      [&](auto& of) { return 1e6 * (slowest(of) + in_view(of)); });
   row("efficiency: step of one process over ranks times this", "{:.2f}",
-      [&](auto& of) { return whole.step.seconds / (ranks_of(of) * (slowest(of) + messages(of))); });
+      [&](auto& of) { return whole.step.seconds / (ranks_of(of) * (slowest(of) + in_view(of))); });
 }
 
 }  // namespace

@@ -24,14 +24,17 @@ class CountedRanks final : public Ranks {
 
   int me() const override { return inner_->me(); }
   int count() const override { return inner_->count(); }
-  void exchange(std::vector<Message>& messages, CallPlace at) override {
+  void begin_exchange(std::vector<Message>& messages, CallPlace at) override {
     for (const Message& message : messages) {
       Sent& to = sent[message.rank];
       ++to.messages;
       to.numbers += message.sent.size();
       to.fewest = std::min(to.fewest, message.sent.size());
     }
-    if (!is_alone) inner_->exchange(messages, at);
+    if (!is_alone) inner_->begin_exchange(messages, at);
+  }
+  void end_exchange(std::vector<Message>& messages, CallPlace at) override {
+    if (!is_alone) inner_->end_exchange(messages, at);
   }
   void forget() {
     sent.clear();

@@ -34,9 +34,12 @@ class RanksInThreads {
     int me() const override { return me_; }
     int count() const override { return static_cast<int>(board_->own_.size()); }
     bool spoil_foreign() const override { return true; }
-    void exchange(std::vector<Message>& messages, CallPlace at) override {
+    void begin_exchange(std::vector<Message>& messages, CallPlace /*at*/) override {
       events_ += 'x';
-      board_->exchange(me_, messages, at);
+      board_->send(me_, messages);
+    }
+    void end_exchange(std::vector<Message>& messages, CallPlace at) override {
+      board_->receive(me_, messages, at);
     }
 
     /// Returns the calls so far: 'c' for a collective, 'x' for an exchange with neighbours, and what `note`
@@ -111,10 +114,13 @@ class RanksInThreads {
     return all_;
   }
 
-  void exchange(int me, std::vector<Message>& messages, CallPlace at) {
-    std::unique_lock lock(mutex_);
+  void send(int me, const std::vector<Message>& messages) {
+    const std::lock_guard lock(mutex_);
     for (const Message& message : messages) mail_[{me, message.rank}].push_back(message.sent);
     changed_.notify_all();
+  }
+  void receive(int me, std::vector<Message>& messages, CallPlace at) {
+    std::unique_lock lock(mutex_);
     for (Message& message : messages) {
       auto& mail = mail_[{message.rank, me}];
       wait(lock, at, [&] { return !mail.empty(); });

@@ -115,10 +115,11 @@ std::vector<OfThread> operations_of_threads(const Mechanics<2>& m, int threads) 
     });
   for (std::size_t t = 0; t < shares.size(); ++t)
     all[t].behind = counted([&] {
-      for (const auto& stride : shares[t].strides) {
-        update(stride.faces);
-        passes.move_bundles(s, stride.bundles.first, stride.bundles.last, Pass::move, scratch.data());
-      }
+      for (const auto& strides : {shares[t].leading, shares[t].strides})
+        for (const auto& stride : strides) {
+          update(stride.faces);
+          passes.move_bundles(s, stride.bundles.first, stride.bundles.last, Pass::move, scratch.data());
+        }
     });
   return all;
 }

@@ -148,9 +148,10 @@ TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
 }
 
 /// Plays a step of the shares and tells whether it is allowed: no bundle moves before all its faces were
-/// taken, none is taken after one of its bundles moved, and all of them once.
-void play(const Layout<2>& layout, int threads) {
-  const auto shares = share_out(layout, threads);
+/// taken, none is taken after one of its bundles moved, and all of them once. Bundles that lead all move
+/// before the others.
+void play(const Layout<2>& layout, int threads, const std::vector<int>& leading = {}) {
+  const auto shares = share_out(layout, threads, leading);
   std::vector<int> bundle_of_pack(layout.gridpoint_packs);
   for (std::size_t b = 0; b < layout.bundles.size(); ++b)
     for (int i = 0; i < layout.bundles[b].packs; ++i)
@@ -173,17 +174,26 @@ void play(const Layout<2>& layout, int threads) {
   for (const Share& share : shares)
     for (const auto& packs : share.crossing) take(packs);
   // A thread may be ahead of the others by any amount: the worst is one after the other, either way round.
-  for (std::size_t t = 0; t < shares.size(); ++t)
-    for (const auto& stride : shares[shares.size() - 1 - t].strides) {
-      take(stride.faces);
-      for (int b = stride.bundles.first; b < stride.bundles.last; ++b) {
-        ++moved[b];
-        for (std::size_t pack = 0; pack < layout.faces.size(); ++pack)
-          if (touched(static_cast<int>(pack)).count(b) != 0) {
-            EXPECT_EQ(taken[pack], 1) << "bundle " << b << " before face pack " << pack;
-          }
+  const auto sweep = [&](std::vector<Share::Stride> Share::*strides) {
+    for (auto share = shares.rbegin(); share != shares.rend(); ++share)
+      for (const auto& stride : (*share).*strides) {
+        take(stride.faces);
+        for (int b = stride.bundles.first; b < stride.bundles.last; ++b) {
+          ++moved[b];
+          for (std::size_t pack = 0; pack < layout.faces.size(); ++pack)
+            if (touched(static_cast<int>(pack)).count(b) != 0) {
+              EXPECT_EQ(taken[pack], 1) << "bundle " << b << " before face pack " << pack;
+            }
+        }
       }
-    }
+  };
+  sweep(&Share::leading);
+  for (std::size_t b = 0; b < moved.size(); ++b) {
+    const int at = static_cast<int>(b);
+    const bool leads = std::ranges::count(leading, at) + std::ranges::count(layout.parts, at) > 0;
+    EXPECT_EQ(moved[b], leads ? 1 : 0) << "bundle " << b;
+  }
+  sweep(&Share::strides);
   EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(taken.size()));
   EXPECT_EQ(std::count(moved.begin(), moved.end(), 1), static_cast<std::ptrdiff_t>(moved.size()));
 
@@ -191,7 +201,7 @@ void play(const Layout<2>& layout, int threads) {
   for (const Share& share : shares) {
     for (int i = share.corner_parts.first; i < share.corner_parts.last; ++i) ++computed[i];
     for (int i = 0; i < static_cast<int>(layout.parts.size()); ++i) {
-      const bool moves = std::ranges::any_of(share.strides, [&](const auto& stride) {
+      const bool moves = std::ranges::any_of(share.leading, [&](const auto& stride) {
         return stride.bundles.first <= layout.parts[i] && layout.parts[i] < stride.bundles.last;
       });
       EXPECT_EQ(share.moved_parts.first <= i && i < share.moved_parts.last, moves) << "part " << i;
@@ -206,6 +216,9 @@ TEST(Sweep, TakesEveryFaceOnceBeforeItsBundlesMove) {
     const Layout<2> layout(model, {.most_zones = most_zones});
     ASSERT_GE(layout.parts.size(), 2U);
     for (int threads : {1, 2, 3, 7}) play(layout, threads);
+    std::vector<int> leading;
+    for (int b = 1; b < static_cast<int>(layout.bundles.size()); b += b % 3) leading.push_back(b);
+    for (int threads : {1, 3}) play(layout, threads, leading);
   }
 }
 

@@ -10,7 +10,8 @@ class OneRank final : public Ranks {
  public:
   int me() const override { return 0; }
   int count() const override { return 1; }
-  void exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override {}
+  void begin_exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override {}
+  void end_exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override {}
 
  protected:
   std::vector<std::byte> gather(std::span<const std::byte> own, Receivers /*receivers*/,

@@ -134,7 +134,16 @@ class Ranks {
 
   /// Sends each neighbour its message and receives the neighbour's. Neighbours name each other, with the
   /// lengths that the other one expects.
-  virtual void exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) = 0;
+  void exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) {
+    begin_exchange(messages, at);
+    end_exchange(messages, at);
+  }
+  /// Begins an exchange: messages stay as they are until its end, and no other exchange begins before.
+  virtual void begin_exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) = 0;
+  /// Lets messages that travel go on: with MPI, long ones do so within calls alone.
+  virtual void go_on() {}
+  /// Waits until all messages of the exchange have come, and those sent may change.
+  virtual void end_exchange(std::vector<Message>& messages, CallPlace at = CallPlace::here()) = 0;
 
  protected:
   enum class Receivers : std::uint8_t { all, first };

@@ -1,5 +1,6 @@
 #include "pyroclast/mechanics/halo.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 
@@ -41,6 +42,10 @@ Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(m
     for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);
     messages_.push_back({rank, {}, {}});
   }
+  for (const Neighbour& neighbour : neighbours_)
+    for (const int slot : neighbour.sent) bundles_sent_.push_back(layout.bundle_of_pack[slot / kLanes]);
+  std::ranges::sort(bundles_sent_);
+  bundles_sent_.erase(std::ranges::unique(bundles_sent_).begin(), bundles_sent_.end());
   if (!ranks_.spoil_foreign()) return;
   const ChunkList::Items own = model.gridpoint_chunks().own();
   for (int g = 0; g < model.gridpoint_count(); ++g)
@@ -73,7 +78,7 @@ void Halo<Dim>::spoil(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
 }
 
 template <int Dim>
-void Halo<Dim>::exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
+void Halo<Dim>::begin_exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
   std::size_t count = 0;
   for_each_that_travels<Dim>(arrays, travels, [&](auto& /*array*/) { ++count; });
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
@@ -87,7 +92,12 @@ void Halo<Dim>::exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
     });
   }
   spoil(arrays, travels);
-  ranks_.exchange(messages_);
+  ranks_.begin_exchange(messages_);
+}
+
+template <int Dim>
+void Halo<Dim>::end_exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
+  ranks_.end_exchange(messages_);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto next = messages_[n].received.begin();
     for_each_that_travels<Dim>(arrays, travels, [&](auto& array) {

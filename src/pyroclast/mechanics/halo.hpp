@@ -19,7 +19,16 @@ class Halo {
   bool is_empty() const { return neighbours_.empty(); }
   /// Gives foreign gridpoints the numbers that their owners have.
   /// \param travels  kind of the arrays that travel now
-  void exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels);
+  void exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels) {
+    begin_exchange(arrays, travels);
+    end_exchange(arrays, travels);
+  }
+  /// Sends what neighbours read; until the end, only own numbers may be read or changed.
+  void begin_exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels);
+  void go_on() { ranks_.go_on(); }
+  void end_exchange(StateArrays<Dim, FlatArray>& arrays, Travels travels);
+  /// Returns the bundles whose gridpoints neighbours read, in order.
+  const std::vector<int>& bundles_sent() const { return bundles_sent_; }
   /// Where the ranks ask for it, makes numbers of foreign gridpoints NaN, see Ranks::spoil_foreign: those
   /// that owners alone have, and those that travel now or later. Positions stay.
   void spoil(StateArrays<Dim, FlatArray>& arrays, Travels travels = Travels::never);
@@ -33,7 +42,8 @@ class Halo {
   Ranks& ranks_;
   std::vector<Neighbour> neighbours_;
   std::vector<Message> messages_;  ///< messages by neighbour
-  std::vector<int> spoilt_;        ///< slots of foreign gridpoints, where tests spoil them
+  std::vector<int> bundles_sent_;
+  std::vector<int> spoilt_;  ///< slots of foreign gridpoints, where tests spoil them
 };
 
 extern template class Halo<2>;

@@ -47,17 +47,21 @@ class MpiProcesses final : public Processes {
   int count() const override { return count_; }
   int sharing_processors() const override { return sharing_; }
 
-  void exchange(std::vector<Message>& messages, CallPlace at) override {
-    requests_.clear();
+  void begin_exchange(std::vector<Message>& messages, CallPlace at) override {
+    of_exchange_.clear();
     const int tag = static_cast<int>(at.hash() % kTags);
     for (Message& message : messages)
       MPI_Irecv(message.received.data(), length(message.received.size()), MPI_DOUBLE, message.rank, tag,
-                MPI_COMM_WORLD, &requests_.emplace_back());
+                MPI_COMM_WORLD, &of_exchange_.emplace_back());
     for (const Message& message : messages)
       MPI_Isend(message.sent.data(), length(message.sent.size()), MPI_DOUBLE, message.rank, tag,
-                MPI_COMM_WORLD, &requests_.emplace_back());
-    wait(requests_, at);
+                MPI_COMM_WORLD, &of_exchange_.emplace_back());
   }
+  void go_on() override {
+    int done = 0;
+    MPI_Testall(static_cast<int>(of_exchange_.size()), of_exchange_.data(), &done, MPI_STATUSES_IGNORE);
+  }
+  void end_exchange(std::vector<Message>& /*messages*/, CallPlace at) override { wait(of_exchange_, at); }
 
   void wait_for_all() override {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -161,7 +165,7 @@ class MpiProcesses final : public Processes {
 
   int me_ = 0, count_ = 1, sharing_ = 1;
   double longest_wait_ = 0.0;  ///< s; 0: any
-  std::vector<MPI_Request> requests_;
+  std::vector<MPI_Request> requests_, of_exchange_;
 };
 
 }  // namespace

@@ -19,7 +19,8 @@ class Imagined final : public Ranks {
   Imagined(int me, int count) : me_(me), count_(count) {}
   int me() const override { return me_; }
   int count() const override { return count_; }
-  void exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override { refuse(); }
+  void begin_exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override { refuse(); }
+  void end_exchange(std::vector<Message>& /*messages*/, CallPlace /*at*/) override { refuse(); }
 
  protected:
   std::vector<std::byte> gather(std::span<const std::byte> /*own*/, Receivers /*receivers*/,
