@@ -65,7 +65,8 @@ double peak_memory() {
 }
 
 void print_composition(const Composition& whole) {
-  fmt::print("composition     {:.3f} inclusions\n", whole.inclusions);
+  fmt::print("composition     {:.3f} inclusions, taken for {}\n", whole.inclusions,
+             whole.dimension == 2 ? "discs in plane stress" : "balls");
   if (whole.creep_share) {
     const auto [at_once, far] = *whole.creep_share;
     fmt::print("                creep of the concrete over creep of its matrix, R = {:.4f}", at_once);

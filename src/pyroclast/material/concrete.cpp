@@ -297,7 +297,8 @@ MixedPhase with_contacts(const BlockMaterial& material, double fraction, const C
 /// linear between points that stand close enough for five digits.
 class CreepOfMatrix {
  public:
-  CreepOfMatrix(const Mixture<2>& mixture, double elastic, double poisson) {
+  template <int Dim>
+  CreepOfMatrix(const Mixture<Dim>& mixture, double elastic, double poisson) {
     constexpr double kFirst = 1e-3, kGrowth = 1.02, kLast = 1e4;  // over the elastic compliance of the matrix
     for (double ratio = kFirst; ratio < kLast; ratio *= kGrowth) {
       const double of_whole = mixture.creep(ratio * elastic, poisson);
@@ -325,7 +326,8 @@ class CreepOfMatrix {
 };
 
 /// Turns the creep of the concrete into that of its matrix.
-void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const MixedPhase& matrix) {
+template <int Dim>
+void take_to_matrix(CreepMaterial& creep, const Mixture<Dim>& mixture, const MixedPhase& matrix) {
   creep.level = CreepLevel::phase;
   if (creep.share) {
     creep.strain = creep.strain * (1.0 / *creep.share);
@@ -340,11 +342,10 @@ void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const Mixed
                                  creep.strain.range(), creep.strain.axis());
 }
 
-}  // namespace
-
-void follow_composition(ConcreteMaterials& concrete, const ContactParameters& parameters,
-                        const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
-                        double block_size) {
+template <int Dim>
+void follow_mixture(ConcreteMaterials& concrete, const ContactParameters& parameters,
+                    const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
+                    double block_size) {
   const auto phases = phases_of(concrete.block_materials);
   const InterfaceTable table(phases, parameters.interfaces);
   const auto of_matrix =
@@ -356,8 +357,9 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
                                   concrete.contacts[table.between(phase, phase)], block_size));
     if (i != of_matrix && fraction[i] > 0.0) inclusions.push_back(mixed.back());
   }
-  const Mixture<2> mixture(mixed[of_matrix], inclusions);
+  const Mixture<Dim> mixture(mixed[of_matrix], inclusions);
   Composition& whole = concrete.composition.emplace();
+  whole.dimension = Dim;
   whole.inclusions = 1.0 - fraction[of_matrix];
 
   for (std::size_t i = 0; i < phases.size(); ++i) {
@@ -387,6 +389,15 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
     concrete.block_materials[i].thermal_strain =
         (strain->strain * ratio).named(fmt::format("materials.{}.thermal_strain", phases[i]));
   }
+}
+
+}  // namespace
+
+void follow_composition(ConcreteMaterials& concrete, const ContactParameters& parameters,
+                        const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
+                        double block_size, int dimension) {
+  const auto follow = dimension == 2 ? follow_mixture<2> : follow_mixture<3>;
+  follow(concrete, parameters, strain, fraction, block_size);
 }
 
 }  // namespace pyroclast

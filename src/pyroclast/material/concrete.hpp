@@ -170,6 +170,7 @@ struct ContactParameters {
 
 /// Properties of the specimen's phases as a whole.
 struct Composition {
+  int dimension = 2;        ///< inclusions are taken for discs in plane stress (2), or for balls (3)
   double inclusions = 0.0;  ///< share of the volume that is not matrix
   /// R, creep of the whole over creep of its matrix, when the matrix has crept once and ten times its elastic
   /// strain; both are the same where a deck states R.
@@ -258,14 +259,15 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
 void set_stress_free(ConcreteMaterials& concrete, double temperature);
 
 /// Gives the phases of this specimen the creep (see CreepLevel) and the thermal strains that together make
-/// those of the concrete. Both follow from the share of inclusions by Mixture<2>; phases are as soft as their
+/// those of the concrete. Both follow from the share of inclusions by Mixture; phases are as soft as their
 /// blocks with the contacts between them: 1 / E + 1 / (K_n block size). Throws Error when inclusions creep
 /// too, or when strains of phases are asked for and there are more than two phases.
 /// \param contacts    parameters with which `concrete` was made
 /// \param fraction    share of each phase in the volume
-/// \param block_size  square root of the mean block area, m
+/// \param block_size  square root of the mean block area, in space cube root of the mean volume, m
+/// \param dimension   2: inclusions are discs in plane stress; 3: balls
 void follow_composition(ConcreteMaterials& concrete, const ContactParameters& contacts,
                         const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
-                        double block_size);
+                        double block_size, int dimension);
 
 }  // namespace pyroclast

@@ -89,7 +89,7 @@ ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materia
   materials.on_cooling = moving.on_cooling;
   if (follows_composition(block_materials, moving))
     follow_composition(materials, moving.contacts, moving.strain_of_concrete, specimen.fraction,
-                       specimen.mean_size);
+                       specimen.mean_size, specimen.dimension);
   if (moving.stress_free && !moving.stress_free->is_field())
     set_stress_free(materials, moving.stress_free->temperatures.front());
   return materials;

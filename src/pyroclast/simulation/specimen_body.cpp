@@ -137,11 +137,11 @@ SpecimenNumbers numbers_of(const MadeSpecimen& specimen) {
   return std::visit(
       Overloaded{
           [](const specimen::Specimen& s) -> SpecimenNumbers {
-            return {s.fraction, s.metrics.mean_size, specimen::block_size(s), std::sqrt(s.region.area())};
+            return {s.fraction, s.metrics.mean_size, specimen::block_size(s), std::sqrt(s.region.area()), 2};
           },
           [](const solid::SolidSpecimen& s) -> SpecimenNumbers {
             const double size = s.metrics.mean_size;
-            return {s.fraction, size, size, std::cbrt(s.body.volume())};
+            return {s.fraction, size, size, std::cbrt(s.body.volume()), 3};
           }},
       specimen);
 }

@@ -67,6 +67,7 @@ struct SpecimenNumbers {
   /// Side of the square of its area, m, against which lengths of the body are measured; of a solid the edge
   /// of the cube of its volume.
   double size = 0.0;
+  int dimension = 2;
 };
 
 SpecimenNumbers numbers_of(const MadeSpecimen& specimen);
