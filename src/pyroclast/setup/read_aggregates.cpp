@@ -417,7 +417,7 @@ void check_size(const Section& s, const AskedSpecimen& p) {
   if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
     s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
                                  narrowest));
-  else if (kFewestAggregatesAcross * largest > narrowest)
+  else if (kFewestAggregatesAcross * largest > (1.0 + 1e-9) * narrowest)  // 3 x 25 mm are in 75 mm
     s.warn("d_max", fmt::format("the specimen is only {:.1f} times as wide, but usually at least {} times",
                                 narrowest / largest, kFewestAggregatesAcross));
 }
