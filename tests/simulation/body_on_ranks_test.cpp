@@ -19,18 +19,15 @@ class RanksOfCases : public testing::TestWithParam<std::pair<std::string, int>> 
 INSTANTIATE_TEST_SUITE_P(Small, RanksOfCases,
                          testing::Values(std::pair{"starter", 100}, std::pair{"fire_one_side", 100},
                                          std::pair{"thermal_wall", 100}, std::pair{"disc_3d", 80},
-                                         std::pair{"fire_one_side_3d", 60}),
+                                         std::pair{"column_fire_3d", 80}),
                          [](const auto& info) { return info.param.first; });
 
 TEST_P(RanksOfCases, AreAsForetold) {
   const SmallChunks chunks(8);
   const auto& [name, blocks] = GetParam();
-  const bool in_space = name == "fire_one_side_3d";  // a case of the plane with a depth
-  std::string text = shipped_case(in_space ? "fire_one_side" : name);
-  if (in_space) text = with(text, "thickness = \"1 m\"", "depth = \"60 mm\"");
-  auto setup = read(text);
+  auto setup = read(shipped_case(name));
   setup.specimen.blocks.count = blocks;
-  if (in_space) setup.specimen.aggregates.fraction = 0.0;
+  if (name == "column_fire_3d") setup.specimen.aggregates.fraction = 0.0;  // so few blocks hold no stone
   const auto whole = make_simulation(setup);
   for (const int count : {2, 5}) {
     SCOPED_TRACE(testing::Message() << count << " ranks");
