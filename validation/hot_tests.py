@@ -1,10 +1,12 @@
 """Tests of concrete whose paste creeps, as validation/calibrate_paste and validation/hot_concrete need them.
 
-Specimens are heated under load (cases/anderberg_thelandersson.toml), or heated then crushed (cases/hot_strength.toml).
-Each is loaded to a share of its own strength at 20 degC, which the second case finds without heating.
+Specimens are heated under load (cases/anderberg_thelandersson.toml), or heated then crushed (cases/hot_strength.toml); in
+space likewise (validation/hot_solids). Each is loaded to a share of its own strength at 20 degC, which the second case
+finds without heating; in space that is also the f_c over which its paste creeps.
 """
 
 import dataclasses
+import math
 import pathlib
 import re
 import sys
@@ -16,11 +18,21 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "validation")]
 
 import runs  # noqa: E402
+from pyroclast.stored.heated import Heated  # noqa: E402
+from pyroclast.stored.reference import strain_band  # noqa: E402
 from pyroclast.stored.results import Results  # noqa: E402
 
 RUNS = ROOT / "runs/hot_concrete"
 HEATED = ROOT / "cases/anderberg_thelandersson.toml"
 CRUSHED = ROOT / "cases/hot_strength.toml"
+SOLIDS = {HEATED: ROOT / "cases/transient_heating_3d.toml", CRUSHED: ROOT / "cases/hot_strength_3d.toml"}
+SEEDS = (1, 2, 3)
+LEVELS = (0.0, 0.225, 0.445, 0.675)
+TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
+COLUMNS = ("deck", "physics_version", "test", "concrete", "blocks", "seed", "level", "to_degC", "E_GPa", "f_c_MPa",
+           "strain_at_peak", "quasi_static", *(f"strain_{t}_1e-3" for t in TEMPERATURES), "critical_degC",
+           "largest_thrust_MPa", "thrust_at_degC", "lateral_400_1e-3", "cracks_400_m", "along_400",
+           "across_400", "interface_400", "not_converged", "energy_error_percent", "steps")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,13 +44,28 @@ class Specimen:
     changes: tuple[str, ...] = ()  # of both decks, of what only heat brings out
     concrete: str = "as it stands"  # name of the changes
     body: tuple[str, ...] = ()  # changes that matter at 20 degC too
+    in_space: bool = False
 
     @property
     def name(self) -> str:
-        return f"{self.concrete.replace(' ', '-')}-{self.blocks}-{self.seed}"
+        return f"{'solid-' if self.in_space else ''}{self.concrete.replace(' ', '-')}-{self.blocks}-{self.seed}"
+
+    def deck(self, plane: pathlib.Path) -> pathlib.Path:
+        """The deck for this specimen in the place of one of the plane."""
+        return SOLIDS[plane] if self.in_space else plane
+
+    def of_strength(self, level: float) -> list[str]:
+        """What goes with the specimen's own strength where paste creeps."""
+        if level == 0.0 and not self.in_space:
+            return []
+        own = f"{strength(self):.6g} MPa"
+        return [f"stages[1].f_c={own}"] + ([f"materials.mortar.creep.f_c={own}"] if self.in_space else [])
 
     def settings(self, most_cycles: int) -> list[str]:
-        """Time step and cycles go with the block size, as in validation/block_size."""
+        """Time step and cycles go with the block size of the plane, as in validation/block_size; in space they are the
+        deck's."""
+        if self.in_space:
+            return [f"blocks.count={self.blocks}", "output.fields=false", *self.body, *self.changes]
         ratio = runs.size_ratio(self.blocks)
         least, most = round(1000 / ratio), round(most_cycles / ratio)
         stated = {change.split("=")[0] for change in self.changes}
@@ -64,10 +91,9 @@ def heated(specimen: Specimen, level: float, to: float = 800.0, platen: str = "f
     changes = specimen.settings(3000) + [f"stages[1].level={level:g}", f"stages[2].to={to:g} degC"]
     if platen != "force":
         changes.append(f"stages[2].platen={platen}")
-    if level > 0.0:
-        changes.append(f"stages[1].f_c={strength(specimen):.6g} MPa")
+    changes += specimen.of_strength(level)
     kind = "heated" if platen == "force" else "restrained"
-    deck = HEATED if platen == "force" else _without_reference(HEATED)
+    deck = specimen.deck(HEATED) if platen == "force" else _without_reference(HEATED)
     return _run(deck, f"{kind}-{level:g}-{to:g}-{specimen.name}", specimen, changes)
 
 
@@ -87,10 +113,10 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
     at = 20.0 if residual else temperature
     changes = specimen.settings(9000) + [f"stages[1].level={level:g}", f"stages[2].to={temperature:g} degC",
                                          f"stages[3].to={at:g} degC"]
-    if level > 0.0:
-        changes.append(f"stages[1].f_c={strength(specimen):.6g} MPa")
+    if temperature > 20.0:
+        changes += specimen.of_strength(level)
     kind = "residual" if residual else "hot"
-    run = _run(CRUSHED, f"{kind}-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
+    run = _run(specimen.deck(CRUSHED), f"{kind}-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
     stages = run.summary["stages"]
     failed = next((s["results"].get("critical_temperature_degC") for s in stages
                    if s["results"].get("critical_temperature_degC") is not None), None)
@@ -130,3 +156,169 @@ def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) 
     with own:  # two tests may ask for the same strength at once
         runs.run(deck, folder, specimen.seed, changes, again=False)
     return Results(folder)
+
+
+@dataclasses.dataclass(frozen=True)
+class Test:
+    """A run, and how its line of the table is known."""
+
+    kind: str  # heated, restrained, cold, hot, residual
+    specimen: Specimen
+    level: float = 0.0
+    to: float = 800.0
+
+    @property
+    def key(self) -> dict[str, str]:
+        deck = self.specimen.deck(HEATED if self.kind in ("heated", "restrained") else CRUSHED)
+        own = {"deck": runs.deck_hash(deck), "physics_version": runs.physics_version(),
+               "test": self.kind, "concrete": self.specimen.concrete, "blocks": self.specimen.blocks,
+               "seed": self.specimen.seed, "level": f"{self.level:g}", "to_degC": f"{self.to:g}"}
+        return {name: str(value) for name, value in own.items()}
+
+    def row(self) -> dict[str, str]:
+        """Runs the test; its line of the table."""
+        row = self.key
+        if self.kind in ("heated", "restrained"):
+            run = heated(self.specimen, self.level, self.to, "fixed" if self.kind == "restrained" else "force")
+            row.update(_of_heating(run))
+        else:
+            temperature = 20.0 if self.kind == "cold" else self.to
+            found = crushed(self.specimen, temperature, self.level, self.kind == "residual")
+            run = found.run
+            row.update(E_GPa=found.E, f_c_MPa=found.f_c, strain_at_peak=found.strain_at_peak,
+                       quasi_static=found.quasi_static, critical_degC=found.failed_at)
+        summary = run.summary
+        row.update(not_converged=sum(s["results"].get("exchanges_not_converged", 0) for s in summary["stages"]),
+                   energy_error_percent=100.0 * summary["energy_J"]["error_over_turnover"], steps=summary["steps"])
+        return runs.rounded(row)
+
+
+def _of_heating(run: Results) -> dict:
+    hot = Heated(run)
+    strains = hot.standing_strain(TEMPERATURES)
+    row = {f"strain_{t}_1e-3": 1e3 * e for t, e in zip(TEMPERATURES, strains.tolist()) if not math.isnan(e)}
+    history, standing = run.history, hot.standing
+    temperature, stress = history["temperature_degC"][standing], history["stress_MPa"][standing]
+    row["critical_degC"] = hot.results["critical_temperature_degC"]
+    if hot.restrained:
+        largest = int(np.argmax(stress))
+        row.update(largest_thrust_MPa=float(stress[largest]), thrust_at_degC=float(temperature[largest]))
+    if temperature.max() >= 400.0:
+        row["lateral_400_1e-3"] = 1e3 * float(np.interp(400.0, temperature, history["lateral_strain"][standing]))
+        if run.dimension == 2:
+            row.update(_cracks_at(run, 400.0))
+    return row
+
+
+def _cracks_at(run: Results, temperature: float) -> dict:
+    """Length of contacts times their damage in tension, and shares of it: lines within 30 degrees of the load's direction,
+    within 30 degrees across it, and at aggregates."""
+    frame = next(f for f in Heated(run).frames if abs(f.temperature - temperature) < 1e-6)
+    contacts = run.mesh.contacts
+    a, b = (contacts.points[contacts.cells[:, end]] for end in (0, 1))
+    cracked = run.contact_field(frame, "tension_damage [1]") * contacts.extent
+    steepness = np.abs((b - a)[:, 1]) / np.linalg.norm(b - a, axis=1)
+    parts = {"along_400": steepness >= math.cos(math.pi / 6), "across_400": steepness <= math.sin(math.pi / 6),
+             "interface_400": contacts.interface == contacts.interfaces.index("aggregate_mortar")}
+    total = float(cracked.sum())
+    return {"cracks_400_m": total, **{name: float(cracked[part].sum()) / total for name, part in parts.items()}}
+
+
+def levels(blocks: int, in_space: bool = False) -> list[Test]:
+    return [Test("heated", Specimen(seed, blocks, in_space=in_space), level) for level in LEVELS for seed in SEEDS]
+
+
+def strengths(blocks: int, temperatures: tuple[int, ...], in_space: bool = False) -> list[Test]:
+    specimens = [Specimen(seed, blocks, in_space=in_space) for seed in SEEDS]
+    tests = [Test("cold", specimen, to=20.0) for specimen in specimens]
+    for kind, level in (("hot", 0.0), ("hot", 0.4), ("residual", 0.0)):
+        tests += [Test(kind, specimen, level, to) for to in temperatures for specimen in specimens]
+    return tests
+
+
+def known(test: Test, rows: list[dict[str, str]]) -> bool:
+    return any(all(row[name] == value for name, value in test.key.items()) for row in rows)
+
+
+def fill(table: pathlib.Path, tests: list[Test], jobs: int) -> None:
+    """Runs the tests that do not stand in a table, and puts their lines there."""
+    wanted = [test.row for test in dict.fromkeys(tests) if not known(test, runs.read_table(table))]
+    runs.fill_table(table, COLUMNS, wanted, jobs, ("test", "concrete", "blocks", "seed", "level", "to_degC"))
+
+
+def glasgow(level: float, temperature):
+    """Total strain of the Glasgow model (Pearce, Nielsen and Bicanic), f_c = 35 MPa and E = 21.5 GPa at 20 degC."""
+    theta = (np.asarray(temperature, dtype=float) - 20.0) / 100.0
+    creep = np.where(theta <= 4.5, 0.0005 * theta**2 + 0.00125 * theta, 0.0)
+    beyond = theta - 4.5
+    creep = np.where(theta > 4.5, 0.0005 * 4.5**2 + 0.00125 * 4.5 + 0.00575 * beyond + 0.0085 * beyond**2, creep)
+    return free_strain(temperature) - level * creep - level * 35.0 / (21500.0 * (1.0 - 0.1 * theta) ** 2)
+
+
+def of(rows: list[dict[str, str]], name: str, **conditions) -> np.ndarray:
+    """A column of the lines that meet the conditions, those that have it."""
+    return np.array([float(r[name]) for r in rows
+                     if r[name] and all(r[key] == str(value) for key, value in conditions.items())])
+
+
+def mean_and_range(values: np.ndarray, digits: int = 2) -> str:
+    if not len(values):
+        return "–"
+    if len(values) == 1:
+        return f"{values[0]:.{digits}f}"
+    return f"{values.mean():.{digits}f} ({values.min():.{digits}f} … {values.max():.{digits}f})"
+
+
+def print_table(head: list[str], lines: list[list[str]]) -> None:
+    print("| " + " | ".join(head) + " |")
+    print("|" + "---|" * len(head))
+    for line in lines:
+        print("| " + " | ".join(line) + " |")
+    print()
+
+
+def print_levels(rows: list[dict[str, str]], common: dict) -> dict[float, dict[int, float]]:
+    """Prints strains beside the bands of tests; the means by level and temperature, 1e-3."""
+    shown = [t for t in TEMPERATURES if t <= 600]
+    lines, mean = [], {}
+    print("Total strain in 1e-3, mean (least … most of three seeds)\n")
+    for level in LEVELS:
+        found = {t: of(rows, f"strain_{t}_1e-3", test="heated", level=f"{level:g}", **common) for t in shown}
+        mean[level] = {t: values.mean() for t, values in found.items() if len(values)}
+        band = strain_band(level)
+        there = [t for t in shown if t <= band.temperature[-1]]
+        low, central, high = (dict(zip(there, 1e3 * part)) for part in band.at(there))
+        lines.append([f"{level:g}"] + [mean_and_range(found[t]) for t in shown])
+        lines.append(["band"] + [f"{low[t]:.2f} … {high[t]:.2f}" if t in low else "–" for t in shown])
+        lines.append(["centre"] + [f"{central[t]:.2f}" if t in low else "–" for t in shown])
+        if level > 0.0:
+            g = {t: 1e3 * float(glasgow(level, t)) for t in shown}
+            at = {t: 2.0 * central[t] - g[t] for t in there if t <= 500}  # the centre is the mean of both
+            lines.append(["less Anderberg and Thelandersson"]
+                         + [f"{mean[level][t] - at[t]:+.2f}" if t in at and t in mean[level] else "–" for t in shown])
+            lines.append(["less Glasgow"]
+                         + [f"{mean[level][t] - g[t]:+.2f}" if t in mean[level] else "–" for t in shown])
+    print_table(["level"] + [f"{t} °C" for t in shown], lines)
+    return mean
+
+
+def print_critical_temperatures(rows: list[dict[str, str]], common: dict) -> None:
+    print("Critical temperatures, °C\n")
+    print_table(["level", "ours"], [[f"{level:g}", mean_and_range(
+        of(rows, "critical_degC", test="heated", level=f"{level:g}", **common), 0)] for level in LEVELS])
+
+
+def print_strengths(rows: list[dict[str, str]], common: dict, temperatures: tuple[int, ...]) -> None:
+    print("Strength and modulus over those at 20 °C of the same specimen\n")
+    lines = []
+    for name in ("f_c_MPa", "E_GPa", "strain_at_peak"):
+        for kind, level in (("hot", "0"), ("hot", "0.4"), ("residual", "0")):
+            line = [name, kind, level]
+            for to in temperatures:
+                hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
+                cold = [of(rows, name, test="cold", seed=s, **common) for s in SEEDS]
+                ratios = [h[0] / (1.0 if name == "strain_at_peak" else c[0])
+                          for h, c in zip(hot, cold) if len(h) and len(c)]
+                line.append(mean_and_range(np.array(ratios), 4 if name == "strain_at_peak" else 2))
+            lines.append(line)
+    print_table(["", "test", "level"] + [f"{to} °C" for to in temperatures], lines)
