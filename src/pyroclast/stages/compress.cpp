@@ -134,7 +134,6 @@ void Compress::begin_loading(Simulation& simulation) {
   simulation.press().begin_stage();
   // while a force that is held still acts: forces are those of the last step
   const CompressionPoint point = point_of(simulation.press(), simulation.motion());
-  kept_.noise.begin(point.energy);
   take_point(simulation, point);
   simulation.press().control_by_motion(0.0);
   kept_.is_loading = true;
@@ -152,13 +151,8 @@ std::int64_t Compress::steps_in(const Simulation& simulation, double strain) con
 void Compress::take_point(const Simulation& simulation, const CompressionPoint& point) {
   kept_.curve.add(point, simulation.motion().time());
   const double time = static_cast<double>(kept_.steps) * simulation.motion().time_step();
-  if (!kept_.is_beyond_noise) {
-    kept_.is_beyond_noise = kept_.noise.is_below(kMostNoise, point.energy);
-    kept_.noise_until = kept_.curve.time.back() - kept_.curve.time.front();
-  }
   if (time < kPassages * kept_.wave_time) return;
-  if (kept_.is_beyond_noise)
-    kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
+  kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
   kept_.largest_stress = std::max(kept_.largest_stress, kept_.curve.stress.back());
 }
 
@@ -295,10 +289,9 @@ std::optional<std::size_t> Compress::row_of_peak(const History& history, RowRang
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
   const bool to_a_value = keys_.until != CompressUntil::stop_strain;
   const auto report_of = [&](bool is_upwards) {
-    return compression_report(kept_.curve, {.is_upwards = is_upwards,
-                                            .to_a_value = to_a_value,
-                                            .waves_until = kPassages * kept_.wave_time,
-                                            .noise_until = kept_.noise_until});
+    return compression_report(
+        kept_.curve,
+        {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * kept_.wave_time});
   };
   StageReport report = report_of(kept_.is_upwards);
   report.decided_at = row_of_peak(history, rows);
@@ -345,8 +338,8 @@ Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
 
 void Compress::visit_state(StateVisitor& visitor) {
   auto& [gap_steps_left, is_loading, is_upwards, first_left, wave_time, steps, steps_left, steps_to_point,
-         velocity, way, way_to_point, dissipated, curve, noise, noise_until, is_beyond_noise, peak,
-         largest_stress, next_frame] = kept_;  // another member does not compile until it has a name here
+         velocity, way, way_to_point, dissipated, curve, peak, largest_stress, next_frame] =
+      kept_;  // another member does not compile until it has a name here
   if (visitor.replaces()) {
     point_.reset();
     left_seen_.reset();
@@ -368,9 +361,6 @@ void Compress::visit_state(StateVisitor& visitor) {
     const StateVisitor::Scope scope(visitor, "curve");
     curve.visit_state(visitor);
   }
-  noise.visit_state(visitor);
-  visitor.visit("noise_until", noise_until);
-  visitor.visit("is_beyond_noise", is_beyond_noise);
   {
     const StateVisitor::Scope scope(visitor, "peak");
     peak.visit_state(visitor);

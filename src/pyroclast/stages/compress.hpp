@@ -1,8 +1,6 @@
 #pragma once
 
 #include "pyroclast/stages/compression_response.hpp"
-#include "pyroclast/stages/noise.hpp"
-#include "pyroclast/stages/peak.hpp"
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {
@@ -93,10 +91,7 @@ class Compress : public Stage {
     double way_to_point = 0.0;
     double dissipated = 0.0;  ///< energy dissipated at the last choice of the velocity, J
     CompressionCurve curve;
-    Noise noise;
-    double noise_until = 0.0;  ///< time since loading began up to which the curve may be noise, s
-    bool is_beyond_noise = false;
-    Peak peak;                    ///< peak of the curve beyond noise
+    Peak peak;                    ///< peak of the curve after the first wave
     double largest_stress = 0.0;  ///< largest stress after the first wave, Pa
     double next_frame = 0.0;      ///< strain of the stage at the next frame
   } kept_;

@@ -28,18 +28,18 @@ std::size_t largest_of(const CompressionCurve& curve) {
   return std::max_element(curve.stress.begin(), curve.stress.end()) - curve.stress.begin();
 }
 
-/// Returns the point at which a rule finds a peak, among the points after the first wave, beyond noise.
+/// Returns the point at which a rule finds a peak, among the points after the first wave.
 /// \param foot     stress up to which the points are left out, Pa
 /// \param modulus  where it is not 0, a fall must be deeper than the stress that the platen adds to a body of
 ///                 this modulus, Pa, while a wave passes once
-std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_until, double noise_until,
-                                   PeakRule rule, double foot = 0.0, double modulus = 0.0) {
+std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_until, PeakRule rule,
+                                   double foot = 0.0, double modulus = 0.0) {
   Peak peak;
   std::optional<std::size_t> at;
   const double added = modulus * waves_until / kPassages;  // at a strain rate of 1/s, Pa
   for (std::size_t i = 0; i < curve.count() && !peak.is_found(); ++i) {
     const double time = curve.time[i] - curve.time.front();
-    if (time < std::max(waves_until, noise_until) || (peak.size() == 0.0 && curve.stress[i] < foot)) continue;
+    if (time < waves_until || (peak.size() == 0.0 && curve.stress[i] < foot)) continue;
     if (time > 0.0) rule.least = added * (curve.strain[i] - curve.strain.front()) / time;
     const double before = peak.size();
     peak.take(curve.strain[i], curve.stress[i], rule);
@@ -223,8 +223,7 @@ QuasiStaticReport quasi_static_report(const CompressionCurve& curve, std::size_t
   return report;
 }
 
-CompressionResponse compression_response(const CompressionCurve& curve, double waves_until,
-                                         double noise_until) {
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until) {
   CompressionResponse r;
   if (curve.count() == 0) {
     find_none(r, "the stage ended before it loaded the specimen");
@@ -239,7 +238,7 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
   }
   const auto by_fall = [&](const PeakRule& rule) -> Finding {
     const double foot = kFoot * curve.stress[r.peak];
-    if (const auto at = peak_of(curve, waves_until, noise_until, rule, foot, r.modulus.value.value_or(0.0)))
+    if (const auto at = peak_of(curve, waves_until, rule, foot, r.modulus.value.value_or(0.0)))
       return {curve.stress[*at], ""};
     return {std::nullopt,
             fmt::format("the stress never fell by {:g} % from above a third of {} before the stage ended",
@@ -253,15 +252,8 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
                              largest * 1e-6, 1e3 * time, 1e3 * waves_until));
     return r;
   }
-  if (time < noise_until && falls_behind(curve, r.largest)) {
-    find_none(
-        r, fmt::format("the largest stress, {:.3g} MPa, came after {:.3g} ms, while the body moved by itself "
-                       "more than the platen drove it; let it come to rest before, or load more slowly",
-                       largest * 1e-6, 1e3 * time));
-    return r;
-  }
   r.bore = true;
-  if (const auto peak = peak_of(curve, waves_until, noise_until, kStrengthRule)) {
+  if (const auto peak = peak_of(curve, waves_until, kStrengthRule)) {
     r.peak = *peak;
     r.strength.value = curve.stress[*peak];
   } else {
@@ -308,7 +300,7 @@ std::string doubt_about(const CompressionCurve& curve, const CompressionResponse
 StageReport compression_report(const CompressionCurve& curve, const CompressionAim& aim) {
   if (aim.is_upwards) return unloading_report(curve);
   StageReport report;
-  const CompressionResponse r = compression_response(curve, aim.waves_until, aim.noise_until);
+  const CompressionResponse r = compression_response(curve, aim.waves_until);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   const bool has_points = curve.count() > 0;
   const std::string doubt = r.strength ? doubt_about(curve, r) : std::string();

@@ -108,17 +108,14 @@ struct CompressionResponse {
 /// Returns the results of a compression curve.
 /// \param waves_until  time since the first point up to which the stress is that of a wave, s: that of
 /// kPassages
-/// \param noise_until  time since the first point up to which the stress may be that of motion which the
-/// stage did not make, s, see Noise
-CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0,
-                                         double noise_until = 0.0);
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0);
 
 /// Aim of a compression stage.
 struct CompressionAim {
   bool is_upwards = false;  ///< true where the platen was moved up, to unload
   /// True where the stage ends at a stress or a strain; then a missing peak is no reason to warn.
   bool to_a_value = false;
-  double waves_until = 0.0, noise_until = 0.0;  ///< times, see compression_response
+  double waves_until = 0.0;  ///< time of the first wave, see compression_response
 };
 
 /// Reports all results of a compression as the report of a stage.

@@ -9,6 +9,9 @@ namespace pyroclast {
 
 namespace {
 
+/// Largest noise with which a peak counts, over the recorded values; less where less is to fall from the
+/// peak.
+constexpr double kMostNoise = 0.1;
 /// Share of its peak below which a record is behind the peak; the next peak is greater by as much.
 constexpr double kBehindPeak = 1.0 - PeakRule().fall;
 
@@ -46,7 +49,8 @@ void RecordWatch::begin(const Simulation& simulation) {
   kept_.last.clear();
   const Seen seen = read(simulation);
   for (const EndCondition& until : drive_.until) kept_.last.push_back(value(seen, until.record));
-  kept_.noise.begin(seen.energy);
+  kept_.first_work = seen.energy.loading;
+  kept_.most_kinetic = std::abs(seen.energy.kinetic);
 }
 
 void RecordWatch::take_peaks(const Simulation& simulation, double driven, bool is_driven) {
@@ -59,16 +63,19 @@ void RecordWatch::take_peaks(const Simulation& simulation, double driven, bool i
     const EndCondition& until = drive_.until[i];
     if (until.kind != EndCondition::Kind::share_of_peak || !is_driven) continue;
     const double size = std::abs(value(seen, until.record));
-    const double most_noise = std::min(kMostNoise, 1.0 - until.value);  // where less is to fall
+    const double most_noise = std::min(kMostNoise, 1.0 - until.value);
     if (kept_.peaks[i].size() > 0.0 ||
         (until.least_peak ? size > *until.least_peak : is_beyond_noise(most_noise, seen.energy)))
       kept_.peaks[i].take(driven, size, rule_of_records(kept_.peaks[i]));
   }
 }
 
-/// Tells whether noise is below a share of what records show. A stage that loads nothing shakes nothing.
+/// Tells whether noise is below a share of what records show of the stage. Forces go with the root of an
+/// energy. So the kinetic energy, at any call so far, must be below the square of that share of the work of
+/// the loads. A stage that loads nothing shakes nothing.
 bool RecordWatch::is_beyond_noise(double share, const EnergyLedger& energy) {
-  return kept_.noise.is_below(share, energy) || !drive_.loads();
+  kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
+  return !drive_.loads() || kept_.most_kinetic <= share * share * std::abs(energy.loading - kept_.first_work);
 }
 
 bool RecordWatch::judge(double time, std::string_view lost) {
@@ -150,8 +157,8 @@ std::string RecordWatch::describe_unmet(std::size_t condition) const {
 }
 
 void RecordWatch::visit_state(StateVisitor& visitor) {
-  auto& [record_peaks, peaks, last, last_look, leading_peak, framed_peak, noise, is_beyond_noise] =
-      kept_;  // a new member needs a name here
+  auto& [record_peaks, peaks, last, last_look, leading_peak, framed_peak, first_work, most_kinetic,
+         is_beyond_noise] = kept_;  // a new member needs a name here
   const auto visit_all = [&](const char* name, auto& all, auto... more) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const StateVisitor::Scope scope(visitor, fmt::format("{}[{}]", name, i));
@@ -164,7 +171,8 @@ void RecordWatch::visit_state(StateVisitor& visitor) {
   visitor.visit("last_look", last_look);
   visitor.visit("leading_peak", leading_peak);
   visitor.visit("framed_peak", framed_peak);
-  noise.visit_state(visitor);
+  visitor.visit("first_work", first_work);
+  visitor.visit("most_kinetic", most_kinetic);
   visitor.visit("is_beyond_noise", is_beyond_noise);
 }
 

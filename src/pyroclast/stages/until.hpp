@@ -8,7 +8,6 @@
 
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/drive_keys.hpp"
-#include "pyroclast/stages/noise.hpp"
 #include "pyroclast/stages/peak.hpp"
 
 namespace pyroclast {
@@ -39,7 +38,7 @@ class RecordWatch {
 
   const std::vector<RecordPeak>& peaks() const { return kept_.record_peaks; }
   /// Returns the work of the loads when the stage began, J.
-  double first_work() const { return kept_.noise.first_work(); }
+  double first_work() const { return kept_.first_work; }
   /// Describes each condition, none of which was met, and where its record stood at the end.
   std::vector<std::string> describe_unmet() const;
   void visit_state(StateVisitor& visitor);
@@ -66,7 +65,8 @@ class RecordWatch {
     double last_look = 0.0;                ///< time of the last look, s
     /// Greatest size of the leading record, and the greatest at a frame, SI.
     double leading_peak = 0.0, framed_peak = 0.0;
-    Noise noise;
+    double first_work = 0.0;       ///< work of the loads when the stage began, J
+    double most_kinetic = 0.0;     ///< largest kinetic energy while peaks do not count yet, J
     bool is_beyond_noise = false;  ///< true once the motion is no noise, so that peaks count
   } kept_;
   Seen seen_;  ///< seen at the last look
