@@ -651,8 +651,10 @@ int write_concrete(const ConcreteOptions& options) {
         "the mortar\n",
         asked.fraction, 1e3 * asked.d_min, kBlocksInStone);
   else if (!o.stones.empty() || !asked.passing.sizes.empty())
-    fmt::print("coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm\n",
-               asked.fraction, 1e3 * asked.d_min);
+    fmt::print(
+        "coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm; finer ones belong to "
+        "the mortar\n",
+        asked.fraction, 1e3 * asked.d_min);
   if (!is_guess) {
     if (is_first_guess(found, asked, o))
       fmt::print(
@@ -702,7 +704,7 @@ Command add_concrete(CLI::App& cli) {
       ->take_all();
   concrete
       ->add_option("--d_min", options->d_min,
-                   "Smallest coarse aggregate; smaller grains belong to the mortar")
+                   "Smallest coarse aggregate; smaller grains belong to the mortar, also those of --passing")
       ->capture_default_str();
   concrete->add_option(
       "--width", options->width,
@@ -729,7 +731,9 @@ Command add_concrete(CLI::App& cli) {
   concrete->add_option("--faces", options->faces, "Sides in the fire: left, right, or both")
       ->capture_default_str()
       ->needs(fire);
-  concrete->add_option("--level", options->level, "Load that is held in the fire, over f_c")
+  concrete
+      ->add_option("--level", options->level,
+                   "Load that is held in the fire, as a share of --f_c: 0.3 of 38 MPa is 11.4 MPa")
       ->capture_default_str()
       ->needs(fire);
   concrete
