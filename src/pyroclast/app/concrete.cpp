@@ -522,20 +522,23 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
   return found;
 }
 
-/// Returns the line by which a study says in its best point's deck that the targets are not met, see
-/// study/driver.py; empty where there is none.
-std::string missed_targets(const std::filesystem::path& file) {
+/// Returns the line of a deck that begins so; empty where there is none.
+std::string line_of(const std::filesystem::path& file, std::string_view beginning) {
   std::istringstream text(read_file(file));
   for (std::string line; std::getline(text, line);)
-    if (line.starts_with("# The targets are not met")) return line;
+    if (line.starts_with(beginning)) return line;
   return {};
 }
 
-/// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete.
+// Lines of the deck of a study's best point, see study/driver.py.
+constexpr std::string_view kBestPoint = "# Best point of the study", kMissed = "# The targets are not met";
+
+/// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete, and no
+/// calibration found them to be right.
 bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o) {
   const Found first = guess(a, o, found.blocks);
   return are_alike(found.mortar_modulus, first.mortar_modulus) &&
-         are_alike(found.contacts.f_t, first.contacts.f_t);
+         are_alike(found.contacts.f_t, first.contacts.f_t) && line_of(o.from, kBestPoint).empty();
 }
 
 /// Returns the folder of the calibration, taken from the place of its file.
@@ -632,7 +635,7 @@ int write_concrete(const ConcreteOptions& options) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
     files.emplace_back(beside("calibrate"), study_text(asked, o));
   }
-  const std::string missed = is_guess ? std::string() : missed_targets(o.from);
+  const std::string missed = is_guess ? std::string() : line_of(o.from, kMissed);
   const std::filesystem::path heated = is_guess ? beside(asked.fire ? "fire" : "hot") : o.out;
   if (is_heated)
     files.emplace_back(heated, (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
