@@ -133,6 +133,11 @@ class Concrete(InAFolder):
         told = self.pyroclast("concrete", *LIMESTONE, *FULLER, *hot).stdout
         self.assertIn("mine.toml has the first guesses", told)
         self.assertIn("pyroclast run hot.toml --seeds 3", told)
+        # a calibration may find that the first guesses meet its targets
+        (self.folder / "best.toml").write_text('# Best point of the study "mine": stiffness = 1, strength = 1.\n' +
+                                               (self.folder / "mine.toml").read_text())
+        told = self.pyroclast("concrete", *LIMESTONE, *FULLER, *hot[:3], "best.toml", "-o", "best-hot.toml").stdout
+        self.assertNotIn("warning", told)
 
     def test_no_stones_of_its_deck_form_a_skeleton_whatever_the_rock_and_the_grading(self):
         for words in ((*SIEVES, "--width", "100 mm", "--height", "200 mm"), (*LIMESTONE, *FULLER),

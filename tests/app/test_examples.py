@@ -1,12 +1,15 @@
-"""The programs in examples/. PYROCLAST names the program, RUN_DECK the example."""
+"""The programs in examples/. PYROCLAST names the program, RUN_DECK and OWN_STAGE the examples."""
 
+import csv
+import json
 import os
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-WALL = (Path(__file__).parents[2] / "cases" / "thermal_wall.toml").read_text()
+ROOT = Path(__file__).parents[2]
+WALL = (ROOT / "cases" / "thermal_wall.toml").read_text()
 
 
 class RunDeck(unittest.TestCase):
@@ -31,6 +34,24 @@ class RunDeck(unittest.TestCase):
                               timeout=100, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere.toml", done.stderr)
+
+
+class OwnStage(unittest.TestCase):
+    def test_runs_behind_the_stages_of_a_deck(self):
+        """Each turn of the platen leaves a row, whose strain goes up and down; the summary has the stage's result."""
+        with tempfile.TemporaryDirectory() as name:
+            out = Path(name) / "out"
+            done = subprocess.run([os.environ["OWN_STAGE"], ROOT / "cases" / "starter.toml",
+                                   ROOT / "examples" / "own_stage" / "shake.toml", out, "blocks.count=120",
+                                   "stages[1].stop_strain=2e-4"], capture_output=True, text=True, timeout=100, check=True)
+            self.assertIn("4 turns of the platen", done.stdout)
+            with open(out / "history.csv", newline="") as file:
+                rows = [row for row in csv.DictReader(file) if row["stage"] == "2"]
+            self.assertEqual([float(row["turn"]) for row in rows], [1, 2, 3, 4])
+            strain = [float(row["strain"]) for row in rows]
+            self.assertGreater(min(strain[0], strain[2]), max(strain[1], strain[3]))
+            results = json.loads((out / "summary.json").read_text())["stages"][2]["results"]
+            self.assertEqual(results["largest_stress_MPa"], max(float(row["stress_MPa"]) for row in rows))
 
 
 if __name__ == "__main__":

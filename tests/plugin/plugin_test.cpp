@@ -233,6 +233,13 @@ class LawInAHeader : public testing::Test {
     std::ifstream stream(fs::path(HEADERS) / "small.hpp");
     return {std::istreambuf_iterator<char>(stream), {}};
   }
+  /// Returns the small law with a change to its text.
+  static std::string small_with(const std::string& before, const std::string& after) {
+    std::string text = small();
+    const auto at = text.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    return text.replace(at, before.size(), after);
+  }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   std::string refusal_of(const std::string& stated) {
     return message([&] { find_law(stated, folder_, sources_); });
@@ -306,15 +313,47 @@ TEST_F(LawInAHeader, WhatThePollThrowsEndsTheCompilerAndLeavesNothingInTheCache)
 }
 
 TEST_F(LawInAHeader, WhatDoesNotCompileIsRefusedWithTheLineOfTheLaw) {
-  std::string text = small();
-  const std::string line = "    r.normal_traction = c.stiffness * opening;";
-  ASSERT_NE(text.find(line), std::string::npos);
-  text.replace(text.find(line), line.size(), "    r.normal_traction = c.stifness * opening;");
+  const std::string text = small_with("= c.stiffness * opening;", "= c.stifness * opening;");
   const auto number =
       std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("stifness")), '\n') + 1;
   write("wrong.hpp", text);
   EXPECT_TRUE(says(refusal_of("wrong.hpp"), {fmt::format("wrong.hpp:{}:", number), "error:", "stifness",
                                              "does not compile as the contact law small::Law"}));
+}
+
+// Promise: where lanes lack a function, the message names those that they have, which compile.
+TEST_F(LawInAHeader, WhatLanesLackIsToldWithWhatTheyHave) {
+  const auto with = [](const std::string& value) {
+    return "#include <algorithm>\n#include <pyroclast/base/exp.hpp>\n" +
+           small_with("= c.stiffness * opening;",
+                      "= c.stiffness * opening; using std::sqrt; using std::abs; "
+                      "using namespace pyroclast;\n r.stored = " +
+                          value + ";");
+  };
+  for (const char* lacking : {"std::tanh(opening)", "opening > 0.0 ? opening : Real(0.0)"}) {
+    write("lacks.hpp", with(lacking));
+    EXPECT_TRUE(says(refusal_of("lacks.hpp"),
+                     {"lacks.hpp:",
+                      "Lanes have + - * / < <= > >= & | !, select(condition, yes, no), smaller, "
+                      "larger, abs, sqrt, signed_like, and exp of <pyroclast/base/exp.hpp>"}))
+        << lacking;
+  }
+  write("has.hpp", with("select((opening < 1.0) & (opening <= 1.0) | !(opening > 1.0) & (opening >= 1.0), "
+                        "smaller(opening, larger(abs(opening), sqrt(opening * opening / Real(2.0)))), "
+                        "signed_like(pyroclast::exp(opening - 1.0), opening) + 1.0)"));
+  EXPECT_NO_THROW(
+      compile_law(preprocess_law(folder_ / "has.hpp", sources_.compiler), "small::Law", sources_.compiler));
+}
+
+// Promise: a law that lacks a part is told all parts of a law.
+TEST_F(LawInAHeader, WhatALawLacksIsToldWithAllThatALawHas) {
+  for (const char* part : {"check(", "each_choice("}) {
+    write("lacks.hpp", small_with(part, fmt::format("not_{}", part)));
+    EXPECT_TRUE(says(refusal_of("lacks.hpp"),
+                     {"A law has name, meaning, Properties, Constants, Internals, Losses, derive, check, "
+                      "stiffness and update: <pyroclast/laws/law.hpp>"}))
+        << part;
+  }
 }
 
 TEST_F(LawInAHeader, ACompilerThatIsTooOldIsNamed) {

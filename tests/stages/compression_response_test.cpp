@@ -112,6 +112,18 @@ TEST(Response, AFallMustLast) {
   EXPECT_EQ(value_of(report, "f_c_doubtful_because"), Result::Value(report.warnings[0]));
 }
 
+// Promise: what a heated body bears less than the precision with which it rests is no strength, even where it
+// loses all of that again.
+TEST(Response, AFallWithinThePrecisionOfRestIsNone) {
+  CompressionCurve curve;
+  go_on(curve, 0.08e6, 5e-5);
+  go_on(curve, 0.02e6, 5e-5);
+  go_on(curve, 30e6, 2e-3);
+  go_on(curve, 20e6, 5e-4);
+  EXPECT_DOUBLE_EQ(number(compression_report(curve, {.rest = 0.2e6}), "f_c_MPa"), 30.0);
+  EXPECT_DOUBLE_EQ(number(compression_report(curve, {.rest = 0.01e6}), "f_c_MPa"), 0.08);
+}
+
 /// Adds points that swing about a straight stretch, as where a wave runs to and fro.
 void swing(CompressionCurve& curve, double to_stress, double over_strain, double size) {
   const std::size_t first = curve.count();

@@ -164,6 +164,8 @@ History exchanges() {
 constexpr const char* kConditions =
     "of this one specimen of plain concrete in plane stress: no steel, no spalling, no member";
 
+constexpr auto* kNoLoad = "no load by a platen: the run does not tell whether the specimen fails under one";
+
 // Promise: exchanges that did not come to rest are counted and told, and the worst of them.
 TEST(ExchangeReports, CountsWhatDidNotComeToRest) {
   const StageReport r = Heat(heating()).report(exchanges(), {1, 4}, Outcome::completed);
@@ -182,7 +184,8 @@ TEST(ExchangeReports, CountsWhatDidNotComeToRest) {
             (std::vector<std::string>{
                 "0 to 80 degC in the mean, 95 degC where it is hottest, in 3 exchanges of up to 5 K, 600 "
                 "cycles; 2 did not come to rest",
-                std::string("no failure ") + kConditions}));
+                kNoLoad}));
+  EXPECT_TRUE(is_none(r, "answer_is"));
   EXPECT_EQ(r.warnings, std::vector<std::string>{
                             "2 of 3 exchanges of temperature did not come to rest within the stated cycles "
                             "(worst unbalanced ratio 5.0e-02); history.csv flags them"});
@@ -240,6 +243,15 @@ TEST(ExchangeReports, TellsTheLoadOrTheThrust) {
   EXPECT_DOUBLE_EQ(number(fixed.report(1), "largest_thrust_MPa"), thrust);
   EXPECT_EQ(fixed.report(1).lines.back().find("thrust up to "), 0u);
   EXPECT_EQ(std::get<std::string>(value_of(fixed.report(1), "field")), "uniform");
+  EXPECT_TRUE(is_none(fixed.report(1), "answer_is"));
+  EXPECT_EQ(value_of(free.report(2), "answer_is"), Result::Value(std::string(kConditions)));
+}
+
+// Promise: a heated body without load is not said to have withstood one.
+TEST(ExchangeReports, DoesNotTellOfAFailureWhereNothingLoadsTheBody) {
+  const Finished unloaded(deck(kUniform + kSettle + heat("30 degC")));
+  EXPECT_EQ(unloaded.report(1).lines.back(), kNoLoad);
+  EXPECT_TRUE(is_none(unloaded.report(1), "answer_is"));
 }
 
 // Promise: heating takes the time that its rate says, up or down, and a last part of an increment its part.

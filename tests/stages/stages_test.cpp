@@ -106,6 +106,14 @@ TEST(CompressStage, EndsBehindItsPeak) {
   EXPECT_GE(r.last("stage_strain"), r.result(1, "strain_at_peak").value() + kStrengthRule.lasting);
 }
 
+// Promise: a fall that is no deeper than the precision with which exchanges leave the body ends no stage.
+TEST(CompressStage, GoesOnWhereTheStressFallsWithinThePrecisionOfRest) {
+  const Finished r(with(deck(kUniform + kSettle + kFailure + "stop_fraction_of_peak = 0.97\n"),
+                        "platen_difference = \"20 kPa\"", "platen_difference = \"90 MPa\""));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_FALSE(r.result(1, "f_c_MPa"));
+}
+
 // Promise: what a blow brings before the wave has run through the body twice is no strength, and ends no
 // stage.
 TEST(CompressStage, ABlowIsNoStrength) {

@@ -522,20 +522,23 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
   return found;
 }
 
-/// Returns the line by which a study says in its best point's deck that the targets are not met, see
-/// study/driver.py; empty where there is none.
-std::string missed_targets(const std::filesystem::path& file) {
+/// Returns the line of a deck that begins so; empty where there is none.
+std::string line_of(const std::filesystem::path& file, std::string_view beginning) {
   std::istringstream text(read_file(file));
   for (std::string line; std::getline(text, line);)
-    if (line.starts_with("# The targets are not met")) return line;
+    if (line.starts_with(beginning)) return line;
   return {};
 }
 
-/// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete.
+// Lines of the deck of a study's best point, see study/driver.py.
+constexpr std::string_view kBestPoint = "# Best point of the study", kMissed = "# The targets are not met";
+
+/// Tells whether mortar and contacts of a deck are those that `guess` gives for this concrete, and no
+/// calibration found them to be right.
 bool is_first_guess(const Found& found, const Asked& a, const ConcreteOptions& o) {
   const Found first = guess(a, o, found.blocks);
   return are_alike(found.mortar_modulus, first.mortar_modulus) &&
-         are_alike(found.contacts.f_t, first.contacts.f_t);
+         are_alike(found.contacts.f_t, first.contacts.f_t) && line_of(o.from, kBestPoint).empty();
 }
 
 /// Returns the folder of the calibration, taken from the place of its file.
@@ -632,7 +635,7 @@ int write_concrete(const ConcreteOptions& options) {
     files.emplace_back(o.out, deck_text(asked, found, o, false));
     files.emplace_back(beside("calibrate"), study_text(asked, o));
   }
-  const std::string missed = is_guess ? std::string() : missed_targets(o.from);
+  const std::string missed = is_guess ? std::string() : line_of(o.from, kMissed);
   const std::filesystem::path heated = is_guess ? beside(asked.fire ? "fire" : "hot") : o.out;
   if (is_heated)
     files.emplace_back(heated, (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
@@ -651,8 +654,10 @@ int write_concrete(const ConcreteOptions& options) {
         "the mortar\n",
         asked.fraction, 1e3 * asked.d_min, kBlocksInStone);
   else if (!o.stones.empty() || !asked.passing.sizes.empty())
-    fmt::print("coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm\n",
-               asked.fraction, 1e3 * asked.d_min);
+    fmt::print(
+        "coarse          {:.3g} of a section: all stones larger than --d_min {:g} mm; finer ones belong to "
+        "the mortar\n",
+        asked.fraction, 1e3 * asked.d_min);
   if (!is_guess) {
     if (is_first_guess(found, asked, o))
       fmt::print(
@@ -702,7 +707,7 @@ Command add_concrete(CLI::App& cli) {
       ->take_all();
   concrete
       ->add_option("--d_min", options->d_min,
-                   "Smallest coarse aggregate; smaller grains belong to the mortar")
+                   "Smallest coarse aggregate; smaller grains belong to the mortar, also those of --passing")
       ->capture_default_str();
   concrete->add_option(
       "--width", options->width,
@@ -729,7 +734,9 @@ Command add_concrete(CLI::App& cli) {
   concrete->add_option("--faces", options->faces, "Sides in the fire: left, right, or both")
       ->capture_default_str()
       ->needs(fire);
-  concrete->add_option("--level", options->level, "Load that is held in the fire, over f_c")
+  concrete
+      ->add_option("--level", options->level,
+                   "Load that is held in the fire, as a share of --f_c: 0.3 of 38 MPa is 11.4 MPa")
       ->capture_default_str()
       ->needs(fire);
   concrete

@@ -168,7 +168,8 @@ void add_fire_parts(std::map<std::string, std::string>& v, const AskedFire& fire
           : "",
       boundaries(fire));
   v["HOT_STAGES"] = fmt::format(
-      "[[stages]]                   # ... is loaded, ...\nkind = \"load\"\nlevel = {:g}\n"
+      "[[stages]]                   # ... is loaded, ...\nkind = \"load\"\nlevel = {:g}  # of f_c: the "
+      "stress that is held\n"
       "f_c = \"{}\"               # or {{ run = \"runs/...\" }}: that of the same specimen, crushed cold\n"
       "ramp_time = \"200 ms\"\nunbalanced_ratio = 1e-4\nmost_steps = 100000\n\n"
       "[[stages]]                   # ... and stands in the fire, with its load held\nkind = \"expose\"\n"

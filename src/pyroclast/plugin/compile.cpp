@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -87,12 +88,18 @@ class FileLock {
   int descriptor_;
 };
 
-/// Returns the lines of the compiler's messages that a reader of the law needs: errors, messages on the law's
-/// own lines, and the excerpts of code below them.
+/// Returns the lines of the compiler's messages that a reader of the law needs, each message once: errors,
+/// messages on the law's own lines, and the excerpts of code below them.
 std::string essence(const std::string& messages, const fs::path& header) {
   constexpr int kMostLines = 40;
   std::istringstream stream(messages);
   std::string kept;
+  std::set<std::string> told;
+  const std::string place = header.string() + ":";
+  const auto is_of_law = [&](const std::string& line) {  // "mine.hpp:57:40: ..."
+    return line.starts_with(place) && line.size() > place.size() &&
+           std::isdigit(static_cast<unsigned char>(line[place.size()])) != 0;
+  };
   int lines = 0;
   bool of_interest = false;
   for (std::string line; std::getline(stream, line) && lines < kMostLines;) {
@@ -100,12 +107,41 @@ std::string essence(const std::string& messages, const fs::path& header) {
     const bool excerpt = line.starts_with(' ') && first != std::string::npos && line[first] == '|';
     if (!excerpt)
       of_interest =
-          line.find(header.string() + ":") != std::string::npos || line.find("error: ") != std::string::npos;
+          (is_of_law(line) || line.find("error: ") != std::string::npos) && told.insert(line).second;
     if (!of_interest) continue;
     kept += "\n  " + line;
     ++lines;
   }
   return kept;
+}
+
+/// Returns what a law has to have, and which functions lanes have, where errors of the compiler are of these.
+/// \param type  name of the law: "mine::Law"
+std::string advice(const std::string& messages, const std::string& type) {
+  const auto has = [](const std::string& text, const std::string& words) {
+    return text.find(words) != std::string::npos;
+  };
+  std::istringstream stream(messages);
+  bool lacks_member = false, lacks_function = false;
+  for (std::string line; std::getline(stream, line);) {
+    if (!has(line, "error: ")) continue;
+    lacks_member = lacks_member || has(line, "is not a member of ‘" + type) || has(line, "' in '" + type);
+    lacks_function = lacks_function || has(line, "Lanes<") || has(line, "Mask<") ||
+                     (has(line, "no matching function") && has(messages, "Lanes<"));
+  }
+  std::string told;
+  if (lacks_member)
+    told +=
+        "\nA law has name, meaning, Properties, Constants, Internals, Losses, derive, check, stiffness and "
+        "update: <pyroclast/laws/law.hpp> tells them, <pyroclast/laws/elastic.hpp> is the shortest law";
+  if (lacks_function)
+    told +=
+        "\nA Real may be lanes, eight contact points at once, and a condition on it one of lanes. Lanes have "
+        "+ - * / < <= > >= & | !, select(condition, yes, no), smaller, larger, abs, sqrt, signed_like, "
+        "and exp of <pyroclast/base/exp.hpp>. Write select in the place of if (unless around "
+        "any(condition)), smaller and larger in that of min and max, and make other functions of these, as "
+        "examples/own_law/ppr.hpp does pow; <pyroclast/base/lanes.hpp> has them all";
+  return told;
 }
 
 /// Returns the file that holds this code: a module of another program, or the program; empty where it is not
@@ -198,13 +234,15 @@ std::vector<std::string> command_of(const LawCompiler& compiler, const fs::path&
 
 /// Runs a command. Throws Error with the words of the compiler where the command fails.
 /// \param what  what is wrong with the header then
+/// \param type  name of the law; empty before it is known
 void attempt(const std::vector<std::string>& words, const fs::path& header, const std::string& what,
-             const LawCompiler& compiler) {
+             const std::string& type, const LawCompiler& compiler) {
   const fs::path messages = compiler.cache / "messages.txt";
-  if (!run_program(words, messages, compiler.poll))
-    throw Error(fmt::format("{}: {}; the compiler says:{}\nIt was run as: {}\nAll that it says: {}",
-                            header.string(), what, essence(read_file(messages), header),
-                            shell_command(words), messages.string()));
+  if (run_program(words, messages, compiler.poll)) return;
+  const std::string said = read_file(messages);
+  throw Error(fmt::format("{}: {}; the compiler says:{}{}\nIt was run as: {}\nAll that it says: {}",
+                          header.string(), what, essence(said, header), advice(said, type),
+                          shell_command(words), messages.string()));
 }
 
 /// Returns what a program says. Throws Error where the program fails.
@@ -314,7 +352,7 @@ LawText preprocess_law(const fs::path& header, const LawCompiler& compiler) {
                            {"-E", "-Werror=date-time", source.string(), "-o", preprocessed.string(), "-MD",
                             "-MT", "law", "-MF", rule.string()}})
     words.insert(words.end(), more.begin(), more.end());
-  attempt(words, file, "the preprocessor refuses this contact law", compiler);
+  attempt(words, file, "the preprocessor refuses this contact law", "", compiler);
   const auto folders = installed_folders(compiler);
   LawText law = read_law_text(file, read_file(preprocessed), read_file(rule), [&](const fs::path& named) {
     return named == source || lies_in(named, folders);
@@ -345,7 +383,7 @@ fs::path compile_law(const LawText& law, const std::string& type, const LawCompi
     words.insert(words.end(), {"-fno-integrated-as", "-fno-addrsig"});
   words.insert(words.end(), {"-Xassembler", "--MD", "-Xassembler", rule.string()});
   compiler.tell(shell_command(words));
-  attempt(words, law.header, fmt::format("does not compile as the contact law {}", type), compiler);
+  attempt(words, law.header, fmt::format("does not compile as the contact law {}", type), type, compiler);
   for (const fs::path& read : files_of_rule(read_file(rule))) {
     // the rule names the text itself, and a file that the compiler made for the assembler and then removed
     if (read == in_cache("law.cpp") || read == preprocessed || !fs::exists(read)) continue;

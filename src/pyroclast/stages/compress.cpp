@@ -96,6 +96,7 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
   keys.stop_fraction = s.number(
       "stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
       "the run ends when the stress has passed its peak, f_c, and fallen below this share of it; 0: never");
+  if (tables.coupling_table) keys.rest = tables.coupling.platen_difference;
   keys.history_strain = tables.output.history_strain;
   keys.frame_strain = tables.output.frame_strain;
   return std::make_unique<Compress>(keys);
@@ -152,7 +153,7 @@ void Compress::take_point(const Simulation& simulation, const CompressionPoint& 
   kept_.curve.add(point, simulation.motion().time());
   const double time = static_cast<double>(kept_.steps) * simulation.motion().time_step();
   if (time < kPassages * kept_.wave_time) return;
-  kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
+  kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), strength_rule(keys_.rest));
   kept_.largest_stress = std::max(kept_.largest_stress, kept_.curve.stress.back());
 }
 
@@ -289,9 +290,10 @@ std::optional<std::size_t> Compress::row_of_peak(const History& history, RowRang
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
   const bool to_a_value = keys_.until != CompressUntil::stop_strain;
   const auto report_of = [&](bool is_upwards) {
-    return compression_report(
-        kept_.curve,
-        {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * kept_.wave_time});
+    return compression_report(kept_.curve, {.is_upwards = is_upwards,
+                                            .to_a_value = to_a_value,
+                                            .waves_until = kPassages * kept_.wave_time,
+                                            .rest = keys_.rest});
   };
   StageReport report = report_of(kept_.is_upwards);
   report.decided_at = row_of_peak(history, rows);

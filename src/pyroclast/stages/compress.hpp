@@ -38,6 +38,9 @@ class Compress : public Stage {
     double stop_strain = 0.0;
     /// Share of f_c below which the stress must fall to end the stage; 0: never.
     double stop_fraction = 0.0;
+    /// Difference of the platens' stresses with which exchanges of temperature leave the body, Pa: no fall of
+    /// the stress up to this is of the strength.
+    double rest = 0.0;
     double history_strain = 0.0;  ///< strain between looks, see OutputIntervals
     double frame_strain = 0.0;    ///< strain between frames, see OutputIntervals
   };

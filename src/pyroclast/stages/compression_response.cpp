@@ -37,10 +37,11 @@ std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_u
   Peak peak;
   std::optional<std::size_t> at;
   const double added = modulus * waves_until / kPassages;  // at a strain rate of 1/s, Pa
+  const double least = rule.least;
   for (std::size_t i = 0; i < curve.count() && !peak.is_found(); ++i) {
     const double time = curve.time[i] - curve.time.front();
     if (time < waves_until || (peak.size() == 0.0 && curve.stress[i] < foot)) continue;
-    if (time > 0.0) rule.least = added * (curve.strain[i] - curve.strain.front()) / time;
+    if (time > 0.0) rule.least = std::max(least, added * (curve.strain[i] - curve.strain.front()) / time);
     const double before = peak.size();
     peak.take(curve.strain[i], curve.stress[i], rule);
     if (peak.size() > before) at = i;
@@ -223,7 +224,7 @@ QuasiStaticReport quasi_static_report(const CompressionCurve& curve, std::size_t
   return report;
 }
 
-CompressionResponse compression_response(const CompressionCurve& curve, double waves_until) {
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until, double rest) {
   CompressionResponse r;
   if (curve.count() == 0) {
     find_none(r, "the stage ended before it loaded the specimen");
@@ -253,7 +254,7 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
     return r;
   }
   r.bore = true;
-  if (const auto peak = peak_of(curve, waves_until, kStrengthRule)) {
+  if (const auto peak = peak_of(curve, waves_until, strength_rule(rest))) {
     r.peak = *peak;
     r.strength.value = curve.stress[*peak];
   } else {
@@ -300,7 +301,7 @@ std::string doubt_about(const CompressionCurve& curve, const CompressionResponse
 StageReport compression_report(const CompressionCurve& curve, const CompressionAim& aim) {
   if (aim.is_upwards) return unloading_report(curve);
   StageReport report;
-  const CompressionResponse r = compression_response(curve, aim.waves_until);
+  const CompressionResponse r = compression_response(curve, aim.waves_until, aim.rest);
   const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   const bool has_points = curve.count() > 0;
   const std::string doubt = r.strength ? doubt_about(curve, r) : std::string();

@@ -14,6 +14,12 @@ namespace pyroclast {
 
 /// Rule of the peak of a stress over the strain of a stage.
 inline constexpr PeakRule kStrengthRule;
+/// Returns that rule for a body that rests where its platens differ by a stress, Pa: a fall is deeper.
+constexpr PeakRule strength_rule(double rest) {
+  PeakRule rule = kStrengthRule;
+  rule.least = rest;
+  return rule;
+}
 /// Rise of the stress above f_c, behind it, that is reported, over f_c.
 inline constexpr double kRisesAgain = 0.005;
 
@@ -108,7 +114,9 @@ struct CompressionResponse {
 /// Returns the results of a compression curve.
 /// \param waves_until  time since the first point up to which the stress is that of a wave, s: that of
 /// kPassages
-CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0);
+/// \param rest  difference of the platens with which the body rested before, Pa
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0,
+                                         double rest = 0.0);
 
 /// Aim of a compression stage.
 struct CompressionAim {
@@ -116,6 +124,7 @@ struct CompressionAim {
   /// True where the stage ends at a stress or a strain; then a missing peak is no reason to warn.
   bool to_a_value = false;
   double waves_until = 0.0;  ///< time of the first wave, see compression_response
+  double rest = 0.0;         ///< difference of the platens at rest, see compression_response
 };
 
 /// Reports all results of a compression as the report of a stage.

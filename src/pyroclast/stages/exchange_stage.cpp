@@ -166,13 +166,16 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   StageReport report;
   const ExchangeResponse r = exchange_response(history, rows, outcome);
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
+  const bool bears_load =
+      kept_.has_press && coupling().platen == PlatenControl::force && kept_.load_stress > 0.0;
   report.results = {
       {known::field, needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
       {known::platen, kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value()},
       {known::load_stress, value_if(kept_.has_press, kept_.load_stress * 1e-6)},
       {known::critical_temperature, value_if(failed, r.critical_temperature.value_or(0.0))},
       {known::critical_time, value_if(failed, r.critical_time)},
-      {known::answer_is, conditions_of_answer(keys_.dimension)},
+      {known::answer_is,
+       failed || bears_load ? Result::Value(conditions_of_answer(keys_.dimension)) : Result::Value()},
       {known::highest_temperature, value_if(has_rows, r.highest)},
       {known::largest_increment, coupling().increment},
       {known::exchanges, r.exchanges},
@@ -190,16 +193,16 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
           ? fmt::format(" in the mean, {:.0f} degC where it is hottest,", r.highest)
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
-  const std::string how =
-      failed ? fmt::format("critical temperature {:.0f} degC, after {:.3g} min of heating, {}",
-                           *r.critical_temperature, r.critical_time / 60.0, conditions)
-             : fmt::format("no failure {}", conditions);
-  if (!kept_.has_press)
-    report.lines.push_back(how);
-  else if (coupling().platen == PlatenControl::fixed)
+  const std::string load = bears_load ? fmt::format("load {:.2f} MPa: ", kept_.load_stress * 1e-6) : "";
+  if (failed)
+    report.lines.push_back(fmt::format("{}critical temperature {:.0f} degC, after {:.3g} min of heating, {}",
+                                       load, *r.critical_temperature, r.critical_time / 60.0, conditions));
+  else if (kept_.has_press && coupling().platen == PlatenControl::fixed)
     report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
+  else if (bears_load)
+    report.lines.push_back(load + "no failure " + conditions);
   else
-    report.lines.push_back(fmt::format("load {:.2f} MPa: {}", kept_.load_stress * 1e-6, how));
+    report.lines.push_back("no load by a platen: the run does not tell whether the specimen fails under one");
   if (r.not_converged > 0)
     report.warnings.push_back(
         fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "
