@@ -2,7 +2,8 @@
 
     python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/..., or with --out FOLDER there; of a folder of
                                                     `pyroclast run --seeds`, figures/seeds.png
-    python3 -m pyroclast.figures plane RUN_DIR --axis z --at 0.5    RUN_DIR/figures/plane_z_0.5.png, of a solid
+    python3 -m pyroclast.figures plane RUN_DIR --axis z --at 0.5    RUN_DIR/figures/plane_z_0.5.png, of a solid; with
+                                                    --colour temperature plane_z_0.5_temperature.png
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
     python3 -m pyroclast.figures levels RUN_DIR... --out FILE
@@ -45,7 +46,7 @@ from .draw.progress import cracks, energy, heating_course, heating_cracks, loadi
 from .draw.properties import properties, read_properties
 from .draw.records import record_course, record_fracture, records, records_of
 from .draw.sections import gradation, morphology
-from .draw.solid_sections import cracks_inside, plane_section
+from .draw.solid_sections import COLOURS, cracks_inside, plane_section
 from .draw.style import page_of, save
 from .errors import Error
 from .programs import complain, run_program, say
@@ -245,20 +246,27 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
 
-def draw_plane(folder: Path, axis: str, at: float, file_format: str = "png", magnification: float = 1.0,
-               frame: int | None = None, out: Path | None = None) -> Iterator[Path]:
+def draw_plane(folder: Path, axis: str, at: float, file_format: str = "png", magnification: float | None = None,
+               frame: int | None = None, out: Path | None = None, colour: str | None = None) -> Iterator[Path]:
     """Draws a plane through a solid into the figures/ folder of its run; yields the path.
 
     frame: number of a frame; None: the last. out: folder in the place of the run's own, which is then only read.
+    colour, magnification: see `plane_section`; None: the material, or the temperature where nothing moves; 1.
     """
     run = Results(folder)
-    if not run.has_fields or not run.frames or run.mesh.blocks.dimension != 3 or not run.moves:
-        raise Error(f"{folder}: a plane is drawn through a solid that moves and keeps frames; this run has none")
+    if not run.has_fields or not run.frames or run.mesh.blocks.dimension != 3:
+        raise Error(f"{folder}: a plane is drawn through a solid that keeps frames; this run has none")
+    if colour == "material" and not run.moves:
+        raise Error(f"{folder}: conducts heat alone, and its planes are drawn by --colour temperature")
+    colour = colour or ("material" if run.moves else "temperature")
+    if colour == "temperature" and magnification is not None:
+        raise Error("--magnification asks for nothing: temperatures are drawn where the body was before it moved")
     found = run.frames[-1:] if frame is None else [one for one in run.frames if one.number == frame]
     if not found:
         raise Error(f"{folder}: has no frame {frame}; its frames are 0 to {run.frames[-1].number}")
-    figure = plane_section(run, found[0], axis, at, magnification)
-    yield save(figure, (out or make_folder(run.folder / "figures")) / f"plane_{axis}_{at:g}.{file_format}")
+    figure = plane_section(run, found[0], axis, at, magnification or 1.0, colour)
+    name = f"plane_{axis}_{at:g}{'' if colour == 'material' else '_temperature'}"
+    yield save(figure, (out or make_folder(run.folder / "figures")) / f"{name}.{file_format}")
 
 
 def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None) -> Iterator[Path]:
@@ -353,19 +361,21 @@ def parser() -> argparse.ArgumentParser:
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures, asked.out, asked.only))
 
-    plane = commands.add_parser("plane", help="a plane through a solid, with its cracks")
+    plane = commands.add_parser("plane", help="a plane through a solid, with its cracks or temperatures")
     plane.add_argument("folder", type=Path, metavar="RUN_DIR")
     plane.add_argument("--axis", choices=("x", "y", "z"), default="z", help="axis across the plane (default: z)")
     plane.add_argument("--at", type=_share, default=0.5, metavar="SHARE",
                        help="place of the plane, as a share of the specimen's size along the axis (default: 0.5)")
-    plane.add_argument("--magnification", type=_positive, default=1.0, metavar="FACTOR",
-                       help="magnification of displacements")
+    plane.add_argument("--colour", choices=COLOURS,
+                       help="what the blocks are coloured by (default: material; temperature where nothing moves)")
+    plane.add_argument("--magnification", type=_positive, metavar="FACTOR",
+                       help="magnification of displacements (default: 1)")
     plane.add_argument("--frame", type=int, metavar="NUMBER", help="frame of the run (default: the last)")
     plane.add_argument("--format", choices=_FORMATS, default="png")
     plane.add_argument("--out", type=Path, metavar="FOLDER",
                        help="folder for the figures; the run is then read only (default: its figures/)")
     plane.set_defaults(draw=lambda asked: draw_plane(asked.folder, asked.axis, asked.at, asked.format,
-                                                     asked.magnification, asked.frame, asked.out))
+                                                     asked.magnification, asked.frame, asked.out, asked.colour))
 
     for name, draw, help_text in (("specimen", draw_specimen, "morphology and gradation of a specimen"),
                                   ("properties", draw_properties, "properties over the temperature")):

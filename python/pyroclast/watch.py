@@ -46,6 +46,7 @@ from matplotlib.figure import Figure
 
 from .display import give_pictures
 from .draw import style
+from .draw.fields import draw_colour_bar
 from .draw.fractures import draw_specimen, fracture_legend
 from .draw.heated_sections import draw_temperature
 from .draw.heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
@@ -286,7 +287,7 @@ class Watch:
             _say_in(axes, "no frame of the fields yet")
         elif not self.run.moves:
             colours = draw_temperature(axes, self.run, frame)
-            axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
+            draw_colour_bar([axes], colours)
             axes.set_title(f"mean {frame.temperature:.0f} °C")
         else:
             magnification = draw_specimen(axes, self.run, frame)

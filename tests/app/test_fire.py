@@ -12,6 +12,7 @@ import unittest
 from in_a_folder import InAFolder
 
 CASES = pathlib.Path(__file__).parents[2] / "cases"
+SLAB = pathlib.Path(__file__).parents[1] / "hot_slab.toml"
 CONCRETE = ("--f_c", "38 MPa", "--E", "32 GPa", "--fraction", "0.4", "--d_max", "20 mm", "--blocks", "100",
             "--width", "60 mm", "--height", "120 mm")
 
@@ -127,6 +128,29 @@ class Depths(InTheFire):
     def test_a_solid_has_depths_too(self):
         self.wall(30, "output.fields=false", is_solid=True)
         self.assert_begins_with_the_face()
+
+    def test_depths_in_a_solid_count_from_any_side_and_are_those_of_the_plane(self):
+        """Heat flows one way, whatever the side: a body of six blocks over the depth differs from the plane by their
+        size alone, up to 0.6 mm where 500 degC is 20 mm deep, and 6 of 95 degC at the far side.
+        """
+        plane = SLAB.read_text().replace('depth = "60 mm"', 'thickness = "1 m"')
+        (self.folder / "plane.toml").write_text(plane)
+        depths, far = {}, {}
+        for face in ("left", "right", "bottom", "top", "front", "back", "plane"):
+            deck = ["plane.toml"] if face == "plane" else [SLAB, "--set", f"heat.boundaries[0].faces={face}"]
+            self.pyroclast("run", *deck, "--quiet", "--no-figures", "-o", face)
+            self.assertEqual(json.loads((self.folder / face / "summary.json").read_text())["heated_face"],
+                             face if face != "plane" else "left")
+            last = self.table(f"{face}/temperature_profile.csv")[-121:]
+            self.assertEqual({row["heating_time_s"] for row in last}, {600.0})
+            self.assertEqual((last[0]["depth_m"], last[-1]["depth_m"]), (0.0, 0.06))
+            self.assertAlmostEqual(last[0]["temperature_degC"], 1000.0, delta=1e-6)
+            depths[face] = self.table(f"{face}/isotherm.csv")[-1]["depth_500_degC_m"]
+            far[face] = last[-1]["temperature_degC"]
+        self.assertAlmostEqual(depths["plane"], 0.0198, delta=2e-4)  # by the closed form 19.76 mm
+        for face, depth in depths.items():
+            self.assertAlmostEqual(depth, depths["plane"], delta=6e-4, msg=face)
+            self.assertAlmostEqual(far[face], far["plane"], delta=6.0, msg=face)
 
 
 class OneCommand(InTheFire):

@@ -20,6 +20,7 @@ from browser import RUNS, PageTest, begin, browser
 from matplotlib.path import Path
 
 import pyroclast
+from pyroclast.draw.profiles import read_profile
 from pyroclast.draw.properties import panels, read_properties
 from pyroclast.report import write_page
 from pyroclast.report.plane_body import outline_of
@@ -668,6 +669,38 @@ class OtherRuns(PageOfRun):
         self.assertGreater(len(values), 50)
         falls = [later <= before + 0.5 for before, later in zip(values, values[1:])]
         self.assertTrue(all(falls), "from the hot face")
+        self.assert_silent()
+
+    def test_planes_through_a_hot_solid_have_isotherms_and_depths(self):
+        deck = pyroclast.Deck(ROOT / "tests/hot_slab.toml")
+        deck["heat.boundaries[0].faces"] = "front"
+        with pyroclast.Run(deck, out=self.folder / "front") as run:
+            run.finish()
+        results = pyroclast.read(self.folder / "front")
+        browser.open(self.page_of(results.folder))
+        # the first plane goes into the depth below the heated face
+        self.assertEqual(browser.run("return document.getElementById('view').value"), "x 0")
+        self.assertTrue(browser.run("return pyroclast.specimen.levels"))
+        self.assertAlmostEqual(browser.run("return pyroclast.scene.body.range('temperature').high"), 1000.0, delta=0.26)
+        profile = read_profile(results)
+        for view in ("x 0", "y 0"):
+            self.look(view)
+            side, depths = browser.run("const d = pyroclast.scene.body.depths(pyroclast.scene.frame, [500, 300]); "
+                                       "return [d.side, d.depths]")
+            self.assertEqual((side, [level for level, _ in depths]), ("front side", [500, 300]))
+            for level, depth in depths:  # mean over blocks of 13 mm, and the profile is of one line
+                told = np.interp(-level, -profile.temperature[-1], profile.depth)
+                self.assertAlmostEqual(depth, told, delta=2e-3, msg=(view, level))
+        self.look("x 0")
+        browser.press("l")
+        values = browser.run("const s = pyroclast.specimen; "
+                             "return s.valuesAt(s.samples(), 'temperature', pyroclast.scene.frame)")
+        self.assertGreater(len(values), 50)
+        self.assertTrue(all(later <= before + 2.0 for before, later in zip(values, values[1:])), "from the hot face")
+        self.look("z 0")  # along the heated face: no side is the hot one
+        self.assertEqual(browser.run("return pyroclast.scene.body.depths(pyroclast.scene.frame, [100]).depths"), [])
+        for view in ("z -1", "turned"):  # from outside, with the line across
+            self.look(view)
         self.assert_silent()
 
 

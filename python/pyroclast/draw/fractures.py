@@ -25,7 +25,7 @@ from . import style
 from .crack_styles import can_crack, count_cracks, crack_legend, cracked, cracks_of, material_legend, size_of_cracks
 from .sections import (MARGIN, block_box, cover_by_bearings, draw_blocks, draw_scale_bar, frame_box, frame_section,
                        height_over_width, panel_box)
-from .solid_sections import crack_lines, flat
+from .solid_sections import VIEW, View, crack_lines, flat, view_of
 
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
@@ -160,6 +160,7 @@ class _Look:
     full: float  # m: size of the jump at a broken crack of full width
     across: int  # panels side by side on the page
     enlarged: tuple[np.ndarray, np.ndarray] | None  # corners of what is drawn larger too, m
+    view: View = VIEW  # of solids
 
 
 @style.in_style
@@ -174,14 +175,15 @@ def fracture_panels(drawn: Rows, magnification: float | None = None) -> Figure:
     lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in drawn.rows]
     if magnification is None:
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
-    margin = _margin((panel.run.mesh.blocks, _moved(panel, magnification))
-                     for _, panels in drawn.rows for panel in panels)
-    is_wide = all(height_over_width(last.run.mesh.blocks, margin) < _WIDE for last in lasts)
+    view = view_of(lasts[0].run)  # of all panels, which can so be compared
+    margin = _margin(((panel.run.mesh.blocks, _moved(panel, magnification))
+                      for _, panels in drawn.rows for panel in panels), view)
+    is_wide = all(height_over_width(last.run.mesh.blocks, margin, view) < _WIDE for last in lasts)
     page, most = style.page(), max(len(panels) for _, panels in drawn.rows)
     full = _full_width(lasts)
     narrowest = max(_LEAST_WIDTH, _BOLD_LETTER * max(len(panel.title) for _, panels in drawn.rows for panel in panels))
     for across in range(1 if is_wide else min(most, page.fitting(_NARROWEST)) if page.is_column else most, most + 1):
-        look = _Look(magnification, margin, full, across, None)
+        look = _Look(magnification, margin, full, across, None, view)
         lines = [(label if not first else "", panels[first:first + across]) for label, panels in drawn.rows
                  for first in range(0, len(panels), across)]
         if is_wide or page.width / (across + 1) < narrowest or _height(drawn, lines, look) <= page.highest:
@@ -203,10 +205,10 @@ def _chosen(drawn: Rows, page: style.Page) -> Rows:
 def _body_heights(lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> list[float]:
     """Returns heights of the bodies of each line, inches, as wide as their panels are."""
     page = style.page()
-    ratio = height_over_width(lines[0][1][0].run.mesh.blocks, look.margin)
+    ratio = height_over_width(lines[0][1][0].run.mesh.blocks, look.margin, look.view)
     least = 1 if page.is_column or ratio < _WIDE else _PANELS_OF_SQUARE if ratio < _SQUARE else _PANELS
     width = page.width / max(look.across, least) - 0.12
-    return [width * height_over_width(panels[0].run.mesh.blocks, look.margin) for _, panels in lines]
+    return [width * height_over_width(panels[0].run.mesh.blocks, look.margin, look.view) for _, panels in lines]
 
 
 def _height(drawn: Rows, lines: Sequence[tuple[str, Sequence[Panel]]], look: _Look) -> float:
@@ -316,10 +318,10 @@ def _note(drawn: Rows, look: _Look) -> str:
 def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
     """Draws the deformed specimen with its cracks, alone in its axes; returns how far displacements are magnified."""
     magnification = _visible_magnification(run, frame)
-    panel = Panel(run, frame, "", "")
-    margin = _margin([(run.mesh.blocks, _moved(panel, magnification))])
-    _draw_fractured(axes, panel, _Look(magnification, margin, _full_width([panel]), 1, None))
-    frame_section(axes, run.mesh.blocks, margin)
+    panel, view = Panel(run, frame, "", ""), view_of(run)
+    margin = _margin([(run.mesh.blocks, _moved(panel, magnification))], view)
+    _draw_fractured(axes, panel, _Look(magnification, margin, _full_width([panel]), 1, None, view))
+    frame_section(axes, run.mesh.blocks, margin, view)
     draw_scale_bar(axes, run.mesh.blocks)
     return magnification
 
@@ -345,18 +347,18 @@ def _draw_panel(axes: Axes, panel: Panel, look: _Look) -> None:
         axes.text(0.5, 0.5, panel.caption, transform=axes.transAxes, ha="center", va="center",
                   fontsize=style.page().size(7.0), color="#6a6a6a")
     axes.set_title(panel.title, fontweight="bold")
-    frame_section(axes, panel.run.mesh.blocks, look.margin)
+    frame_section(axes, panel.run.mesh.blocks, look.margin, look.view)
 
 
-def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
+def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]], view: View) -> np.ndarray:
     """Returns the box that holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows.
 
     panels: blocks, and where their gridpoints are drawn, m.
     """
     margin = MARGIN
     for blocks, drawn in panels:
-        low, high = block_box(blocks)
-        places = flat(drawn)
+        low, high = block_box(blocks, view)
+        places = flat(drawn, view)
         reach = np.array([low - places.min(axis=0), places.max(axis=0) - high]) / (high - low)[0]
         margin = np.maximum(margin, 0.2 * MARGIN + reach)
     margin = np.minimum(margin, _LARGEST_MARGIN)
@@ -423,7 +425,7 @@ def _enlarged(box: tuple[np.ndarray, np.ndarray], scale: float, room: tuple[floa
 def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
     run, frame = panel.run, panel.frame
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
-    draw_blocks(axes, blocks, _moved(panel, look.magnification))
+    draw_blocks(axes, blocks, _moved(panel, look.magnification), view=look.view)
     cells = (contacts.points + look.magnification * run.contact_displacement(frame))[contacts.cells]
     thinning = _thinning(blocks, contacts, look.across if style.page().is_column else max(look.across, _PANELS))
     in_plane = blocks.dimension == 2
@@ -433,7 +435,8 @@ def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
     sheared = np.zeros(len(cells), dtype=bool)
     for crack in cracks_of(run):
         which = cracked(run, frame, crack)
-        drawn = style.MILLI * flat(cells[which] if in_plane else crack_lines(run.mesh, cells, which))
+        shown = cells[which] if in_plane else crack_lines(run.mesh, cells, which, look.view)
+        drawn = style.MILLI * flat(shown, look.view)
         of_lines = np.ones(len(drawn))
         if in_plane and crack.broken:
             of_lines = widths[which] * np.where(sheared[which], _BOTH, 1.0)

@@ -8,9 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.tri import Triangulation
 
 from ..errors import Error
 from ..stored.frames import Frame
@@ -18,9 +16,10 @@ from ..stored.heated import Heated
 from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from . import style
+from .fields import colours_of, draw_colour_bar, draw_field
 from .fractures import Panel, Rows, broken_share
 from .sections import draw_scale_bar, frame_section, height_over_width
-from .solid_sections import draw_temperature_cut_open
+from .solid_sections import View, draw_temperature_cut_open, view_of
 
 TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
 """°C, near which fracture is drawn unless others are asked for."""
@@ -32,10 +31,6 @@ _NOTE = "Broken: share of the length, in space of the area, of all contacts that
 _MOST_PANELS = 5
 _FIELDS = 4
 _NARROWEST, _LEAST_WIDTH = 1.5, 0.85  # inches, of a panel in a column: as it stands well, and at least
-_ROOM = 20.0  # °C, from which the colours of temperatures start
-_MEET = 1e-6  # of the size of a body: gridpoints so near to each other are one
-ISOTHERMS = (300.0, 500.0, 700.0)
-"""°C, of the lines in fields of temperature."""
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
@@ -134,8 +129,8 @@ def _panel(run: Results, frame: Frame) -> Panel:
     hot = Heated(run)
     last = frame.step == hot.frames[-1].step
     title, mean = f"{frame.temperature:.0f} °C", ""
-    if not hot.uniform and _is_timed(frame):
-        title, mean = f"{frame.heating_time / 60.0:.0f} min", f"mean {title}\n"
+    if not hot.uniform and frame.minutes is not None:
+        title, mean = f"{frame.minutes:.0f} min", f"mean {title}\n"
     if last and hot.critical_temperature is not None:
         title = f"failed, {title}"
     elif last:
@@ -154,38 +149,29 @@ def temperature_field(run: Results) -> Figure:
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     specimen = blocks.zones[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]
-    scale = _scale_of(within)
-    across = page.fitting(_NARROWEST) if page.is_column else _FIELDS
-    ratio = height_over_width(blocks)
+    colours = colours_of(within)
+    across = min(page.fitting(_NARROWEST) if page.is_column else _FIELDS, len(frames))
+    view = view_of(run)
+    ratio = height_over_width(blocks, view=view)
     while page.is_column and across < len(frames) and page.width / (across + 1) >= _LEAST_WIDTH and \
             -(-len(frames) // across) * (page.width / (across + 0.4) * ratio + 0.75) + 0.6 > page.highest:
         across += 1
     lines = -(-len(frames) // across)
-    panel_height = (page.width / (across + 0.4) - 0.12) * height_over_width(blocks)
+    panel_height = (page.width / (across + 0.4) - 0.12) * ratio
     figure = style.new_figure(lines * (panel_height + 0.75) + 0.35)
-    all_axes = figure.subplots(lines, min(across, len(frames)), squeeze=False).ravel()
+    all_axes = figure.subplots(lines, across, squeeze=False).ravel()
     for axes in all_axes[len(frames):]:
         axes.axis("off")
     for axes, frame, field, values in zip(all_axes, frames, fields, within):
-        colours = _draw_temperature(axes, run, field, scale)
+        _draw_temperature(axes, blocks, field, colours, view)
         mean = f"mean {frame.temperature:.0f} °C"
-        axes.set_title(f"{frame.heating_time / 60.0:.0f} min" if _is_timed(frame) else mean, fontweight="bold")
-        axes.set_xlabel((f"{mean}\n" if _is_timed(frame) else "") + f"{values.min():.0f} to {values.max():.0f} °C",
+        axes.set_title(mean if frame.minutes is None else f"{frame.minutes:.0f} min", fontweight="bold")
+        axes.set_xlabel(("" if frame.minutes is None else f"{mean}\n") + f"{values.min():.0f} to {values.max():.0f} °C",
                         fontsize=page.size(7.0), linespacing=1.4)
     draw_scale_bar(all_axes[0], blocks)
-    figure.colorbar(colours, ax=list(all_axes), label="Temperature [°C]", shrink=0.8, pad=0.02)
+    draw_colour_bar(all_axes, colours, 0.02)
     figure.suptitle(style.title_of(run), fontsize=page.size(9.0))
     return figure
-
-
-def _scale_of(fields: Sequence[np.ndarray]) -> Normalize:
-    """Returns a scale from room temperature, or what is cooler, to the hottest."""
-    coolest, hottest = min(field.min() for field in fields), max(field.max() for field in fields)
-    return Normalize(min(_ROOM, coolest), max(_ROOM + 1.0, hottest))
-
-
-def _is_timed(frame: Frame) -> bool:
-    return frame.heating_time is not None and bool(np.isfinite(frame.heating_time))
 
 
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
@@ -193,7 +179,8 @@ def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]
-    colours = _draw_temperature(axes, run, field, _scale_of([within]))
+    colours = colours_of([within])
+    _draw_temperature(axes, blocks, field, colours, view_of(run))
     draw_scale_bar(axes, blocks)
     return colours
 
@@ -206,41 +193,13 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
     return [different[round(step)] for step in steps]
 
 
-def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> ScalarMappable:
-    blocks = run.mesh.blocks
+def _draw_temperature(axes: Axes, blocks: BlockMesh, field: np.ndarray, colours: ScalarMappable, view: View) -> None:
     if blocks.dimension == 3:
-        colours = draw_temperature_cut_open(axes, blocks, field, scale)
-        frame_section(axes, blocks)
-        return colours
-    outlines, material = blocks.outlines
-    of_bearing = np.isin(material, blocks.bearing_materials)
-    bearings = [style.MILLI * blocks.points[outline] for outline, is_one in zip(outlines, of_bearing) if is_one]
-    axes.add_collection(PolyCollection(bearings, color=style.PLATEN_COLOUR, linewidths=0.3, rasterized=True))
-    x, y = style.MILLI * blocks.points.T
-    zones = blocks.zones[~blocks.of_bearing]
-    colours = axes.tripcolor(Triangulation(x, y, zones), field, norm=scale, cmap=style.HEAT_MAP, shading="gouraud",
-                             rasterized=True)
-    frame_section(axes, blocks)
-    _draw_isotherms(axes, blocks, zones, field)
-    return colours
-
-
-def _draw_isotherms(axes: Axes, blocks: BlockMesh, zones: np.ndarray, field: np.ndarray) -> None:
-    """Draws lines of ISOTHERMS with their temperatures, through all blocks whose gridpoints meet."""
-    within = field[np.unique(zones)]
-    passed = [level for level in ISOTHERMS if within.min() < level < within.max()]
-    if not passed:
-        return
-    # blocks have gridpoints of their own: those in one place become one, so that lines run on from block to block
-    cell = _MEET * np.ptp(blocks.points, axis=0).max()
-    _, first, joined = np.unique(np.round(blocks.points / cell).astype(np.int64), axis=0, return_index=True,
-                                 return_inverse=True)
-    joined = joined.ravel()
-    mean = np.bincount(joined, weights=field) / np.bincount(joined)
-    x, y = style.MILLI * blocks.points[first].T
-    corners = joined[zones]
-    apart = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
-    lines = axes.tricontour(Triangulation(x, y, corners[apart]), mean, levels=passed, colors=style.BLACK,
-                            linewidths=0.6)
-    for label in axes.clabel(lines, fmt="%g", fontsize=style.page().size(6.0), inline_spacing=1):
-        label.set_clip_on(True)
+        draw_temperature_cut_open(axes, blocks, field, colours, view)
+    else:
+        outlines, material = blocks.outlines
+        of_bearing = np.isin(material, blocks.bearing_materials)
+        bearings = [style.MILLI * blocks.points[outline] for outline, is_one in zip(outlines, of_bearing) if is_one]
+        axes.add_collection(PolyCollection(bearings, color=style.PLATEN_COLOUR, linewidths=0.3, rasterized=True))
+        draw_field(axes, colours, blocks.points, blocks.zones[~blocks.of_bearing], field, blocks.points)
+    frame_section(axes, blocks, view=view)

@@ -19,6 +19,7 @@ from ..stored.columns import Columns
 from ..stored.mesh import BlockMesh, ContactMesh, Mesh, cells_of_contacts
 from ..stored.results import Results
 from . import style
+from .fields import draw_colour_bar
 from .fractures import draw_specimen
 from .heated_sections import draw_temperature
 from .records import abscissa, leading, records_in
@@ -123,7 +124,7 @@ def draw_last_frame(axes: Axes, results: Results) -> None:
         axes.set_title(f"displacements ×{magnification:g}", fontsize=8.0)
     else:
         colours = draw_temperature(axes, results, results.frames[-1])
-        axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
+        draw_colour_bar([axes], colours)
 
 
 def _cracks(run: LiveRun) -> np.ndarray:

@@ -15,35 +15,36 @@ from ..stored.mesh import BlockMesh, specimen_box
 from ..stored.results import SpecimenFolder
 from . import style
 from .crack_styles import material_legend
-from .solid_sections import draw_cut_open, flat
+from .solid_sections import VIEW, View, draw_cut_open, flat
 
 MARGIN = np.full((2, 2), 0.08)
 """Margin around what is drawn, over its width: below (x, y) and above."""
 
 
-def panel_box(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> tuple[np.ndarray, np.ndarray]:
+def panel_box(blocks: BlockMesh, margin: np.ndarray = MARGIN, view: View = VIEW) -> tuple[np.ndarray, np.ndarray]:
     """Returns corners of what a panel shows: all blocks, and a margin, m."""
-    low, high = block_box(blocks)
+    low, high = block_box(blocks, view)
     width = (high - low)[0]
     return low - margin[0] * width, high + margin[1] * width
 
 
-def block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+def block_box(blocks: BlockMesh, view: View = VIEW) -> tuple[np.ndarray, np.ndarray]:
     """Returns lower left and upper right of the picture of all blocks, bearings too, as they were at first, m."""
-    points = flat(blocks.points)
+    points = flat(blocks.points, view)
     return points.min(axis=0), points.max(axis=0)
 
 
-def height_over_width(blocks: BlockMesh, margin: np.ndarray = MARGIN) -> float:
+def height_over_width(blocks: BlockMesh, margin: np.ndarray = MARGIN, view: View = VIEW) -> float:
     """Returns the height over the width of what `frame_section` shows."""
-    low, high = panel_box(blocks, margin)
+    low, high = panel_box(blocks, margin, view)
     return (high - low)[1] / (high - low)[0]
 
 
-def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
+def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None,
+                view: View = VIEW) -> None:
     """Fills the blocks; without an edge colour their seams are closed. A solid lacks the quarter towards the eye."""
     if blocks.dimension == 3:
-        draw_cut_open(axes, blocks, points, edge)
+        draw_cut_open(axes, blocks, points, edge, view)
         return
     outlines, material = blocks.outlines
     for kind, colour in enumerate(style.phase_colours(blocks.materials, blocks.bearing_materials)):
@@ -61,9 +62,9 @@ def cover_by_bearings(axes: Axes, blocks: BlockMesh, points: np.ndarray) -> None
                                        linewidths=0.15, rasterized=True, zorder=2.5))
 
 
-def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = MARGIN) -> None:
+def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = MARGIN, view: View = VIEW) -> None:
     """Sets limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
-    frame_box(axes, *panel_box(blocks, margin))
+    frame_box(axes, *panel_box(blocks, margin, view))
 
 
 def frame_box(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:

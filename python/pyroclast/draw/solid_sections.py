@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize, to_rgb
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from ..errors import Error
@@ -19,6 +19,7 @@ from ..stored.frames import Frame
 from ..stored.results import Results
 from . import style
 from .crack_styles import can_crack, crack_legend, cracked, cracks_of, material_legend
+from .fields import colours_of, draw_colour_bar, draw_field
 
 _DARKEST = 0.62  # of a colour on a face that is seen from the side
 _GHOST = 0.035  # opacity of the body around its cracks
@@ -27,6 +28,8 @@ _IN_PLANE = {"x": (2, 1), "y": (0, 2), "z": (0, 1)}
 """Axes to the right and upwards in the picture of a plane, by the axis across it."""
 _NEAR = 3e-7  # of the size of a body: a point so near to a side lies on it
 _EDGE = 1e-3  # of the size of a body: a cut so narrow is an edge
+_HOTTER = 0.05  # of the span of temperatures, and 1 K: a side is hotter than the one across by more
+_OF_TRIAD = 0.13  # of the width of a body, length of the axes in its picture
 _WITHIN = 1e-6
 """Share of the size of a body by which planes stand within its ends, where they cut its blocks and not a bearing."""
 
@@ -57,16 +60,38 @@ VIEW = View(np.array([0.60, 0.42, 0.68]) / np.linalg.norm([0.60, 0.42, 0.68]))
 """The view from the right, above and behind: x goes to the right, y upwards, and z towards the eye."""
 
 
-def flat(points: np.ndarray) -> np.ndarray:
+def view_of(run: Results) -> View:
+    """Returns the view from the sides of a body that are hotter than those across, at the frame with the hottest mean;
+    of sides that are alike, as `VIEW` has it.
+    """
+    blocks = run.mesh.blocks
+    frames = [frame for frame in run.frames if frame.temperature is not None and np.isfinite(frame.temperature)]
+    if blocks.dimension == 2 or not frames:
+        return VIEW
+    field = run.gridpoint_temperature(max(frames, key=lambda frame: frame.temperature or 0.0))
+    zones, weights = blocks.zones[~blocks.of_bearing], blocks.sizes[~blocks.of_bearing]
+    heat, middles = field[zones].mean(axis=1), blocks.points[zones].mean(axis=1)
+    middles = middles - np.average(middles, axis=0, weights=weights)
+    low, high = specimen_box(blocks)
+    # of the straight line over each axis that is nearest to the field
+    rise = (high - low) * ((weights * heat) @ middles) / (weights @ middles**2)
+    return View(np.where(rise < -max(_HOTTER * np.ptp(heat), 1.0), -1.0, 1.0) * VIEW.towards_eye)
+
+
+def flat(points: np.ndarray, view: View = VIEW) -> np.ndarray:
     """Returns (..., 2), m: places in a picture, of points of the plane or of space."""
-    return VIEW.flat(points) if points.shape[-1] == 3 else points
+    return view.flat(points) if points.shape[-1] == 3 else points
 
 
-def middle_planes(blocks: BlockMesh, at: tuple[float, float] = (0.5, 0.5)) -> tuple[Plane, Plane]:
-    """Returns planes across x and across z, through the specimen's middle or at other shares of its width and depth."""
+def middle_planes(blocks: BlockMesh, at: tuple[float, float] = (0.5, 0.5), view: View = VIEW) -> tuple[Plane, Plane]:
+    """Returns planes across x and across z, through the specimen's middle or at other shares of its width and depth;
+    the eye is above both.
+    """
     low, high = specimen_box(blocks)
     place = low + np.array([at[0], 0.0, at[1]]) * (high - low)
-    return Plane(np.array([1.0, 0.0, 0.0]), float(place[0])), Plane(np.array([0.0, 0.0, 1.0]), float(place[2]))
+    first, second = (Plane(np.eye(3)[axis], float(place[axis])) for axis in (0, 2))
+    return (first if view.towards_eye[0] > 0.0 else first.other_way,
+            second if view.towards_eye[2] > 0.0 else second.other_way)
 
 
 def _fills(blocks: BlockMesh) -> np.ndarray:
@@ -74,71 +99,72 @@ def _fills(blocks: BlockMesh) -> np.ndarray:
     return np.array([to_rgb(c) for c in style.phase_colours(blocks.materials, blocks.bearing_materials)])
 
 
-def draw_polygons(axes: Axes, polygons: Polygons, colours: np.ndarray) -> None:
-    """Fills what faces the eye, the farthest first, darker where it is seen from the side.
-
-    colours: (P, 3), of each polygon.
+def _seen(blocks: BlockMesh, view: View, points: np.ndarray | None = None) -> tuple[Polygons, np.ndarray]:
+    """Returns polygons of a body without the quarter towards the eye that face the eye, the farthest first, and by how
+    much their colours (P,) darken where they are seen from the side. points: as of `surface`.
     """
+    whole, cuts = without_corner(blocks, middle_planes(blocks, view=view), points)
+    away = cuts.area_vectors @ view.towards_eye < 0.0
+    towards = Polygons(np.where(away[:, None, None], cuts.corners[:, ::-1], cuts.corners), cuts.owner)
+    polygons = joined([whole, towards])
     normals = polygons.area_vectors
     area = np.linalg.norm(normals, axis=1)
-    facing = np.divide(normals @ VIEW.towards_eye, area, out=np.zeros_like(area), where=area > 0.0)
+    facing = np.divide(normals @ view.towards_eye, area, out=np.zeros_like(area), where=area > 0.0)
     seen = np.flatnonzero(facing > 0.0)
-    seen = seen[np.argsort(polygons.corners[seen].mean(axis=1) @ VIEW.towards_eye, kind="stable")]
-    shaded = colours[seen] * (_DARKEST + (1.0 - _DARKEST) * facing[seen])[:, None]
-    axes.add_collection(PolyCollection(style.MILLI * VIEW.flat(polygons.corners[seen]), facecolors=shaded,
-                                       edgecolors=shaded, linewidths=0.15, rasterized=True))
+    seen = seen[np.argsort(polygons.corners[seen].mean(axis=1) @ view.towards_eye, kind="stable")]
+    return polygons.of(seen), _DARKEST + (1.0 - _DARKEST) * facing[seen]
 
 
-def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
+def _fill(axes: Axes, corners: np.ndarray, colours: np.ndarray) -> None:
+    """Fills polygons (P, K, 2), m, each with its colour (P, 3 or 4), in turn."""
+    axes.add_collection(PolyCollection(style.MILLI * corners, facecolors=colours, edgecolors=colours, linewidths=0.3,
+                                       rasterized=True))
+
+
+def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None,
+                  view: View = VIEW) -> None:
     """Draws the body by material, without the quarter towards the eye.
 
     points: (N, 3), places of the gridpoints, m.
     """
-    whole, cuts = without_corner(blocks, middle_planes(blocks), points)
-    polygons = joined([whole, _towards(cuts)])
-    draw_polygons(axes, polygons, _fills(blocks)[blocks.material[polygons.owner]])
+    polygons, shade = _seen(blocks, view, points)
+    _fill(axes, view.flat(polygons.corners), shade[:, None] * _fills(blocks)[blocks.material[polygons.owner]])
     if edge is not None:
-        lines = np.concatenate([_outer_edges(blocks, points), *_seams(blocks, points)])
-        axes.add_collection(LineCollection(style.MILLI * VIEW.flat(lines), colors=edge, linewidths=0.2,
+        lines = np.concatenate([_outer_edges(blocks, points, view), *_seams(blocks, points, view)])
+        axes.add_collection(LineCollection(style.MILLI * view.flat(lines), colors=edge, linewidths=0.2,
                                            rasterized=True))
-    draw_triad(axes, blocks)
+    draw_triad(axes, blocks, view)
 
 
-def _towards(polygons: Polygons) -> Polygons:
-    """Returns these polygons, each walked so that it faces the eye."""
-    away = polygons.area_vectors @ VIEW.towards_eye < 0.0
-    return Polygons(np.where(away[:, None, None], polygons.corners[:, ::-1], polygons.corners), polygons.owner)
-
-
-def _outer_edges(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
+def _outer_edges(blocks: BlockMesh, points: np.ndarray, view: View) -> np.ndarray:
     """Returns (L, 2, 3), m: edges between blocks on the sides that face the eye, without the quarter."""
     outer = outline(blocks, points)
-    facing = outer.area_vectors @ VIEW.towards_eye > 0.0
+    facing = outer.area_vectors @ view.towards_eye > 0.0
     corners, block = outer.corners[facing], blocks.block[outer.owner[facing]]
     start, end = corners.reshape(-1, 3), np.roll(corners, -1, axis=1).reshape(-1, 3)
     middle = np.round(0.5 * (start + end) / (1e-7 * np.ptp(blocks.points))).astype(np.int64)
     _, place, count = np.unique(np.c_[middle, np.repeat(block, 3)], axis=0, return_inverse=True, return_counts=True)
     alone = count[place.ravel()] == 1  # an edge within a block is that of two of its triangles
-    return _outside_quarter(np.stack([start, end], axis=1)[alone], blocks)
+    return _outside_quarter(np.stack([start, end], axis=1)[alone], blocks, view)
 
 
-def _seams(blocks: BlockMesh, points: np.ndarray) -> Iterator[np.ndarray]:
+def _seams(blocks: BlockMesh, points: np.ndarray, view: View) -> Iterator[np.ndarray]:
     """Yields (L, 2, 3), m: lines in which the two planes of the quarter cut the sides of blocks."""
     sides = surface(blocks, points).corners
     quads = np.concatenate([sides, sides[:, -1:]], axis=1)
-    first, second = middle_planes(blocks)
+    first, second = middle_planes(blocks, view=view)
     for plane, other in ((first, second), (second, first)):
         lines, _ = traces(quads, plane)
         yield lines[(other.above(lines) > 0.0).all(axis=1)]
 
 
-def _outside_quarter(lines: np.ndarray, blocks: BlockMesh) -> np.ndarray:
-    first, second = middle_planes(blocks)
+def _outside_quarter(lines: np.ndarray, blocks: BlockMesh, view: View) -> np.ndarray:
+    first, second = middle_planes(blocks, view=view)
     middles = lines.mean(axis=1)
     return lines[~((first.above(middles) > 0.0) & (second.above(middles) > 0.0))]
 
 
-def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
+def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray, view: View = VIEW) -> np.ndarray:
     """Returns (L, 2, 3), m: where chosen contacts show on the sides and cuts of `draw_cut_open`.
 
     cells: (C, 4, 3), places of the corners of contacts' cells, m. which: (C,) bool.
@@ -146,7 +172,7 @@ def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
     chosen = np.flatnonzero(which)
     if not len(chosen):
         return np.zeros((0, 2, 3))
-    first, second = middle_planes(mesh.blocks)
+    first, second = middle_planes(mesh.blocks, view=view)
     lines = []
     for plane, other in ((first, second), (second, first)):
         cut, _ = traces(cells[chosen], plane)
@@ -155,18 +181,18 @@ def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
     halves = np.concatenate([cells[chosen][:, [0, end]] for end in (1, 3)])
     at = mesh.contacts.points[mesh.contacts.cells[chosen]]
     middles = np.concatenate([0.5 * (at[:, 0] + at[:, end]) for end in (1, 3)])
-    lines.append(_outside_quarter(halves[_lies_on_visible_side(mesh.blocks, middles)], mesh.blocks))
+    lines.append(_outside_quarter(halves[_lies_on_visible_side(mesh.blocks, middles, view)], mesh.blocks, view))
     return np.concatenate(lines)
 
 
-def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray) -> np.ndarray:
+def _lies_on_visible_side(blocks: BlockMesh, points: np.ndarray, view: View) -> np.ndarray:
     """Returns (n,) bool, of points in the reference configuration: on a side that faces the eye."""
     outer = outline(blocks)
     vectors = outer.area_vectors
     normals = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     offsets = np.einsum("ij,ij->i", normals, outer.corners[:, 0])
     size = float(np.ptp(blocks.points, axis=0).max())
-    facing = normals @ VIEW.towards_eye > 0.0
+    facing = normals @ view.towards_eye > 0.0
     planes = np.unique(np.round(np.c_[normals, offsets / size][facing], 7), axis=0)
     lies = np.zeros(len(points), bool)
     for plane in planes:
@@ -183,17 +209,20 @@ def _touches_bearing(blocks: BlockMesh, points: np.ndarray, within: float) -> np
     return touches
 
 
-def draw_triad(axes: Axes, blocks: BlockMesh) -> None:
+def draw_triad(axes: Axes, blocks: BlockMesh, view: View = VIEW) -> None:
     """Draws where x, y and z go, below on the left."""
-    points = VIEW.flat(blocks.points)
+    points = view.flat(blocks.points)
     low, width = points.min(axis=0), np.ptp(points[:, 0])
-    length = 0.13 * np.ptp(blocks.points[:, 0])
+    length = _OF_TRIAD * np.ptp(blocks.points[:, 0])
     start = low + np.array([0.04, -0.05]) * width
+    size = style.page().size(6.5)
     for axis, name in enumerate("xyz"):
-        tip = start + VIEW.flat(length * np.eye(3)[axis])
-        axes.annotate("", style.MILLI * tip, style.MILLI * start, annotation_clip=False,
+        way = view.flat(length * np.eye(3)[axis])
+        tip = style.MILLI * (start + way)
+        axes.annotate("", tip, style.MILLI * start, annotation_clip=False,
                       arrowprops={"arrowstyle": "->", "linewidth": 0.7, "shrinkA": 0.0, "shrinkB": 0.0})
-        axes.text(*(style.MILLI * (start + 1.25 * (tip - start))), name, fontsize=style.page().size(6.5), ha="center", va="center")
+        axes.annotate(name, tip, 0.6 * size * way / np.linalg.norm(way), textcoords="offset points", fontsize=size,
+                      ha="center", va="center", annotation_clip=False)
 
 
 @dataclass(frozen=True)
@@ -260,19 +289,20 @@ def cracks_inside(run: Results, frame: Frame, least: float = 0.5) -> Figure:
     blocks = run.mesh.blocks
     drawn, all_damaged = crack_faces(run, frame, least), crack_faces(run, frame)
     ghost = outline(blocks)
-    box = VIEW.flat(blocks.points)
+    view = view_of(run)
+    box = view.flat(blocks.points)
     ratio = np.ptp(box[:, 1]) / np.ptp(box[:, 0])
     figure, axes, (rose, inclination, heights) = _axes_inside(0.55 * style.page().width * min(ratio, 1.7))
     colours = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
-    axes.add_collection(PolyCollection(style.MILLI * VIEW.flat(ghost.corners), facecolors=style.BLACK, alpha=_GHOST,
+    axes.add_collection(PolyCollection(style.MILLI * view.flat(ghost.corners), facecolors=style.BLACK, alpha=_GHOST,
                                        edgecolors="none", rasterized=True))
-    order = np.argsort(drawn.cells.mean(axis=1) @ VIEW.towards_eye, kind="stable")
-    facing = np.abs(drawn.normal @ VIEW.towards_eye)
+    order = np.argsort(drawn.cells.mean(axis=1) @ view.towards_eye, kind="stable")
+    facing = np.abs(drawn.normal @ view.towards_eye)
     shades = np.array([to_rgb(colours[mode]) for mode in drawn.mode]).reshape(-1, 3)
     shades = shades * (_DARKEST + (1.0 - _DARKEST) * facing)[:, None]
-    axes.add_collection(PolyCollection(style.MILLI * VIEW.flat(drawn.cells[order]), facecolors=shades[order],
+    axes.add_collection(PolyCollection(style.MILLI * view.flat(drawn.cells[order]), facecolors=shades[order],
                                        edgecolors="none", rasterized=True))
-    draw_triad(axes, blocks)
+    draw_triad(axes, blocks, view)
     _frame(axes, box)
     column = style.page().is_column
     told = (style.page().said("crack faces, damaged by more than ", "faces with $D$ > ") if len(drawn.area) else
@@ -352,54 +382,80 @@ def _draw_heights(axes: Axes, faces: CrackFaces, blocks: BlockMesh) -> None:
     axes.set_xlabel("share of the area, by its damage $D>0$", fontsize=style.page().size(7.0))
 
 
+COLOURS = ("material", "temperature")
+"""What a plane through a solid can be coloured by."""
+
+
 @style.in_style
-def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnification: float = 1.0) -> Figure:
-    """Draws a plane through a solid at a frame: blocks by material, and the cracks of each mode that it meets.
+def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnification: float = 1.0,
+                  colour: str = "material") -> Figure:
+    """Draws a plane through a solid at a frame.
 
     axis: "x", "y" or "z", across which the plane stands. at: its place, as a share of the specimen's size along the
-    axis before it moved, 0 and 1 for its ends. magnification: of displacements. The picture is as large as the specimen
-    is along the other axes. Raises Error for another axis or share.
+    axis before it moved, 0 and 1 for its ends. colour: "material", with the cracks of each mode that the plane meets,
+    or "temperature", with isotherms, where the body was before it moved. magnification: of displacements. The picture
+    is as large as the specimen is along the other axes. Raises Error for another axis, share or colour.
     """
-    blocks, contacts = run.mesh.blocks, run.mesh.contacts
+    blocks = run.mesh.blocks
     if axis not in _IN_PLANE:
         raise Error(f"axis is {axis!r}; it must be one of {', '.join(_IN_PLANE)}")
     if not 0.0 <= at <= 1.0:
         raise Error(f"at is {at:g}; a plane stands at a share between 0 and 1 of the specimen's size along {axis}")
+    if colour not in COLOURS:
+        raise Error(f"colour is {colour!r}; it must be one of {', '.join(COLOURS)}")
     named, plane = (axis_plane(blocks, axis, share) for share in (at, min(max(at, _WITHIN), 1.0 - _WITHIN)))
-    # the plane goes with the body: only displacements along it move what it shows
-    points = blocks.points + magnification * plane.along(run.gridpoint_displacement(frame))
-    across, up = _IN_PLANE[axis]
+    is_heat = colour == "temperature"
+    points = blocks.points
+    if not is_heat:  # the plane goes with the body: only displacements along it move what it shows
+        points = points + magnification * plane.along(run.gridpoint_displacement(frame))
+    in_plane = list(_IN_PLANE[axis])
     cut = section(blocks, plane, points)
-    fills = _fills(blocks)[blocks.material[cut.owner]]
-    shown = cut.corners[..., [across, up]]
-    extent = np.concatenate([shown.reshape(-1, 2), np.array(specimen_box(blocks))[:, [across, up]]])
+    shown = cut.corners[..., in_plane]
+    extent = np.concatenate([shown.reshape(-1, 2), np.array(specimen_box(blocks))[:, in_plane]])
     low, high = extent.min(axis=0), extent.max(axis=0)
-    figure = style.new_figure(1.6 + 4.0 * min((high - low)[1] / (high - low)[0], 2.2), width=5.0)
-    axes, below = figure.subplots(2, 1, gridspec_kw={"height_ratios": [1.0, 0.16]})
-    axes.add_collection(PolyCollection(style.MILLI * shown, facecolors=fills, edgecolors=fills, linewidths=0.15,
-                                       rasterized=True))
-    cells = (contacts.points + magnification * plane.along(run.contact_displacement(frame)))[contacts.cells]
-    for crack in cracks_of(run):
-        lines, _ = traces(cells[cracked(run, frame, crack)], plane)
-        axes.add_collection(LineCollection(style.MILLI * lines[..., [across, up]], colors=crack.colour,
-                                           linewidths=crack.width, capstyle="round", rasterized=True))
-    handles = crack_legend(run) + material_legend(blocks, cut.owner, "platen" if run.has_platens else "bearing")
+    ratio = min((high - low)[1] / (high - low)[0], 2.2)
+    figure = style.new_figure(0.9 + 3.6 * ratio if is_heat else 1.6 + 4.0 * ratio, width=5.0)
+    if is_heat:
+        axes = figure.subplots()
+        field = run.gridpoint_temperature(frame)
+        colours = colours_of([field[np.unique(blocks.zones[~blocks.of_bearing])]])
+        _draw_temperature(axes, blocks, field, colours, cut, shown, np.ones(len(shown)))
+        draw_colour_bar([axes], colours)
+    else:
+        axes, below = figure.subplots(2, 1, gridspec_kw={"height_ratios": [1.0, 0.16]})
+        _fill(axes, shown, _fills(blocks)[blocks.material[cut.owner]])
+        _draw_traces(axes, run, frame, plane, magnification, in_plane)
+        handles = crack_legend(run) + material_legend(blocks, cut.owner, "platen" if run.has_platens else "bearing")
+        style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center",
+                           ncol=1 if style.page().is_column else 2)
     axes.update_datalim(style.MILLI * np.array([low, high]))
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.grid(False)
-    axes.set_xlabel(f"{'xyz'[across]} [mm]")
-    axes.set_ylabel(f"{'xyz'[up]} [mm]")
-    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center",
-                       ncol=1 if style.page().is_column else 2)
-    at_strain = f", strain {style.PER_MILLE * frame.strain:.2f}×10⁻³" if np.isfinite(frame.strain) else ""
-    told = (f"{axis} = {style.MILLI * named.offset:.4g} mm, frame {frame.number}{at_strain}, "
-            f"displacements ×{magnification:g}")
+    axes.set_xlabel(f"{'xyz'[in_plane[0]]} [mm]")
+    axes.set_ylabel(f"{'xyz'[in_plane[1]]} [mm]")
+    told = f"{axis} = {style.MILLI * named.offset:.4g} mm, frame {frame.number}"
+    if is_heat and frame.minutes is not None:
+        told += f", {frame.minutes:.3g} min"
+    elif not is_heat:
+        told += f", strain {style.PER_MILLE * frame.strain:.2f}×10⁻³" if np.isfinite(frame.strain) else ""
+        told += f", displacements ×{magnification:g}"
     if np.ptp(shown.reshape(-1, 2), axis=0).min() < _EDGE * (high - low).min():
         told += ", where the body ends in an edge"
     axes.set_title("\n".join([style.title_of(run), *style.lines_of(told, style.page().letters)]),
                    fontsize=style.page().size(8.0))
     return figure
+
+
+def _draw_traces(axes: Axes, run: Results, frame: Frame, plane: Plane, magnification: float,
+                 in_plane: list[int]) -> None:
+    """Draws the cracks of each mode that a plane meets."""
+    contacts = run.mesh.contacts
+    cells = (contacts.points + magnification * plane.along(run.contact_displacement(frame)))[contacts.cells]
+    for crack in cracks_of(run):
+        lines, _ = traces(cells[cracked(run, frame, crack)], plane)
+        axes.add_collection(LineCollection(style.MILLI * lines[..., in_plane], colors=crack.colour,
+                                           linewidths=crack.width, capstyle="round", rasterized=True))
 
 
 def axis_plane(blocks: BlockMesh, axis: str, share: float = 0.5) -> Plane:
@@ -412,28 +468,33 @@ def axis_plane(blocks: BlockMesh, axis: str, share: float = 0.5) -> Plane:
     return Plane(np.eye(3)[number], float(low + share * (high - low)))
 
 
-def _in_the_middle(polygons: Polygons, blocks: BlockMesh, field: np.ndarray) -> np.ndarray:
-    """Returns (P,): a field of gridpoints in the middle of polygons, each linear in the zone that it is of."""
+def _at_corners(polygons: Polygons, blocks: BlockMesh, field: np.ndarray) -> np.ndarray:
+    """Returns (P, K): a field of gridpoints at the corners of polygons, each linear in the zone that it is of."""
     zones = blocks.zones[polygons.owner]
     at = blocks.points[zones]
-    edges = at[:, 1:] - at[:, :1]
-    middle = polygons.corners.mean(axis=1) - at[:, 0]
-    share = np.linalg.solve(np.swapaxes(edges, 1, 2), middle[..., None])[..., 0]
+    edges = np.swapaxes(at[:, 1:] - at[:, :1], 1, 2)
+    share = np.linalg.solve(edges, np.swapaxes(polygons.corners - at[:, :1], 1, 2))
     values = field[zones]
-    inside: np.ndarray = values[:, 0] + ((values[:, 1:] - values[:, :1]) * share).sum(axis=1)
-    return np.clip(inside, values.min(axis=1), values.max(axis=1))
+    inside = values[:, :1] + np.einsum("pi,pik->pk", values[:, 1:] - values[:, :1], share)
+    return np.clip(inside, values.min(axis=1)[:, None], values.max(axis=1)[:, None])
 
 
-def draw_temperature_cut_open(axes: Axes, blocks: BlockMesh, field: np.ndarray, scale: Normalize) -> ScalarMappable:
-    """Draws the body without the quarter towards the eye, each polygon in the colour of its middle; bearings dark.
+def _draw_temperature(axes: Axes, blocks: BlockMesh, field: np.ndarray, colours: ScalarMappable, polygons: Polygons,
+                      shown: np.ndarray, shade: np.ndarray) -> None:
+    """Draws polygons by the temperature within, with isotherms; bearings in the colour of platens.
 
-    field: (N,), °C. Returns what has the colours.
+    field: (N,), °C, of gridpoints. shown: (P, K, 2), m: corners in the picture. shade: (P,), factors on colours.
     """
-    whole, cuts = without_corner(blocks, middle_planes(blocks))
-    polygons = joined([whole, _towards(cuts)])
-    scaled = ScalarMappable(scale, style.HEAT_MAP)
-    colours = scaled.to_rgba(_in_the_middle(polygons, blocks, field))[:, :3]
-    colours[blocks.of_bearing[polygons.owner]] = to_rgb(style.PLATEN_COLOUR)
-    draw_polygons(axes, polygons, colours)
-    draw_triad(axes, blocks)
-    return scaled
+    of_bearing = blocks.of_bearing[polygons.owner]
+    _fill(axes, shown[of_bearing], shade[of_bearing, None] * np.array(to_rgb(style.PLATEN_COLOUR)))
+    warm = polygons.of(~of_bearing)
+    draw_field(axes, colours, warm.corners.reshape(-1, 3), warm.triangles, _at_corners(warm, blocks, field).ravel(),
+               shown[~of_bearing].reshape(-1, 2), np.repeat(shade[~of_bearing], warm.corners.shape[1] - 2))
+
+
+def draw_temperature_cut_open(axes: Axes, blocks: BlockMesh, field: np.ndarray, colours: ScalarMappable,
+                              view: View) -> None:
+    """Draws the temperature of a body without the quarter towards the eye, with isotherms. field: (N,), °C."""
+    polygons, shade = _seen(blocks, view)
+    _draw_temperature(axes, blocks, field, colours, polygons, view.flat(polygons.corners), shade)
+    draw_triad(axes, blocks, view)

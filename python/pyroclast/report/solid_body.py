@@ -53,7 +53,12 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
     size = float(np.median(np.maximum.reduceat(point, first[:-1]) - np.minimum.reduceat(point, first[:-1])))
     for name, column in columns.items():
         kind = name.split("_")[0]
-        if kind in ("shift", "turn"):
+        if kind == "temperature":
+            # points whose temperatures are alike in all frames, such as corners that meet, share them
+            values, node = np.unique(np.rint(column / STEPS[kind]), axis=1, return_inverse=True)
+            arrays[name] = packed_steps(STEPS[kind] * values, STEPS[kind])
+            arrays["node"] = packed_whole(node.ravel(), 4)
+        elif kind in ("shift", "turn"):
             arrays[name] = packed_steps(column, fine if kind == "shift" else fine / size)
         elif kind not in ("damage", "opening", "crack"):
             arrays[name] = packed_steps(column, STEPS[kind])
@@ -79,7 +84,9 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         for mode in modes:
             arrays[f"damage_{mode}"] = packed_damage(columns[f"damage_{mode}"][:, kept])
         arrays["opening"] = packed_steps(columns["opening"][:, kept], _OPENING)
-    about = {**about_body(run), "solid": True,
+    # the first plane that a page shows: one that goes into the depth below the heated face
+    across = "x" if run.summary.get("heated_face") in ("front", "back") else "z"
+    about = {**about_body(run), "solid": True, "across": across,
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
     return PackedBody(about, arrays, taken, notes + left_out)
 
@@ -214,8 +221,7 @@ class _Reader:
         found: dict[str, np.ndarray] = {}
         blocks = run.mesh.blocks
         if self._heated:
-            of_zones = run.gridpoint_temperature(frame)[blocks.zones].mean(axis=1)
-            found["temperature"] = np.bincount(self._number, self._share * of_zones)
+            found["temperature"] = run.gridpoint_temperature(frame)[self._used].astype(float)
         if not run.moves:
             return found
         moves = run.gridpoint_displacement(frame)[self._used].astype(float)

@@ -40,6 +40,14 @@ class Polygons:
         return Polygons(self.corners[which], self.owner[which])
 
     @property
+    def triangles(self) -> np.ndarray:
+        """Triangles (P (K - 2), 3) that fill the polygons: their corners, counted through all polygons."""
+        count, corners = self.corners.shape[:2]
+        after = np.arange(1, corners - 1)
+        fan = np.stack([np.zeros_like(after), after, after + 1], axis=1)
+        return (corners * np.arange(count)[:, None, None] + fan).reshape(-1, 3)
+
+    @property
     def area_vectors(self) -> np.ndarray:
         """Areas (P, 3), m², along the normals."""
         from_first = self.corners - self.corners[:, :1]

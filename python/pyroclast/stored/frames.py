@@ -23,6 +23,11 @@ class Frame:
     temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
     heating_time: float | None = None  #: s since heating began; None when the run did not write it
 
+    @property
+    def minutes(self) -> float | None:
+        """Minutes since heating began; None when the run did not write them."""
+        return None if self.heating_time is None or not np.isfinite(self.heating_time) else self.heating_time / 60.0
+
 
 def frames_of(table: Table, moves: bool) -> list[Frame]:
     """Returns the frames that frames.csv lists. moves: whether the run has mechanics."""

@@ -2,6 +2,8 @@
 // cracks as lines. Blocks are convex; the same frame gives the same pixels on every machine.
 
 const ON_SIDE = 1e-4; // of a side: how near to it corners count as on it
+export const SIDES = {x: ["left side", "right side"], y: ["lower side", "upper side"], z: ["front side", "back side"]};
+const HOTTER = 0.25; // of the span of temperatures: how much hotter a heated side is than the coolest at least
 const ONCE_ALONG = 0.15; // of a side: how much longer or shorter a line along it may be
 
 export class Body {
@@ -23,6 +25,8 @@ export class Body {
     this.px = new Float64Array(this.corners); // the same in pixels
     this.py = new Float64Array(this.corners);
     this.bearing = Uint8Array.from(arrays.material.values, (m) => about.materials[m].bearing);
+    this.nodes = Int32Array.from({length: this.corners}, (_, i) => i);
+    this.nodesFirst = this.first;
     this.middle();
     this.box = this.bounds();
   }
@@ -134,13 +138,9 @@ export class Body {
     const values = new Float32Array(this.blocks),
       a = this.arrays;
     for (let b = 0; b < this.blocks; b++) {
-      const from = this.first[b],
-        to = this.first[b + 1]; // of a plane body
-      if (field === "temperature" && a.temperature.width === this.blocks) values[b] = a.temperature.at(frame, b);
-      else if (field === "temperature") {
-        let sum = 0;
-        for (let i = from; i < to; i++) sum += a.temperature.at(frame, i);
-        values[b] = sum / (to - from);
+      if (field === "temperature") {
+        const nodes = this.nodesOf(b);
+        for (const n of nodes) values[b] += a.temperature.at(frame, n) / nodes.length;
       } else if (field === "displacement") {
         values[b] = 1e3 * Math.hypot(...this.displacement(frame, b));
       } else values[b] = (field === "creep_y" ? 1e3 : 1) * a[field].at(frame, b);
@@ -149,10 +149,28 @@ export class Body {
     return values;
   }
 
+  // Where the temperatures of a block stand in their array: at its corners in the plane, all of them in space.
+  nodesOf(b) {
+    return this.nodes.subarray(this.nodesFirst[b], this.nodesFirst[b + 1]);
+  }
+
+  // Of a corner of what is painted, °C.
+  temperatureAt(frame, i) {
+    return this.arrays.temperature.at(frame, i);
+  }
+
+  // In the middle of the corners of the polygon that shows a block, °C.
+  temperatureAmid(frame, block) {
+    const [from, to] = this.cornersOf(block);
+    let sum = 0;
+    for (let i = from; i < to; i++) sum += this.temperatureAt(frame, i);
+    return sum / (to - from);
+  }
+
   // What the ends of the colours stand for, over all frames; a few largest values may lie beyond.
   range(field) {
     if (this.ranges[field]) return this.ranges[field];
-    if (field === "temperature" && this.hasIsotherms) return (this.ranges[field] = this.temperatureRange());
+    if (field === "temperature") return (this.ranges[field] = this.temperatureRange());
     const all = [];
     const every = Math.max(1, Math.floor(this.frames.length / 24));
     for (let f = this.frames.length - 1; f >= 0; f -= every) {
@@ -165,17 +183,16 @@ export class Body {
       const most = Math.max(-at(0.004), at(0.996), 1e-9);
       return (this.ranges[field] = {low: -most, high: most, isTwoSided: true});
     }
-    const low = field === "temperature" ? all[0] : 0,
-      high = field === "temperature" ? all[all.length - 1] : at(0.99);
-    return (this.ranges[field] = {low, high: high > low ? high : low + 1, isTwoSided: false});
+    const high = at(0.99);
+    return (this.ranges[field] = {low: 0, high: high > 0 ? high : 1, isTwoSided: false});
   }
 
   // Over all frames and corners, so that its end is the highest temperature that the run tells.
   temperatureRange() {
     const {values, width, step} = this.arrays.temperature,
-      isOf = new Uint8Array(this.corners);
+      isOf = new Uint8Array(width);
     let [low, high] = [Infinity, -Infinity];
-    for (let b = 0; b < this.blocks; b++) if (!this.bearing[b]) isOf.fill(1, this.first[b], this.first[b + 1]);
+    for (let b = 0; b < this.blocks; b++) if (!this.bearing[b]) for (const n of this.nodesOf(b)) isOf[n] = 1;
     for (let k = 0; k < values.length; k++) {
       if (!isOf[k % width]) continue;
       if (values[k] < low) low = values[k];
@@ -397,30 +414,46 @@ export class Body {
     return {...best, rest: middle.map((v, k) => (1 - p - q) * v + p * one[k] + q * other[k])};
   }
 
+  // Names of the sides of a picture, across and upwards.
+  get sideNames() {
+    return [SIDES.x, SIDES.y];
+  }
+
+  // Polygons of the specimen: their block, first corner, and the one behind the last.
+  *polygonsOfSpecimen() {
+    for (let p = 0; p + 1 < this.first.length; p++) {
+      const b = this.owner ? this.owner[p] : p;
+      if (!this.bearing[b]) yield [b, this.first[p], this.first[p + 1]];
+    }
+  }
+
   // The side of the specimen that is hottest in a frame, and how deep below it, on average along it, temperatures lie:
   // [[temperature, m]]. Only those whose isotherm goes along that side from end to end, once.
   depths(frame, levels) {
-    const {corner, temperature} = this.arrays,
-      box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity},
-      [x, y] = [0, 1].map((k) => Float64Array.from({length: this.corners}, (_, i) => corner.at(i, k))),
+    const box = {x0: Infinity, x1: -Infinity, y0: Infinity, y1: -Infinity},
+      [x, y] = [0, 1].map((k) => Float64Array.from({length: this.corners}, (_, i) => this.madeAt(i)[k])),
       corners = [];
-    for (let b = 0; b < this.blocks; b++)
-      if (!this.bearing[b]) for (let i = this.first[b]; i < this.first[b + 1]; i++) corners.push(i);
+    for (const [, from, to] of this.polygonsOfSpecimen()) for (let i = from; i < to; i++) corners.push(i);
     for (const i of corners) takeIn(box, x[i], y[i]);
+    const [[left, right], [lower, upper]] = this.sideNames;
     const sides = [
-      {side: "left side", from: x, along: y, at: box.x0, sign: 1, length: box.y1 - box.y0},
-      {side: "right side", from: x, along: y, at: box.x1, sign: -1, length: box.y1 - box.y0},
-      {side: "lower side", from: y, along: x, at: box.y0, sign: 1, length: box.x1 - box.x0},
-      {side: "upper side", from: y, along: x, at: box.y1, sign: -1, length: box.x1 - box.x0},
+      {side: left, from: x, along: y, at: box.x0, sign: 1, length: box.y1 - box.y0},
+      {side: right, from: x, along: y, at: box.x1, sign: -1, length: box.y1 - box.y0},
+      {side: lower, from: y, along: x, at: box.y0, sign: 1, length: box.x1 - box.x0},
+      {side: upper, from: y, along: x, at: box.y1, sign: -1, length: box.x1 - box.x0},
     ];
     for (const s of sides) {
       const on = corners.filter((i) => Math.abs(s.from[i] - s.at) < ON_SIDE * s.length);
-      s.heat = on.reduce((sum, i) => sum + temperature.at(frame, i), 0) / on.length;
+      s.heat = on.reduce((sum, i) => sum + this.temperatureAt(frame, i), 0) / on.length;
     }
-    const hot = sides.reduce((p, q) => (q.heat > p.heat ? q : p)),
+    const heats = corners.map((i) => this.temperatureAt(frame, i)),
+      [low, high] = [Math.min, Math.max].map((end) => heats.reduce((p, q) => end(p, q), heats[0])),
+      coolest = Math.min(...sides.map((s) => s.heat)),
+      hot = sides.reduce((p, q) => (q.heat > p.heat ? q : p)),
       isAcross = hot.from === x,
       found = [];
-    for (const level of levels) {
+    // a plane through a solid along its heated face has no such side
+    for (const level of hot.heat - coolest > HOTTER * (high - low) ? levels : []) {
       let [run, sum] = [0, 0];
       for (const [x0, y0, x1, y1] of this.isotherms(frame, level, x, y)) {
         const along = isAcross ? Math.abs(y1 - y0) : Math.abs(x1 - x0),
@@ -436,20 +469,15 @@ export class Body {
   // Lines of equal temperature: pieces [x0, y0, x1, y1], by linear triangles about the middle of each block. px, py:
   // places of the corners, pixels if not given.
   isotherms(frame, level, px = this.px, py = this.py) {
-    const {temperature} = this.arrays,
-      {first} = this,
-      found = [];
-    for (let b = 0; b < this.blocks; b++) {
-      if (this.bearing[b]) continue;
-      const from = first[b],
-        to = first[b + 1];
+    const found = [];
+    for (const [, from, to] of this.polygonsOfSpecimen()) {
       let low = Infinity,
         high = -Infinity,
         t = 0,
         x = 0,
         y = 0;
       for (let i = from; i < to; i++) {
-        const at = temperature.at(frame, i);
+        const at = this.temperatureAt(frame, i);
         low = Math.min(low, at);
         high = Math.max(high, at);
         t += at / (to - from);
@@ -461,8 +489,8 @@ export class Body {
         const j = i + 1 < to ? i + 1 : from;
         const three = [
           [x, y, t],
-          [px[i], py[i], temperature.at(frame, i)],
-          [px[j], py[j], temperature.at(frame, j)],
+          [px[i], py[i], this.temperatureAt(frame, i)],
+          [px[j], py[j], this.temperatureAt(frame, j)],
         ];
         const cut = [];
         for (let k = 0; k < 3; k++) {

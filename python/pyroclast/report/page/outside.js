@@ -33,6 +33,10 @@ export class OutsideBody extends SolidBody {
     this.look(BEGIN_AZIMUTH, BEGIN_HEIGHT);
   }
 
+  get hasIsotherms() {
+    return false;
+  }
+
   // Middle and box of what all directions show, m.
   size() {
     const {point} = this.arrays,
@@ -259,7 +263,7 @@ export class OutsideBody extends SolidBody {
 
   within(block, x, y) {
     const {frame, magnification} = this.placed,
-      u = this.displacement(frame, block),
+      u = this.moves ? this.displacement(frame, block) : [0, 0, 0],
       moved = this.axes.slice(0, 2).map((axis) => magnification * axis.reduce((sum, v, k) => sum + v * u[k], 0));
     return {rest: this.fromPixels(x, y, this.W, this.H).map((v, k) => v - moved[k])};
   }

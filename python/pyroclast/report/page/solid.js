@@ -1,7 +1,7 @@
 // A solid, shown as a plane through it by the painter of plane bodies. A plane cuts each polyhedron, which is convex,
 // in a convex polygon; it goes with the body, so that displacements along it alone are seen.
 
-import {Body, takeIn} from "./body.js";
+import {Body, SIDES, takeIn} from "./body.js";
 
 const IN_PLANE = {x: [2, 1], y: [0, 2], z: [0, 1]}; // axes that a view across x, y, z has to the right and up
 
@@ -14,6 +14,8 @@ export class SolidBody extends Body {
     this.contacts = a.extent ? a.extent.shape[0] : 0;
     this.points = a.point.shape[0];
     this.bearing = Uint8Array.from(a.material.values, (m) => this.about.materials[m].bearing);
+    this.nodes = a.node && a.node.values;
+    this.nodesFirst = a.point_first.values;
     this.middles = new Float64Array(3 * this.blocks);
     this.ends = [
       [Infinity, -Infinity],
@@ -89,9 +91,6 @@ export class SolidBody extends Body {
   contactNumber(c) {
     return this.arrays.number.values[c];
   }
-  get hasIsotherms() {
-    return false;
-  }
 }
 
 // A plane through a solid, across one of its axes.
@@ -101,7 +100,7 @@ export class CutBody extends SolidBody {
     const {triangle} = this.arrays;
     this.trianglesOf = Array.from({length: this.blocks}, () => []);
     for (let t = 0; t < triangle.shape[0]; t++) this.trianglesOf[this.blockOf[triangle.values[3 * t]]].push(t);
-    this.look("z", 0.5);
+    this.look(this.about.across, 0.5);
   }
 
   // Puts the plane across an axis at a share of the specimen's size.
@@ -125,6 +124,8 @@ export class CutBody extends SolidBody {
       owner: new Int32Array(polygons.length),
       polygonOf: new Int32Array(this.blocks).fill(-1),
       rest: new Float64Array(3 * count),
+      edges: new Int32Array(2 * count), // points that each corner lies between,
+      shares: new Float64Array(count), // and the share of the second one in its values
       x: new Float64Array(count),
       y: new Float64Array(count),
       px: new Float64Array(count),
@@ -134,14 +135,18 @@ export class CutBody extends SolidBody {
     polygons.forEach(([b, corners], p) => {
       this.owner[p] = b;
       this.polygonOf[b] = p;
-      for (const corner of corners) this.rest.set(corner, 3 * i++);
+      for (const {place, edge, share: s} of corners) {
+        this.rest.set(place, 3 * i);
+        this.edges.set(edge, 2 * i);
+        this.shares[i++] = s;
+      }
       this.first[p + 1] = i;
     });
     this.traces = this.cutCracks(k);
     this.box = this.bounds();
   }
 
-  // Corners of the polygon in which a plane cuts a block, around its middle.
+  // Corners of the polygon in which a plane cuts a block, around its middle: where they are, and between which points.
   cut(b, k, at, right, up) {
     const {point, triangle} = this.arrays,
       found = [];
@@ -164,13 +169,12 @@ export class CutBody extends SolidBody {
           q = point.at(j, k);
         if (p > at === q > at) continue;
         const s = (at - p) / (q - p);
-        found.push([0, 1, 2].map((c) => point.at(i, c) + s * (point.at(j, c) - point.at(i, c))));
+        const place = [0, 1, 2].map((c) => point.at(i, c) + s * (point.at(j, c) - point.at(i, c)));
+        found.push({place, edge: [i, j], share: s});
       }
-    const middle = [right, up].map((c) => found.reduce((sum, p) => sum + p[c], 0) / found.length);
-    return found.sort(
-      (p, q) =>
-        Math.atan2(p[up] - middle[1], p[right] - middle[0]) - Math.atan2(q[up] - middle[1], q[right] - middle[0]),
-    );
+    const middle = [right, up].map((c) => found.reduce((sum, p) => sum + p.place[c], 0) / found.length),
+      turn = ({place}) => Math.atan2(place[up] - middle[1], place[right] - middle[0]);
+    return found.sort((p, q) => turn(p) - turn(q));
   }
 
   // Ends of the line in which the plane cuts each crack, three coordinates each; NaN where it does not.
@@ -192,6 +196,14 @@ export class CutBody extends SolidBody {
 
   cornersOf(block) {
     return [this.first[this.polygonOf[block]], this.first[this.polygonOf[block] + 1]];
+  }
+  temperatureAt(frame, i) {
+    const {temperature} = this.arrays,
+      [p, q] = [0, 1].map((e) => temperature.at(frame, this.nodes[this.edges[2 * i + e]]));
+    return p + this.shares[i] * (q - p);
+  }
+  get sideNames() {
+    return [this.right, this.up].map((k) => SIDES["xyz"[k]]);
   }
   madeAt(i) {
     return [this.rest[3 * i + this.right], this.rest[3 * i + this.up]];

@@ -285,8 +285,11 @@ export class Specimen {
         low = Math.min(low, values[b]);
         high = Math.max(high, values[b]);
       }
-    this.levels = high - low < 2 ? [] : ticks(low, high, 6).filter((t) => t > low && t < high);
-    const lines = this.levels.map((level) => body.isotherms(frame, level));
+    const drawn = (high - low < 2 ? [] : ticks(low, high, 6).filter((t) => t > low && t < high))
+        .map((level) => ({level, lines: body.isotherms(frame, level)}))
+        .filter((one) => one.lines.length), // a plane through a solid may meet none
+      lines = drawn.map((one) => one.lines);
+    this.levels = drawn.map((one) => one.level);
     this.stroke(theme.value("--ground"), 2.6 * ratio, lines.flat());
     this.stroke(theme.value("--ink"), 1 * ratio, lines.flat());
     this.named = []; // places of the names of lines: [x, y, turn]
@@ -390,11 +393,14 @@ export class Specimen {
 
   // Values of the coloured field at samples in a frame: of temperature between the corners, else of the block.
   valuesAt(samples, field, frame) {
-    const {body} = this,
-      values = body.values(field, frame),
-      t = body.arrays.temperature;
-    if (field !== "temperature" || !body.hasIsotherms) return samples.map((s) => values[s.block]);
-    return samples.map((s) => (1 - s.p - s.q) * values[s.block] + s.p * t.at(frame, s.i) + s.q * t.at(frame, s.j));
+    const {body} = this;
+    if (field !== "temperature" || !body.hasIsotherms) return samples.map((s) => body.values(field, frame)[s.block]);
+    return samples.map(
+      ({block, i, j, p, q}) =>
+        (1 - p - q) * body.temperatureAmid(frame, block) +
+        p * body.temperatureAt(frame, i) +
+        q * body.temperatureAt(frame, j),
+    );
   }
 }
 

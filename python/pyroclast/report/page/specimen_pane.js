@@ -74,6 +74,7 @@ export class SpecimenPane {
       $("place_now").textContent = isCut ? toldPlace() : "";
       this.fit();
     };
+    $("view").value = `${cut.axis} 0`;
     $("view").onchange = $("place").oninput = look;
     $("place_now").textContent = toldPlace();
     $("alone").parentElement.hidden = !cut.modes.length;
