@@ -30,6 +30,7 @@ struct Left {
   std::vector<std::vector<std::optional<double>>> rows;
   std::map<int, std::array<Vec<3>, 3>> gridpoints;  ///< displacement, velocity and force
   std::map<int, std::vector<double>> contacts;      ///< internal variables and losses
+  double mean_unbalanced_force = 0.0;               ///< no column of the history has it
 };
 
 /// Deck to be run, with what makes it small.
@@ -61,6 +62,7 @@ Left run_on(const Asked& asked, const std::shared_ptr<Ranks>& ranks) {
   if (!simulation->moves()) return left;
   const Model& model = simulation->model();
   const MotionReader& read = simulation->motion().read();
+  left.mean_unbalanced_force = simulation->motion().totals().mean_unbalanced_force();
   for (auto [g, last] = model.gridpoint_chunks().own(); g < last; ++g)
     left.gridpoints[model.part ? model.part->gridpoint[g] : g] = {read.displacement(g), read.velocity(g),
                                                                   read.force(g)};
@@ -76,9 +78,11 @@ Left run_on(const Asked& asked, const std::shared_ptr<Ranks>& ranks) {
   return left;
 }
 
-/// Describes the first cell in which two histories differ; empty where they are the same.
+/// Describes the first cell in which two histories differ; empty where they are the same, with what else runs
+/// left of sums.
 std::string difference(const Left& a, const Left& b) {
   if (a.columns != b.columns) return "other columns";
+  if (a.mean_unbalanced_force != b.mean_unbalanced_force) return "another mean of forces out of balance";
   for (std::size_t row = 0; row < std::min(a.rows.size(), b.rows.size()); ++row)
     for (std::size_t i = 0; i < a.columns.size(); ++i)
       if (a.rows[row][i] != b.rows[row][i])
