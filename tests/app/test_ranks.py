@@ -1,9 +1,16 @@
-"""A run on the ranks of an MPI job is that of one process, and its errors are told once. PYROCLAST names the program."""
+"""A run on the ranks of an MPI job is that of one process, sends no more than it must, and tells its errors once.
 
+PYROCLAST names the program, MPI_CALLS_COUNTER the shared object of mpi_calls.cpp.
+"""
+
+import csv
 import importlib.machinery
 import importlib.util
+import itertools
+import json
 import os
 import pathlib
+import re
 import subprocess
 import time
 import unittest
@@ -11,7 +18,13 @@ import unittest
 from in_a_folder import PROGRAM, InAFolder
 
 ROOT = pathlib.Path(__file__).parents[2]
-CASE = str(ROOT / "cases/starter.toml")
+
+
+def case_file(name: str) -> str:
+    return str(ROOT / f"cases/{name}.toml")
+
+
+CASE = case_file("starter")
 SMALL = ["--set", "blocks.count=250", "--set", "stages[1].velocity=4 mm/s", "--no-figures"]
 HAS_MPI = (pathlib.Path(PROGRAM).parents[1] / "lib/pyroclast/pyroclast_mpi.so").exists()
 NEEDS_MPI = unittest.skipUnless(HAS_MPI, "the program was built without MPI")
@@ -20,6 +33,10 @@ loader = importlib.machinery.SourceFileLoader("ranks", SCRIPT)
 validation_ranks = importlib.util.module_from_spec(importlib.util.spec_from_loader("ranks", loader))
 loader.exec_module(validation_ranks)
 MPI = {**validation_ranks.MPI, "PYROCLAST_CHUNK_BLOCKS": "16", "PYROCLAST_RANKS_LIMIT": "60"}
+COUNTER = os.environ.get("MPI_CALLS_COUNTER", "")
+# Some rows of a press, without frames between their stages.
+PRESS = ["--set", "stages[1].velocity=8 mm/s", "--set", "stages[1].ramp_time=2 ms", "--set",
+         "stages[1].stop_strain=0.0002", "--set", "output.frame_strain=1", "--set", "aggregates.fraction=0.2"]
 SOON = 10  # s, within which all ranks end after an error
 
 
@@ -56,6 +73,74 @@ class Ranks(InAFolder):
         files = [{str(file.relative_to(self.folder / run)) for file in (self.folder / run).rglob("*") if file.is_file()}
                  for run in ("alone", "together")]
         self.assertEqual({file for file in files[0] if not file.startswith("checkpoints")}, files[1])
+
+    def calls(self, ranks: int, case: str, *words) -> list[list[tuple[str, list[list[str]]]]]:
+        """Runs a case into a folder of its name. Returns the calls of each rank: collectives and messages by turns."""
+        done = self.start(ranks, f"LD_PRELOAD={COUNTER}", f"MPI_CALLS={case}.calls", PROGRAM, "run", case_file(case),
+                          *words, "-t", "1", "--no-figures", "--quiet", "--mpi", "--out", case, program="env")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = [[line.split() for line in (self.folder / f"{case}.calls.{rank}").read_text().splitlines()]
+                 for rank in range(ranks)]
+        return [[(kind, list(group)) for kind, group in itertools.groupby(of_rank, lambda line: line[0])]
+                for of_rank in lines]
+
+    def assert_foretold(self, sent: list[int], what: str, case: str, *words):
+        """sent: bytes of each rank, whose mean and most `check` tells in kB."""
+        said = self.pyroclast("check", case_file(case), *words, "--ranks", len(sent), env={**os.environ, **MPI}).stdout
+        told = re.search(rf"sent after each {what} .*\[kB\] +(\S+) +(\S+)", said)
+        self.assertEqual(told.groups(), (f"{sum(sent) / len(sent) / 1000:.1f}", f"{max(sent) / 1000:.1f}"))
+
+    @NEEDS_MPI
+    def test_a_batch_takes_a_message_a_step_and_three_collectives(self):
+        """A batch of s steps sends each neighbour s + 1 messages, as long as `check` foretells, and no collective.
+
+        Three at most follow, but where a frame is written. A gather that has grown is sent once more.
+        """
+        for case, ranks, blocks in (("starter", 2, 120), ("starter_3d", 3, 60)):
+            changes = ["--set", f"blocks.count={blocks}", *PRESS]
+            sent = []
+            for calls in self.calls(ranks, case, *changes):
+                with open(self.folder / case / "history.csv", newline="") as file:
+                    steps = int(list(csv.DictReader(file))[-1]["step"])
+                batches = [group for kind, group in calls if kind == "messages"]
+                self.assertGreater(len(batches), 20)
+                for _, to, length, _ in batches[0]:
+                    of_one = [int(count) for batch in batches for _, rank, bytes_, count in batch
+                              if (rank, bytes_) == (to, length)]
+                    self.assertEqual((len(of_one), sum(of_one)), (len(batches), steps + len(batches)))
+                self.assertEqual({len(batch) for batch in batches}, {len(batches[0])})
+                sent.append(sum(int(length) for _, _, length, _ in batches[0]))
+                looks = [[name for _, name in group] for kind, group in calls if kind == "collective"][1:-1]
+                looks = [look for look in looks if "gatherv" not in look]
+                self.assertLessEqual(max(look.count("allgather") for look in looks), 3)
+                self.assertLessEqual(sum(look.count("allgatherv") for look in looks), 4)
+            self.assert_foretold(sent, "step", case, *changes)
+
+    @NEEDS_MPI
+    def test_a_heat_stage_takes_a_message_and_with_limits_two(self):
+        changes = ["--set", "blocks.count=100", "--set", "stages[0].duration=2 min"]
+        sent = []
+        for calls in self.calls(2, "thermal_wall", *changes):
+            solver = json.loads((self.folder / "thermal_wall/summary.json").read_text())["heat_solver"]
+            trials = [{int(length): int(count) for _, _, length, count in group}
+                      for kind, group in calls if kind == "messages"]
+            length = min(length for trial in trials for length in trial)
+            self.assertEqual(sum(trial[length] for trial in trials), solver["evaluations"] + 1, "one before the first")
+            limited = [trial for trial in trials if len(trial) > 1]
+            for trial in limited:
+                self.assertEqual(trial, {length: trial[length], 2 * length: trial[length]})
+            self.assertTrue(solver["limited_steps"] <= len(limited) < len(trials))
+            sent.append(length)
+        self.assert_foretold(sent, "stage", "thermal_wall", *changes)
+
+    @NEEDS_MPI
+    def test_all_calls_of_mpi_are_counted(self):
+        """What sends is among the calls that the tests above count, or is called once a run."""
+        of = [set(re.findall(r"(?<!P)MPI_[A-Z]\w+(?=\()", (ROOT / file).read_text()))
+              for file in ("src/pyroclast/parallel/mpi_processes.cpp", "tests/app/mpi_calls.cpp")]
+        self.assertEqual(of[0] - of[1], {f"MPI_{name}" for name in (
+            "Abort", "Allgather", "Comm_free", "Comm_rank", "Comm_size", "Comm_split_type", "Ibarrier", "Init_thread",
+            "Irecv", "Test", "Testall")})
 
     @NEEDS_MPI
     def test_errors_are_told_once_and_end_all_ranks(self):

@@ -1,12 +1,13 @@
 // Ranks by MPI. This file alone knows MPI; it becomes a shared object that the program loads on demand.
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <thread>
+#include <unordered_map>
 
 #include <mpi.h>
 #include <sched.h>
@@ -22,11 +23,11 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 using WaitClock = std::chrono::steady_clock;
 
-/// Numbers of a rank that all ranks learn at once; bytes beyond it need a second message.
-struct Packet {
+/// Begin of the packet that each rank gives to a gather; the bytes of the rank follow where the packet has
+/// room.
+struct Head {
   std::uint64_t size = 0;   ///< bytes of the rank
   std::uint64_t place = 0;  ///< hash of the place from which it calls
-  std::array<std::byte, 240> first{};
 };
 
 class MpiProcesses final : public Processes {
@@ -77,31 +78,40 @@ class MpiProcesses final : public Processes {
 
  protected:
   std::vector<std::byte> gather(std::span<const std::byte> own, Receivers receivers, CallPlace at) override {
-    Packet packet{.size = own.size(), .place = at.hash()};
-    std::copy_n(own.begin(), std::min(own.size(), packet.first.size()), packet.first.begin());
-    std::vector<Packet> packets(static_cast<std::size_t>(count_));
+    const Head head{.size = own.size(), .place = at.hash()};
+    std::size_t& room = rooms_.try_emplace(head.place, kLeastRoom).first->second;
+    const std::size_t of_packet = sizeof(Head) + room;
+    std::vector<std::byte> packet(of_packet), packets(of_packet * static_cast<std::size_t>(count_));
+    std::memcpy(packet.data(), &head, sizeof(Head));
+    std::copy_n(own.begin(), std::min(own.size(), room), packet.begin() + sizeof(Head));
     requests_.assign(1, MPI_REQUEST_NULL);
-    MPI_Iallgather(&packet, sizeof(Packet), MPI_BYTE, packets.data(), sizeof(Packet), MPI_BYTE,
+    MPI_Iallgather(packet.data(), length(of_packet), MPI_BYTE, packets.data(), length(of_packet), MPI_BYTE,
                    MPI_COMM_WORLD, requests_.data());
     wait(requests_, at);
-    require_one_place(packets, at);
     const bool receives = receivers == Receivers::all || is_first();
     std::vector<int> sizes, begins;
-    std::size_t total = 0;
-    bool is_small = true;
-    for (const Packet& of_rank : packets) {
+    std::size_t total = 0, largest = 0;
+    for (std::size_t rank = 0; rank < static_cast<std::size_t>(count_); ++rank) {
+      Head of_rank;
+      std::memcpy(&of_rank, &packets[rank * of_packet], sizeof(Head));
+      if (of_rank.place != head.place)
+        throw Error("ranks are in different places of the program, this one in " + at.text() +
+                    ": please report this as a fault of pyroclast");
       begins.push_back(length(total));
       sizes.push_back(length(of_rank.size));
       total += of_rank.size;
-      is_small = is_small && of_rank.size <= of_rank.first.size();
+      largest = std::max<std::size_t>(largest, of_rank.size);
     }
     length(total);
     std::vector<std::byte> all(receives ? total : 0);
-    if (is_small) {
-      for (std::size_t rank = 0; receives && rank < packets.size(); ++rank)
-        std::copy_n(packets[rank].first.begin(), packets[rank].size, all.begin() + begins[rank]);
+    if (largest <= room) {
+      for (std::size_t rank = 0; receives && rank < sizes.size(); ++rank)
+        std::copy_n(packets.begin() + rank * of_packet + sizeof(Head), sizes[rank],
+                    all.begin() + begins[rank]);
       return all;
     }
+    // all ranks know all sizes, so they give the next packet from here the same room
+    if (receivers == Receivers::all && largest * sizes.size() <= kMostPadded * total) room = largest;
     requests_.assign(1, MPI_REQUEST_NULL);
     if (receivers == Receivers::all)
       MPI_Iallgatherv(own.data(), sizes[static_cast<std::size_t>(me_)], MPI_BYTE, all.data(), sizes.data(),
@@ -115,6 +125,8 @@ class MpiProcesses final : public Processes {
 
  private:
   static constexpr int kTags = 30000;  // MPI has at least 32,767
+  static constexpr std::size_t kLeastRoom = 240;
+  static constexpr std::size_t kMostPadded = 2;  // bytes of packets over those of ranks
 
   /// Returns a length for MPI, which counts by int.
   static int length(std::size_t count) {
@@ -156,16 +168,10 @@ class MpiProcesses final : public Processes {
     }
   }
 
-  static void require_one_place(const std::vector<Packet>& packets, CallPlace at) {
-    for (const Packet& of_rank : packets)
-      if (of_rank.place != packets.front().place)
-        throw Error("ranks are in different places of the program, this one in " + at.text() +
-                    ": please report this as a fault of pyroclast");
-  }
-
   int me_ = 0, count_ = 1, sharing_ = 1;
   double longest_wait_ = 0.0;  ///< s; 0: any
   std::vector<MPI_Request> requests_, of_exchange_;
+  std::unordered_map<std::uint64_t, std::size_t> rooms_;  ///< bytes of a rank in a packet, by place
 };
 
 }  // namespace

@@ -157,6 +157,10 @@ void Drive::act(Simulation& simulation, std::int64_t adjustment) {
   if (kept_.is_driven) kept_.driven += interval;
 }
 
+void Drive::read(const Simulation& simulation) {
+  if (control_) control_->read(simulation);
+}
+
 bool Drive::advance(Simulation& simulation, int most_steps) {
   const std::int64_t interval = steps_per_adjustment(simulation);
   if (kept_.steps % interval == 0) act(simulation, interval);

@@ -26,6 +26,7 @@ class Drive : public Stage {
   /// \param supports  supports with those of this drive
   void check_beside(const Drive& under_way, const Simulation& simulation, const Supports& supports) const;
   void begin(Simulation& simulation) override;
+  void read(const Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   void look(const Simulation& simulation) override;
   Verdict judge(Simulation& simulation) override;

@@ -41,7 +41,12 @@ void OpeningControl::check(const Simulation& simulation) const {
 
 void OpeningControl::begin(const Simulation& simulation) {
   steps_per_adjustment_ = 0;
-  kept_.first_opening = kept_.last_opening = simulation.record(keys().record).read(simulation);
+  read(simulation);
+  kept_.first_opening = kept_.last_opening = opening_;
+}
+
+void OpeningControl::read(const Simulation& simulation) {
+  opening_ = simulation.record(keys().record).read(simulation);
 }
 
 /// Returns the largest stiffness of the pair with which its sets come to rest, N/m: the pair then changes at
@@ -67,10 +72,9 @@ std::int64_t OpeningControl::steps_per_adjustment(const Simulation& simulation) 
 void OpeningControl::steer(const Simulation& simulation, double time, std::int64_t interval,
                            const LoadBefore& before, LoadsBySet& loads) {
   const Record& record = simulation.record(keys().record);
-  const double opening = simulation.ranks().together([&] { return record.read(simulation); });
-  kept_.pair_work += kept_.pair_force * (opening - kept_.last_opening);
-  kept_.last_opening = opening;
-  const double behind = kept_.first_opening + keys().rate * time - opening;
+  kept_.pair_work += kept_.pair_force * (opening_ - kept_.last_opening);
+  kept_.last_opening = opening_;
+  const double behind = kept_.first_opening + keys().rate * time - opening_;
   kept_.pair_force = keys().stiffness * behind;
   const double whole = std::abs(keys().rate) * drive_.duration;
   kept_.is_lost = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());

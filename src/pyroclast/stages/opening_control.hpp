@@ -23,6 +23,8 @@ class OpeningControl {
   void begin(const Simulation& simulation);
   /// Returns the number of steps between two adjustments of the pair.
   std::int64_t steps_per_adjustment(const Simulation& simulation) const;
+  /// Reads the opening by which the next call of `steer` goes.
+  void read(const Simulation& simulation);
   /// Sets the pair of forces that holds the opening on its course, and changes the factor of the loads until
   /// the pair has nothing left to do.
   /// \param time      time of the stage, s, for which the opening is prescribed
@@ -69,6 +71,7 @@ class OpeningControl {
     double pair_work = 0.0;     ///< work of the pair, J
     bool is_lost = false;       ///< true where the opening left its prescribed value
   } kept_;
+  double opening_ = 0.0;  ///< opening before the batch, m
   /// Steps of an interval, which follow from the masses of the sets; 0 until they are asked for.
   mutable std::int64_t steps_per_adjustment_ = 0;
 };

@@ -185,7 +185,12 @@ void Run::begin_stage() {
 bool Run::move_to_look() {
   for (bool there = false; !there;) {
     between_batches_(*this);
-    if (simulation_.ranks().any(stop_asked_())) {
+    const bool asked = stop_asked_();
+    const bool stops = simulation_.ranks().together([&] {
+      stages_[stage_]->read(simulation_);
+      return simulation_.ranks().any(asked);
+    });
+    if (stops) {
       courses_[stage_].outcome = Outcome::stopped;
       outcome_ = Outcome::stopped;
       return false;

@@ -169,9 +169,9 @@ struct StageReport {
 
 /// Stage: an operation on a simulation that goes on until its verdict says that it is over.
 ///
-/// A run calls `begin`, and then repeatedly calls `advance` until a look is due, takes the look, in which
-/// the stage may `look` too, and asks `judge`. All numbers that a stage keeps between two batches are shown
-/// to `visit_state`.
+/// A run calls `begin`, and then repeatedly calls `read` and `advance` until a look is due, takes the look,
+/// in which the stage may `look` too, and asks `judge`. All numbers that a stage keeps between two batches
+/// are shown to `visit_state`.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -203,6 +203,9 @@ class Stage {
   virtual double held_stress() const { return 0.0; }
   /// Prepares supports and loads of the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;
+  /// Reads what the next batch needs of the body to steer it. What it reads travels with the question whether
+  /// to stop, see Ranks::together; so it may be called twice.
+  virtual void read(const Simulation&) {}
   /// Moves on by one batch: at most `most_steps` steps of the mechanics, or as many evaluations of the heat
   /// solver as it takes at once (HeatSolver::stages_per_batch). Returns true when a look is due. Where
   /// batches end changes no result.
