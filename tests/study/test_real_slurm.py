@@ -1,4 +1,4 @@
-"""Studies by a real Slurm, where there is one: skipped where sinfo does not answer. scripts/slurm-one-node starts one.
+"""Studies, and a run on ranks, by a real Slurm: skipped where sinfo does not answer. scripts/slurm-one-node starts one.
 
     PYTHONPATH=build/release/python PYROCLAST=build/release/bin/pyroclast \\
         python3 -m unittest discover -s tests/study -p test_real_slurm.py -v
@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import shutil
 import subprocess
@@ -95,6 +96,25 @@ class RealSlurm(unittest.TestCase):
         self.assertEqual({r.state for r in self.results.values()}, {DONE})
         self.assertEqual(self.results["run-0"].attempts, 2)
         self.assertEqual(self.made(), [0, 0, 1])
+
+
+@unittest.skipUnless(answers(), "there is no Slurm")
+class RanksOfSlurm(unittest.TestCase):
+    """`srun` starts the ranks of one run; which way they find each other is that of the cluster, see MpiDefault."""
+
+    def test_a_run_has_the_history_of_one_process(self) -> None:
+        program = os.environ["PYROCLAST"]
+        if not (pathlib.Path(program).parents[1] / "lib/pyroclast/pyroclast_mpi.so").exists():
+            self.skipTest("the program was built without MPI")
+        case = pathlib.Path(__file__).parents[2] / "cases/starter.toml"
+        run = [program, "run", str(case), "--no-figures", "--quiet", "--threads", "1", "--set", "blocks.count=120",
+               "--set", "stages[1].velocity=8 mm/s", "--set", "stages[1].stop_strain=0.0002"]
+        with tempfile.TemporaryDirectory() as place:
+            for name, command in (("alone", run), ("together", ["srun", "-n", "2", *run, "--mpi"])):
+                subprocess.run([*command, "--out", f"{place}/{name}"], check=True, timeout=300.0,
+                               env={**os.environ, "PYROCLAST_CHUNK_BLOCKS": "16"})
+            alone, together = (pathlib.Path(place, name, "history.csv").read_bytes() for name in ("alone", "together"))
+            self.assertEqual(alone, together)
 
 
 if __name__ == "__main__":
