@@ -699,8 +699,9 @@ class OtherRuns(PageOfRun):
         self.assertTrue(all(later <= before + 2.0 for before, later in zip(values, values[1:])), "from the hot face")
         self.look("z 0")  # along the heated face: no side is the hot one
         self.assertEqual(browser.run("return pyroclast.scene.body.depths(pyroclast.scene.frame, [100]).depths"), [])
-        for view in ("z -1", "turned"):  # from outside, with the line across
-            self.look(view)
+        self.look("turned")  # from outside, at first from the side of the heated face; with the line across
+        self.assertLess(browser.run("return pyroclast.scene.body.axes[2][2]"), 0.0)
+        self.look("z -1")
         self.assert_silent()
 
 

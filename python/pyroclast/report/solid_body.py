@@ -84,9 +84,7 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         for mode in modes:
             arrays[f"damage_{mode}"] = packed_damage(columns[f"damage_{mode}"][:, kept])
         arrays["opening"] = packed_steps(columns["opening"][:, kept], _OPENING)
-    # the first plane that a page shows: one that goes into the depth below the heated face
-    across = "x" if run.summary.get("heated_face") in ("front", "back") else "z"
-    about = {**about_body(run), "solid": True, "across": across,
+    about = {**about_body(run), "solid": True, "heated_face": run.summary.get("heated_face"),
              "steps": {name: array["step"] for name, array in arrays.items() if "step" in array}}
     return PackedBody(about, arrays, taken, notes + left_out)
 

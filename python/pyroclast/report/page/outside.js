@@ -6,6 +6,7 @@ import {SolidBody} from "./solid.js";
 
 const DARKEST = 0.62; // of a colour on a face that is seen from the side, as in figures
 const [BEGIN_AZIMUTH, BEGIN_HEIGHT] = [0.72, 0.43]; // radians, of a view from the right, above and before
+const SEEN_FROM = {left: [-1, 1, 1], bottom: [1, -1, 1], front: [1, 1, -1]}; // heated faces that this view hides
 const MOST_ZOOM = 12;
 const BY_PROCESSOR = /swiftshader|llvmpipe|softpipe|software|basic render/i; // names of WebGL without a graphics card
 
@@ -30,7 +31,8 @@ export class OutsideBody extends SolidBody {
     this.first = new Int32Array(1); // of polygons, which only the painter makes
     Object.assign(this, {alone: false, zoom: 1, aside: [0, 0], raster: undefined});
     this.size();
-    this.look(BEGIN_AZIMUTH, BEGIN_HEIGHT);
+    const [x, y, z] = SEEN_FROM[this.about.heated_face] || [1, 1, 1];
+    this.look(Math.atan2(x * Math.sin(BEGIN_AZIMUTH), z * Math.cos(BEGIN_AZIMUTH)), y * BEGIN_HEIGHT);
   }
 
   get hasIsotherms() {

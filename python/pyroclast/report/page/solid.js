@@ -100,7 +100,8 @@ export class CutBody extends SolidBody {
     const {triangle} = this.arrays;
     this.trianglesOf = Array.from({length: this.blocks}, () => []);
     for (let t = 0; t < triangle.shape[0]; t++) this.trianglesOf[this.blockOf[triangle.values[3 * t]]].push(t);
-    this.look(this.about.across, 0.5);
+    // a plane that goes into the depth below the heated face
+    this.look(["front", "back"].includes(this.about.heated_face) ? "x" : "z", 0.5);
   }
 
   // Puts the plane across an axis at a share of the specimen's size.
