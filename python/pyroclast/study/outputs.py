@@ -99,7 +99,7 @@ class Output:
         if isinstance(node, (int, float)) and math.isfinite(node):
             return float(node), str(own.get(_text_about(facts, name, "doubt")) or "")
         why = own.get(_text_about(facts, name, "reason"))
-        return math.nan, str(why or f"the summary has no number called {name!r}")
+        return math.nan, str(why or ("the test came to none" if with_it else f"the summary has no number called {name!r}"))
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
         from ..stored.files import Table  # numpy and h5py, which a task that takes no history does without
