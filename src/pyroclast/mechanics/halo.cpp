@@ -45,7 +45,7 @@ Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(m
   for (const Neighbour& neighbour : neighbours_)
     for (const int slot : neighbour.sent) bundles_sent_.push_back(layout.bundle_of_pack[slot / kLanes]);
   std::ranges::sort(bundles_sent_);
-  bundles_sent_.erase(std::ranges::unique(bundles_sent_).begin(), bundles_sent_.end());
+  bundles_sent_.erase(std::unique(bundles_sent_.begin(), bundles_sent_.end()), bundles_sent_.end());
   if (!ranks_.spoil_foreign()) return;
   const ChunkList::Items own = model.gridpoint_chunks().own();
   for (int g = 0; g < model.gridpoint_count(); ++g)
