@@ -14,6 +14,7 @@ import numpy as np
 import pyroclast
 from pyroclast.draw import solid_sections
 from pyroclast.stored import cut
+from pyroclast.stored.mesh import specimen_box
 
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
@@ -107,6 +108,21 @@ class Cylinder(unittest.TestCase):
         self.assertAlmostEqual(outward[1], 0.0, delta=1e-12)
         self.assertAlmostEqual(abs(outward[0]), normals[0], delta=1e-9)
         self.assertAlmostEqual(abs(outward[2]), normals[2], delta=1e-9)
+
+    def test_cracks_show_on_the_sides_and_cuts_that_a_view_sees(self):
+        mesh = self.results.mesh
+        cells = mesh.contacts.points[mesh.contacts.cells]
+        for signs in ([1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, -1.0]):
+            view = solid_sections.View(solid_sections.VIEW.towards_eye * signs)
+            lines = solid_sections.crack_lines(mesh, cells, np.ones(len(cells), bool), view)
+            at = lines.mean(axis=1)
+            above = [plane.above(at) > 1e-9 for plane in solid_sections.middle_planes(mesh.blocks, view=view)]
+            self.assertFalse((above[0] & above[1]).any(), signs)  # where nothing is left
+            low, high = (end[[0, 2]] for end in specimen_box(mesh.blocks))
+            out = at[:, [0, 2]] - 0.5 * (low + high)
+            on_rim = np.hypot(*out.T) > 0.98 * 0.5 * DIAMETER
+            self.assertGreater(on_rim.sum(), 100)
+            self.assertGreater((out[on_rim] @ view.towards_eye[[0, 2]]).min(), -0.1 * DIAMETER)  # it has few sides
 
     def test_traces_of_contacts_lie_in_the_plane_and_on_them(self):
         contacts, plane = self.results.mesh.contacts, solid_sections.axis_plane(self.results.mesh.blocks, "x", 0.3)
