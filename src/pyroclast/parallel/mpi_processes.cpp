@@ -110,7 +110,8 @@ class MpiProcesses final : public Processes {
                     all.begin() + begins[rank]);
       return all;
     }
-    // all ranks know all sizes, so they give the next packet from here the same room
+    // All ranks know all sizes, so they give the next packet from here the same room. By a fault of the
+    // program ranks may be in different places whose packets differ in length: then MPI ends them all.
     if (receivers == Receivers::all && largest * sizes.size() <= kMostPadded * total) room = largest;
     requests_.assign(1, MPI_REQUEST_NULL);
     if (receivers == Receivers::all)
