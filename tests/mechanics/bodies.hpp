@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "pyroclast/laws/built_in.hpp"
@@ -165,6 +168,77 @@ inline ModelOf<3> cubes(int count, double d) {
     const int low = 9 * i, high = 9 * (i + 1);
     model.join_faces({low + 4, low + 5, low + 6, low + 7}, {high, high + 1, high + 2, high + 3}, 0);
   }
+  return model;
+}
+
+/// Adds a face between two cells, or on the surface where `outer` is -1.
+inline void add_face(solid::Complex& complex, std::vector<int> corners, int inner, int outer) {
+  const int face = static_cast<int>(complex.faces.size());
+  complex.faces.push_back({std::move(corners), inner, outer, outer < 0 ? 0 : -1});
+  for (const int cell : {inner, outer})
+    if (cell >= 0) complex.cells[cell].push_back(face);
+}
+
+/// Octant of a sphere around the origin, where x, y and z are positive: shells between radii, each of three
+/// patches of n x n blocks, in which a cube's faces would be seen from its middle. Blocks of a shell that
+/// begins at the radius 0 are pyramids. Block b stands in shell b / (3 n^2). Materials are `inner` and
+/// `outer`. \param inner_shells  number of shells of the inner material
+inline ModelOf<3> octant(const std::vector<double>& radii, int n, int inner_shells = 0) {
+  solid::Complex complex;
+  std::map<std::array<int, 4>, int> vertices;     // by level and place on the cube
+  std::map<std::vector<int>, std::size_t> faces;  // by their corners, ascending
+  std::vector<int> material;
+  const auto vertex = [&](int level, int patch, int i, int j) {
+    std::array<int, 4> key{};  // all vertices at the radius 0 are one
+    Vec<3> at{};
+    if (radii[level] > 0.0) {
+      key[3] = level;
+      key[patch] = n;
+      key[(patch + 1) % 3] = i;
+      key[(patch + 2) % 3] = j;
+      for (int axis = 0; axis < 3; ++axis) at[axis] = std::tan(0.25 * std::numbers::pi * key[axis] / n);
+      at *= radii[level] / norm(at);
+    }
+    const auto [found, is_new] = vertices.emplace(key, static_cast<int>(complex.vertices.size()));
+    if (is_new) complex.vertices.push_back(at);
+    return found->second;
+  };
+  for (int shell = 0; shell + 1 < std::ssize(radii); ++shell)
+    for (int patch = 0; patch < 3; ++patch)
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto corners = [&](int level) {
+            return std::array{vertex(level, patch, i, j), vertex(level, patch, i + 1, j),
+                              vertex(level, patch, i + 1, j + 1), vertex(level, patch, i, j + 1)};
+          };
+          const auto low = corners(shell), high = corners(shell + 1);
+          std::vector<std::vector<int>> outward{{low[3], low[2], low[1], low[0]},
+                                                {high[0], high[1], high[2], high[3]}};
+          for (int side = 0; side < 4; ++side) {
+            const int next = (side + 1) % 4;
+            outward.push_back({low[side], low[next], high[next], high[side]});
+          }
+          const int cell = static_cast<int>(complex.cells.size());
+          complex.cells.emplace_back();
+          material.push_back(shell < inner_shells ? 0 : 1);
+          for (auto& face : outward) {
+            face.erase(std::unique(face.begin(), face.end()), face.end());
+            if (face.size() < 3) continue;  // at the radius 0
+            auto sorted = face;
+            std::ranges::sort(sorted);
+            if (const auto before = faces.find(sorted); before != faces.end()) {
+              complex.faces[before->second].outer = cell;
+              complex.cells[cell].push_back(static_cast<int>(before->second));
+              continue;
+            }
+            faces.emplace(sorted, complex.faces.size());
+            add_face(complex, face, cell, -1);
+          }
+        }
+  ModelOf<3> model;
+  model.material_names = {"inner", "outer"};
+  model.interface_names = {"joint"};
+  add_cells(model, complex, material, [](int, int) { return 0; });
   return model;
 }
 

@@ -27,14 +27,6 @@ ModelOf<3> of_two_materials(const solid::Complex& complex, const std::vector<int
   return model;
 }
 
-/// Adds a face between two cells, or on the surface where `outer` is -1.
-void add_face(solid::Complex& complex, std::vector<int> corners, int inner, int outer) {
-  const int face = static_cast<int>(complex.faces.size());
-  complex.faces.push_back({std::move(corners), inner, outer, outer < 0 ? 0 : -1});
-  for (const int cell : {inner, outer})
-    if (cell >= 0) complex.cells[cell].push_back(face);
-}
-
 constexpr int kCubes = 4;        // along each side of a layer
 constexpr double kCube = 0.005;  // m
 

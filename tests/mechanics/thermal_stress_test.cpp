@@ -294,6 +294,154 @@ TEST(ThickCylinderVerification, TakesTheHoopStressesOfALogarithmicTemperature) {
                0.02 * std::abs(exact(b)));
 }
 
+// ---- Spheres
+
+/// Radial and hoop stress, Pa.
+struct PolarStress {
+  double radial = 0.0, hoop = 0.0;
+};
+
+/// Means of the stresses over the volume of each shell of a body made by octant().
+std::vector<PolarStress> of_shells(const Mechanics<3>& m, int n) {
+  const ModelOf<3>& model = m.model();
+  const auto volume = zone_geometry(model).volume;
+  const auto block = zone_blocks(model);
+  std::vector<PolarStress> mean(model.block_count() / (3 * n * n));
+  std::vector<double> weight(mean.size());
+  for (int z = 0; z < model.zone_count(); ++z) {
+    Vec<3> centre{};
+    for (int g : model.zones[z]) centre += model.position[g] * 0.25;
+    const Vec<3> r = centre * (1.0 / norm(centre));
+    const auto s = m.read().stress(z);
+    const double radial = s[0] * r[0] * r[0] + s[1] * r[1] * r[1] + s[2] * r[2] * r[2] +
+                          2.0 * (s[3] * r[0] * r[1] + s[4] * r[1] * r[2] + s[5] * r[2] * r[0]);
+    const int shell = block[z] / (3 * n * n);
+    mean[shell].radial += volume[z] * radial;
+    mean[shell].hoop += volume[z] * 0.5 * (s[0] + s[1] + s[2] - radial);
+    weight[shell] += volume[z];
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    mean[i].radial /= weight[i];
+    mean[i].hoop /= weight[i];
+  }
+  return mean;
+}
+
+/// Root of the mean square error over both stresses of all shells, over a scale.
+double error_of_shells(const std::vector<PolarStress>& found, const std::vector<PolarStress>& exact,
+                       double scale) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    sum += std::pow(found[i].radial - exact[i].radial, 2) + std::pow(found[i].hoop - exact[i].hoop, 2);
+  return std::sqrt(sum / (2.0 * static_cast<double>(found.size()))) / scale;
+}
+
+/// Steps to rest, and half of the slowest vibration, for each block along an edge of a patch.
+constexpr int kStepsOfSpheres = 800, kSettlingOfSpheres = 100;
+constexpr double kHollow = 0.05, kOutside = 0.1;  // radii, m
+
+/// The closed form c + d / r + e / r^3 of the radial stress, of which the hoop stress is c + d / (2 r) -
+/// e / (2 r^3), as means over the volume of each shell.
+std::vector<PolarStress> exact_of_shells(const std::vector<double>& radii, double c, double d, double e) {
+  std::vector<PolarStress> exact;
+  for (std::size_t i = 0; i + 1 < radii.size(); ++i) {
+    const double from = radii[i], to = radii[i + 1], cube = std::pow(to, 3) - std::pow(from, 3);
+    const double over_r = 1.5 * (to * to - from * from) / cube, over_cube = 3.0 * std::log(to / from) / cube;
+    exact.push_back({c + d * over_r + e * over_cube, c + 0.5 * d * over_r - 0.5 * e * over_cube});
+  }
+  return exact;
+}
+
+/// Means of the stresses of an octant's shells when it has come to rest between its planes of symmetry.
+std::vector<PolarStress> shells_at_rest(Mechanics<3>& m, int n) {
+  for (int i : {0, 1, 2}) hold(m, i, {0.0});
+  m.advance(kStepsOfSpheres * n);
+  EXPECT_LT(m.totals().unbalanced_ratio(), 2e-5);
+  return of_shells(m, n);
+}
+
+/// Errors of the stresses of a thick sphere, over the largest of the closed form: under a pressure inside,
+/// and steadily hotter inside.
+std::array<double, 2> thick_sphere_errors(int n) {
+  const double a = kHollow, b = kOutside, cubes = b * b * b - a * a * a;
+  std::vector<double> radii;
+  for (int i = 0; i <= 2 * n; ++i) radii.push_back(a * std::pow(b / a, 0.5 * i / n));
+  const ModelOf<3> model = octant(radii, n);
+  const auto contact = stiff_contact(1e-3, a / n);
+
+  constexpr double pressure = 1e6;
+  auto pressed = mechanics(model, contact, settling<3>(kSettlingOfSpheres * n), young, poisson);
+  std::vector<Vec<3>> force(model.position.size());
+  for (const Face& face : faces_of(model)) {
+    if (!std::ranges::all_of(face.gridpoints(),
+                             [&](int g) { return std::abs(norm(model.position[g]) - a) < 1e-9; }))
+      continue;
+    for (const int g : face.gridpoints()) force[g] += face.normal * (-pressure * face.area / 3.0);
+  }
+  for (int g = 0; g < model.gridpoint_count(); ++g) pressed.constraints().apply_force(g, force[g]);
+  const double held = pressure * a * a * a / cubes;
+  const double of_pressure = error_of_shells(shells_at_rest(pressed, n),
+                                             exact_of_shells(radii, held, 0.0, -held * b * b * b), pressure);
+
+  constexpr double thermal_strain = 1e-3;  // of the hollow's face
+  auto heated = mechanics(model, contact, settling<3>(kSettlingOfSpheres * n), young, poisson);
+  auto properties = uniform(model, contact, 0.0);
+  for (int z = 0; z < model.zone_count(); ++z)
+    for (int g : model.zones[z])
+      properties.zones[z].thermal_strain +=
+          0.25 * thermal_strain * a / (b - a) * (b / norm(model.position[g]) - 1.0);
+  heated.set_properties(properties);
+  const double scale = young * thermal_strain / (1.0 - poisson), k = scale * a * b / cubes;
+  const double of_heat = error_of_shells(
+      shells_at_rest(heated, n),
+      exact_of_shells(radii, k * (a + b), -k * (b * b + a * b + a * a), k * a * a * b * b), scale);
+  return {of_pressure, of_heat};
+}
+
+// Timoshenko and Goodier, Theory of Elasticity, art. 136 (Lamé) and 152. Promise: errors at least halve where
+// blocks do.
+TEST(ThickSphereVerification, TakesTheStressesOfAPressureAndOfASteadyTemperature) {
+  const auto coarse = thick_sphere_errors(2), fine = thick_sphere_errors(4);
+  const char* const source[] = {"Lame; Timoshenko and Goodier, Theory of Elasticity, art. 136",
+                                "Timoshenko and Goodier, Theory of Elasticity, art. 152"};
+  const char* const what[] = {"under a pressure inside, over the pressure",
+                              "hotter inside, over E alpha dT / (1 - nu)"};
+  for (int i : {0, 1}) {
+    expect_known_field(
+        {std::string("Stresses of a thick sphere ") + what[i] + ", means of shells", source[i], "1"}, fine[i],
+        1.0, 0.01);
+    EXPECT_GT(std::log2(coarse[i] / fine[i]), 0.9);
+  }
+}
+
+// Promise: a ball that expands more than the large body around it takes the pressure
+// misfit / (1 / (3 K) + 1 / (4 G)), K of the ball and G of the body.
+TEST(InclusionVerification, ABallInALargeBodyTakesThePressureOfItsMisfit) {
+  constexpr double radius = 0.01, misfit = 1e-3, ball_young = 70e9, ball_poisson = 0.15;
+  constexpr int n = 4, ball_shells = 2, shells = 12;
+  std::vector<double> radii{0.0, 0.5 * radius};
+  for (int i = 0; i <= shells - ball_shells; ++i)  // to five times the ball: 0.5 % less than an endless body
+    radii.push_back(radius * std::pow(5.0, static_cast<double>(i) / (shells - ball_shells)));
+  const ModelOf<3> model = octant(radii, n, ball_shells);
+  const auto contact = stiff_contact(3e-3, 0.5 * radius);
+  auto properties = uniform(model, contact, 0.0);
+  const auto block = zone_blocks(model);
+  for (int z = 0; z < model.zone_count(); ++z)
+    if (model.block_material[block[z]] == 0)
+      properties.zones[z] = zone_properties<3>(ball_young, ball_poisson, misfit);
+  Mechanics<3> m(model, {2400.0, 2400.0}, properties, settling<3>(kSettlingOfSpheres * n));
+  const auto found = shells_at_rest(m, n);
+  const double bulk = ball_young / (3.0 * (1.0 - 2.0 * ball_poisson));
+  const double shear = young / (2.0 * (1.0 + poisson));
+  const double pressure = misfit / (1.0 / (3.0 * bulk) + 1.0 / (4.0 * shear));
+  for (int shell = 0; shell < ball_shells; ++shell)
+    for (const auto& [stress, which] :
+         {std::pair{found[shell].radial, "Radial"}, std::pair{found[shell].hoop, "Hoop"}})
+      expect_known({std::string(which) + " stress of a ball that expands more than the large body around it",
+                    "misfit / (1 / (3 K) + 1 / (4 G))", "Pa"},
+                   stress, -pressure, 0.03 * pressure);
+}
+
 // ---- Total form
 
 TEST(TotalFormVerification, ALoadedColumnShortensAsItsModulusFallsAndReturnsOnCooling) {
