@@ -5,6 +5,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/sets.hpp"
 
 /// Bodies whose temperature changes: stresses, contacts and the energy ledger.
 // of its own, as tests of a module are one unit

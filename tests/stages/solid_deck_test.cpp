@@ -2,7 +2,9 @@
 // plane: whole runs of blocks of mortar beside closed forms.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -267,6 +269,220 @@ failure_strain = 0.01
   // a third of the depth.
   EXPECT_NEAR(solid.last("depth_m") / kDepth, 10e-6 * rise, 0.04 * 10e-6 * rise);
   for (const char* const stress : {"x_MPa", "y_MPa", "z_MPa"}) EXPECT_NEAR(solid.last(stress), 0.0, 0.05);
+}
+
+/// Mortar that moves and never cracks.
+/// \param zone  keys of the thickness of its contacts' fracture zones
+std::string uncracked(const std::string& zone) {
+  return "E = \"30 GPa\"\nnu = 0.2\nexpansion = \"10e-6 1/K\"\n[contacts]\n" + zone +
+         "[contacts.mortar_mortar]\nlaw = \"elastic\"\n" + resting_mechanics("0 m/s2");
+}
+
+/// Exchanges of a heated solid that is elastic but for creep.
+std::string exchanges(const char* increment) {
+  return fmt::format(R"([coupling]
+exchange_increment = "{}"
+unbalanced_ratio = 1e-5
+platen_difference = "0.01 MPa"
+least_cycles = 500
+most_cycles = 20000
+failure_strain = 0.5
+)",
+                     increment);
+}
+
+/// Means over a ring of a cylinder along y: radial, tangential and axial stress, MPa.
+std::array<double, 3> ring_means(const Simulation& simulation, const Interval& radii, double below) {
+  const Model& model = simulation.model();
+  const auto volume = model.zone_volumes();
+  std::array<double, 3> mean{};
+  double weight = 0.0;
+  for (int z = 0; z < model.zone_count(); ++z) {
+    Vec<3> centre{};
+    for (const int g : model.gridpoints_of_zone(z)) centre += model.place(g) * 0.25;
+    const double r = std::hypot(centre[0], centre[2]);
+    if (centre[1] > below || r < radii.lower || r >= radii.upper) continue;
+    const double c = centre[0] / r, s = centre[2] / r;
+    const auto stress = simulation.motion().read().stress(z);
+    const double shear = 2.0 * stress[5] * c * s;
+    mean[0] += volume[z] * (stress[0] * c * c + stress[2] * s * s + shear);
+    mean[1] += volume[z] * (stress[0] * s * s + stress[2] * c * c - shear);
+    mean[2] += volume[z] * stress[1];
+    weight += volume[z];
+  }
+  for (double& s : mean) s *= 1e-6 / weight;
+  return mean;
+}
+
+// Promise: a long cylinder heated evenly on its rim takes thermal stresses across and along it. Its
+// temperature comes to T_rim - C (b^2 - r^2), C = rate / (4 a); stresses are those of Timoshenko and Goodier,
+// Theory of Elasticity, art. 151, without force along the axis.
+TEST(SolidDeckVerification, ACylinderHeatedOnItsRimTakesTheStressesOfAParabola) {
+  constexpr double b = 0.03, young = 30e9, poisson = 0.2, expansion = 10e-6;
+  constexpr double rate = 5.0 / 60.0, diffusivity = 1.5 / 2.2e6, C = rate / (4.0 * diffusivity);
+  // the lower half of a cylinder twice as high, whose top is free
+  DoneDeck solid(
+      R"(title = "rim"
+[specimen]
+shape = "cylinder"
+diameter = "60 mm"
+height = "60 mm"
+seed = 1
+[blocks]
+count = 600
+radius_spread = 0.3
+shortest_edge = 0.35
+)" + kMortar +
+      kHot + uncracked("t_b = \"0.02 mm\"\nt_b_scaling = \"fixed\"\n") +
+      "[heat]\nfield = \"conduction\"\ninitial = \"20 degC\"\n" +
+      boundary("rim",
+               "kind = \"temperature\"\ntemperature = { table = [[\"0 s\", \"20 degC\"], "
+               "[\"1800 s\", \"170 degC\"], [\"3600 s\", \"170 degC\"]] }") +
+      R"([[sets]]
+name = "axis"
+within = "bottom"
+nearest = ["0 mm", "0 mm", "0 mm"]
+[[sets]]
+name = "aside"
+within = "bottom"
+nearest = ["30 mm", "0 mm", "0 mm"]
+[[stages]]
+kind = "drive"
+duration = "100 us"
+[[stages.drives]]
+set = "bottom"
+hold = ["y"]
+[[stages.drives]]
+set = "axis"
+hold = ["x", "z"]
+[[stages.drives]]
+set = "aside"
+hold = ["z"]
+[[stages]]
+kind = "expose"
+duration = "25 min"
+)" + exchanges("200 K"));
+  const double scale = young * expansion / (1.0 - poisson) * C * b * b / 2.0 * 1e-6;  // axial, in the middle
+  const Known known[] = {
+      {"Radial stress of a cylinder heated on its rim at 5 K/min, means of rings, over A C b^2 / 2",
+       "A C (b^2 - r^2) / 4, A = E alpha / (1 - nu)", "1"},
+      {"Tangential stress of a cylinder heated on its rim at 5 K/min, means of rings, over A C b^2 / 2",
+       "A C (b^2 - 3 r^2) / 4, A = E alpha / (1 - nu)", "1"},
+      {"Axial stress of a cylinder heated on its rim at 5 K/min, means of rings, over A C b^2 / 2",
+       "A C (b^2 - 2 r^2) / 2, A = E alpha / (1 - nu)", "1"}};
+  for (const Interval& ring : {Interval{0.0, 0.008}, {0.008, 0.015}, {0.015, 0.022}, {0.022, 0.03}}) {
+    const auto found = ring_means(*solid.simulation, ring, 0.02);
+    // mean of (r / b)^2 over the ring
+    const double square = (ring.lower * ring.lower + ring.upper * ring.upper) / (2.0 * b * b);
+    const double exact[] = {0.5 * (1.0 - square), 0.5 * (1.0 - 3.0 * square), 1.0 - 2.0 * square};
+    for (int i : {0, 1, 2}) expect_known_field(known[i], std::abs(found[i] / scale - exact[i]), 1.0, 0.03);
+  }
+}
+
+constexpr double kCreepPerKelvin = 2e-5, kCreepStrength = 35.0;  // 1/K, MPa
+
+/// A bar of mortar along y, 40 mm x 80 mm x 40 mm, that creeps by 2e-5 of load over f_c for each kelvin.
+/// \param top     what its top does
+/// \param stages  stages after the bar has come to rest
+std::string creeping_bar(const std::string& top, const std::string& stages, const char* increment) {
+  return R"(title = "bar"
+[specimen]
+width = "40 mm"
+height = "80 mm"
+depth = "40 mm"
+seed = 1
+[blocks]
+count = 40
+radius_spread = 0.3
+shortest_edge = 0.35
+)" + kMortar +
+         uncracked("t_b = \"0.8 mm\"\nt_b_scaling = \"block size\"\nt_b_block_size = \"3 mm\"\n") +
+         R"([materials.mortar.creep]
+strain = { table = [["20 degC", 0], ["520 degC", 0.01]] }
+f_c = "35 MPa"
+nu = 0.3
+tension = 1
+of = "phase"
+[heat]
+field = "uniform"
+initial = "20 degC"
+)" + stresses_and_openings() +
+         kDriveToRest + kPlanes + "[[stages.drives]]\nset = \"top\"\n" + top + stages + exchanges(increment);
+}
+
+std::string heat_bar(const char* to) {
+  return fmt::format("[[stages]]\nkind = \"heat\"\nto = \"{}\"\nrate = \"5 K/min\"\n", to);
+}
+
+/// Strains and mean stress of the bar in the last row of a stage.
+struct Bar {
+  Bar(const DoneDeck& solid, std::size_t stage) {
+    const auto last = [&](const char* column) {
+      return solid.run.history().cell(solid.run.courses()[stage].rows.last - 1, column).value();
+    };
+    stress = last("y_MPa");
+    along = last("height_m") / 0.08;
+    across = 0.5 * (last("width_m") + last("depth_m")) / 0.04;
+  }
+  double stress, along, across;
+};
+
+// Promise: a bar under a load creeps by B of the load over f_c, widens by nu_L of that, and keeps both when
+// it has cooled.
+TEST(SolidDeckVerification, ABarUnderLoadCreepsByBAndKeepsItOnCooling) {
+  const DoneDeck solid(creeping_bar("pressure = \"10 MPa\"\nramp_time = \"20 ms\"\n",
+                                    heat_bar("520 degC") + heat_bar("20 degC"), "10 K"));
+  const Bar cold(solid, 0), hot(solid, 1), cooled(solid, 2);
+  const double expansion = 10e-6 * 500.0, crept = kCreepPerKelvin * 500.0 * 10.0 / kCreepStrength;
+  const double shorter = cold.along - (hot.along - expansion);
+  expect_known({"Creep of a bar in space under 10 MPa, 20 to 520 degC", "B s / f_c", "1"}, shorter, crept,
+               5e-3 * crept);
+  expect_known(
+      {"Creep of a bar in space under 10 MPa that is left after cooling to 20 degC", "B s / f_c", "1"},
+      cold.along - cooled.along, crept, 5e-3 * crept);
+  expect_known({"Lateral over axial creep of a bar in space under 10 MPa", "nu_L", "1"},
+               (hot.across - expansion - cold.across) / shorter, 0.3, 5e-3 * 0.3);
+  EXPECT_NEAR(cooled.across - cold.across, 0.3 * crept, 5e-3 * 0.3 * crept);
+}
+
+// Promise: a bar that is held at its ends and heated comes to the stress at which it creeps as fast as it
+// would expand, to second order in the exchange.
+TEST(SolidDeckVerification, AHeldBarThatCreepsFollowsItsEquation) {
+  const auto stresses = [](const char* increment) {
+    const DoneDeck solid(creeping_bar("hold = [\"y\"]\n", heat_bar("420 degC"), increment));
+    const auto& rows = solid.run.courses()[1].rows;
+    std::map<long, double> all;  // MPa, by the rise in K
+    for (std::size_t row = rows.first; row < rows.last; ++row)
+      all[std::lround(solid.run.history().cell(row, "temperature_degC").value() - 20.0)] =
+          -solid.run.history().cell(row, "y_MPa").value();
+    return all;
+  };
+  // of zones and contacts, between ends that stay plane as those of the held bar
+  const std::string held = "hold = [\"y\"]\n", top = "[[stages.drives]]\nset = \"top\"\n";
+  const Bar squeezed(
+      DoneDeck(creeping_bar(held,
+                            "[[stages]]\nkind = \"drive\"\nduration = \"100 ms\"\n" + top +
+                                "velocity = \"-0.08 mm/s\"\ndirection = \"y\"\n" + kDriveToRest + top + held,
+                            "10 K")),
+      2);
+  const double modulus = squeezed.stress / squeezed.along;  // MPa
+  const double end = 10e-6 * kCreepStrength / kCreepPerKelvin;
+  const auto exact = [&](double rise) {
+    return end * (1.0 - std::exp(-modulus * kCreepPerKelvin * rise / kCreepStrength));
+  };
+  const auto coarse = stresses("20 K"), medium = stresses("10 K"), fine = stresses("5 K");
+  double largest = 0.0, change = 0.0, next_change = 0.0;
+  for (const auto& [rise, stress] : medium)
+    largest = std::max(largest, std::abs(stress - exact(static_cast<double>(rise))) / end);
+  expect_known_field({"Stress of a held bar in space that creeps, exchanges of 10 K, over its end value",
+                      "alpha f_c / B' (1 - exp(-E B' dT / f_c)), E measured cold", "1"},
+                     largest, 1.0, 4e-3);
+  for (const auto& [rise, stress] : coarse) {
+    change = std::max(change, std::abs(medium.at(rise) - stress));
+    next_change = std::max(next_change, std::abs(fine.at(rise) - medium.at(rise)));
+  }
+  EXPECT_EQ(coarse.size(), 20U);  // every 20 K
+  EXPECT_LE(next_change, change / 3.0);
 }
 
 /// Young's modulus of the cuboid that is pulled along y between planes it slides on, GPa.
