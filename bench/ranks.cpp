@@ -222,8 +222,9 @@ void print(const Asked& asked, OnRank& whole, std::vector<OnRanks>& all) {
     }) / static_cast<double>(whole.arrays());
   });
   row("zones that move while messages travel, least [% of own]", "{:.0f}", [](auto& of) {
-    return 100.0 -
-           of.most([&](int r) { return 100.0 * (1.0 - of.parts[static_cast<std::size_t>(r)]->inner_share); });
+    double least = 1.0;
+    for (const auto& part : of.parts) least = std::min(least, part->inner_share);
+    return 100.0 * least;
   });
   row("messages of a rank after each step, mean", "{:.1f}",
       [&](auto& of) { return of.sum(of_neighbours(of)) / ranks_of(of); });
@@ -251,17 +252,17 @@ void print(const Asked& asked, OnRank& whole, std::vector<OnRanks>& all) {
 
   fmt::print("\n");
   heading("modelled: nobody has run this");
-  const auto messages = [&](const OnRanks& of) {
-    return of.most([&](int r) { return of_neighbours(of)(r) * kLatency + of_bytes(of)(r) / kBandwidth; });
+  const auto messages_of = [&](const OnRanks& of, int r) {
+    return of_neighbours(of)(r) * kLatency + of_bytes(of)(r) / kBandwidth;
   };
+  const auto messages = [&](const OnRanks& of) { return of.most([&](int r) { return messages_of(of, r); }); };
   row(fmt::format("messages at {:.0f} us each and {:.0f} GB/s [us]", 1e6 * kLatency, 1e-9 * kBandwidth)
           .c_str(),
       "{:.1f}", [&](auto& of) { return 1e6 * messages(of); });
   const auto in_view = [&](const OnRanks& of) {
     return of.most([&](int r) {
       const OnRank& part = *of.parts[static_cast<std::size_t>(r)];
-      const double inner = part.inner_share * part.step.seconds;
-      return std::max(0.0, of_neighbours(of)(r) * kLatency + of_bytes(of)(r) / kBandwidth - inner);
+      return std::max(0.0, messages_of(of, r) - part.inner_share * part.step.seconds);
     });
   };
   row("what is left of them behind inner zones [us]", "{:.1f}", [&](auto& of) { return 1e6 * in_view(of); });

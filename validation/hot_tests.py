@@ -236,13 +236,9 @@ def strengths(blocks: int, temperatures: tuple[int, ...], in_space: bool = False
     return tests
 
 
-def known(test: Test, rows: list[dict[str, str]]) -> bool:
-    return any(all(row[name] == value for name, value in test.key.items()) for row in rows)
-
-
 def fill(table: pathlib.Path, tests: list[Test], jobs: int) -> None:
     """Runs the tests that do not stand in a table, and puts their lines there."""
-    wanted = [test.row for test in dict.fromkeys(tests) if not known(test, runs.read_table(table))]
+    wanted = [test.row for test in dict.fromkeys(tests) if not runs.stands(runs.read_table(table), test.key)]
     runs.fill_table(table, COLUMNS, wanted, jobs, ("test", "concrete", "blocks", "seed", "level", "to_degC"))
 
 

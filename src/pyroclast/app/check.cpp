@@ -64,9 +64,9 @@ double peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-void print_composition(const Composition& whole) {
+void print_composition(const Composition& whole, int dimension) {
   fmt::print("composition     {:.3f} inclusions, taken for {}\n", whole.inclusions,
-             whole.dimension == 2 ? "discs in plane stress" : "balls");
+             dimension == 2 ? "discs in plane stress" : "balls");
   if (whole.creep_share) {
     const auto [at_once, far] = *whole.creep_share;
     fmt::print("                creep of the concrete over creep of its matrix, R = {:.4f}", at_once);
@@ -102,7 +102,7 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
     fmt::print("                of blocks of the mean size; between others t_b goes with their size\n");
   print_stated_stiffness(setup);
   const auto& whole = simulation.materials().composition;
-  if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
+  if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole, model.dimension());
 }
 
 /// Tells how much a run writes, apart from its checkpoints and figures.

@@ -359,7 +359,6 @@ void follow_mixture(ConcreteMaterials& concrete, const ContactParameters& parame
   }
   const Mixture<Dim> mixture(mixed[of_matrix], inclusions);
   Composition& whole = concrete.composition.emplace();
-  whole.dimension = Dim;
   whole.inclusions = 1.0 - fraction[of_matrix];
 
   for (std::size_t i = 0; i < phases.size(); ++i) {

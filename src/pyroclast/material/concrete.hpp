@@ -170,7 +170,6 @@ struct ContactParameters {
 
 /// Properties of the specimen's phases as a whole.
 struct Composition {
-  int dimension = 2;        ///< inclusions are taken for discs in plane stress (2), or for balls (3)
   double inclusions = 0.0;  ///< share of the volume that is not matrix
   /// R, creep of the whole over creep of its matrix, when the matrix has crept once and ten times its elastic
   /// strain; both are the same where a deck states R.
