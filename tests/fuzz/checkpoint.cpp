@@ -155,7 +155,7 @@ void go_on(const Base& base, std::vector<std::string_view> edits) {
   trial.run.visit_state(rows);
   int batches = 0;
   cut_batches(trial.run, kStepsOfABatch);
-  trial.run.between_batches([](Run&) {});
+  trial.run.between_batches([](Run&, const Wishes&) {});
   trial.run.stop_when([&] { return ++batches > kBatches; });
   while (trial.run.next()) continue;
   for (std::size_t i = 0; i < trial.run.courses().size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <string>
@@ -99,6 +100,30 @@ TEST_F(Results, ACheckpointIsOnDiskWholeOrNotAtAll) {
   EXPECT_FALSE(fs::exists(folder_ / "a.state.partial"));
 }
 
+// Promise: a checkpoint of an older form is refused by that reason, not as a damaged one.
+TEST_F(Results, ACheckpointOfAnOlderFormIsRefused) {
+  write(folder_ / "a.state", made_thing());
+  std::string bytes = content(folder_ / "a.state");
+  bytes.back() = '1';
+  { std::ofstream(folder_ / "a.state", std::ios::binary) << bytes; }
+  const std::string said = message([&] { CheckpointFile(folder_ / "a.state"); });
+  EXPECT_NE(said.find("is in an older form"), std::string::npos) << said;
+}
+
+// Promise: of an array that stands chunk by chunk the chunk that is damaged is named.
+TEST_F(Results, ADamagedChunkIsNamed) {
+  const ChunkList chunks({0, 40, 60, 100});
+  std::vector<double> numbers(100, 1.5);
+  const auto visit = [&](StateVisitor& visitor) { visitor.visit_by_chunk("numbers", numbers, chunks); };
+  write_checkpoint(folder_ / "a.state", {}, visit);
+  std::string bytes = content(folder_ / "a.state");
+  bytes[8 + 8 * 50] ^= 1;
+  { std::ofstream(folder_ / "a.state", std::ios::binary) << bytes; }
+  for (const auto& read : {std::function([&] { CheckpointFile(folder_ / "a.state").verify(); }),
+                           std::function([&] { CheckpointFile(folder_ / "a.state").restore(visit); })})
+    EXPECT_NE(message(read).find("\"numbers\" of chunk 1 differs"), std::string::npos) << message(read);
+}
+
 /// Cuts, flips and swaps bytes.
 std::string damaged(std::string bytes, std::mt19937_64& random) {
   const auto place = [&] { return static_cast<std::size_t>(random() % bytes.size()); };
@@ -167,7 +192,7 @@ TEST_F(Results, ARunKeepsItsLatestCheckpointsAndThoseOfItsStages) {
                             {"inputs", body_hash(*simulation), [&](StateVisitor& v) { run.visit_state(v); },
                              [] { return 0.0; }, [] { return std::uint64_t{0}; }},
                             0);
-    for (int i = 0; i < 4; ++i) checkpoints.between_batches(run, false);
+    for (int i = 0; i < 4; ++i) checkpoints.write(run);
     checkpoints.end_stage(run);
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(checkpoint_folder(folder)))

@@ -170,7 +170,7 @@ std::vector<std::string> calls_of(const Asked& asked,
   Setup setup = small_setup(asked);
   const auto simulation = make_simulation(setup, std::make_shared<Team>(1), ranks);
   Run run(*simulation, std::move(setup.stages));
-  run.between_batches([&](Run&) { ranks->note('|'); });
+  run.between_batches([&](Run&, const Wishes&) { ranks->note('|'); });
   while (run.history().row_count() < asked.most_rows && run.next())
     if (run.stage_is_over()) ranks->note('.');
   std::vector<std::string> batches;

@@ -581,7 +581,7 @@ TEST(CompressReports, AGapIsClosedFirst) {
 TEST(CompressReports, SaysThatThePlatenComes) {
   Trial trial(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC", "fixed") + kCompress));
   std::vector<std::string> said;
-  trial.run.between_batches([&](pyroclast::Run& run) {
+  trial.run.between_batches([&](pyroclast::Run& run, const Wishes&) {
     if (run.last_begun_stage() != 3) return;
     if (said.empty() || said.back() != run.stage().doing()) said.push_back(run.stage().doing());
     if (!run.stage().doing().empty()) {
@@ -631,7 +631,7 @@ TEST(States, ASlowCompressionHasOne) {
   StateCopy copy;
   struct Enough {};
   cut_batches(first.run, 100);
-  first.run.between_batches([&](pyroclast::Run& run) {
+  first.run.between_batches([&](pyroclast::Run& run, const Wishes&) {
     if (run.last_begun_stage() != 1) return;
     copy.take([&](StateVisitor& visitor) { run.visit_state(visitor); });
     throw Enough();

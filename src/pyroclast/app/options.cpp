@@ -80,6 +80,12 @@ void add_watching(CLI::App* command, RunOptions& options) {
       "and in figures/watch.png of the folder");
 }
 
+CLI::Option* add_mpi(CLI::App* command, RunOptions& options) {
+  return command->add_flag("--mpi", options.mpi,
+                           "Hold the body by the ranks of an MPI job: mpirun -n 4 pyroclast run DECK --mpi; "
+                           "results are the same for any number");
+}
+
 void add_threads(CLI::App* command, int& threads) {
   command
       ->add_option(

@@ -46,7 +46,7 @@ struct RunOptions {
   OwnLawOptions laws;
   Speech speech = Speech::usual;
   std::shared_ptr<Ranks> held_by;  ///< ranks that hold the body; null: one
-  std::string command;           ///< command as typed, for the manifest
+  std::string command;             ///< command as typed, for the manifest
 };
 
 /// Returns a validator that takes whole numbers from `least` to `most`. Its messages are words of this
@@ -60,6 +60,7 @@ void add_output(CLI::App* command, RunOptions& options);
 void add_page(CLI::App* command, RunOptions& options);
 void add_speech(CLI::App* command, RunOptions& options);
 void add_watching(CLI::App* command, RunOptions& options);
+CLI::Option* add_mpi(CLI::App* command, RunOptions& options);
 void add_threads(CLI::App* command, int& threads);
 void add_processor(CLI::App* command, RunOptions& options);
 void add_changes(CLI::App* command, RunOptions& options);

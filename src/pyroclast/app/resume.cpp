@@ -6,6 +6,7 @@
 #include "pyroclast/app/run_to_end.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/shell_words.hpp"
+#include "pyroclast/results/text_file.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast::app {
@@ -29,7 +30,7 @@ int go_on(const ResumeOptions& options) {
   const CheckpointInfo& from = *session->goes_on_from();
   const std::filesystem::path file = session->last_checkpoint().filename();
   const Run& run = session->run();
-  RunLog log(options.run / "run.log", options.as.speech, from.log_bytes);
+  RunLog log(file_in(session->folder(), "run.log"), options.as.speech, from.log_bytes);
   log.say_now(fmt::format("goes on from {}, step {}, stage {} of {}", file.string(), from.step,
                           run.stage_number() + 1, run.stages().size()));
   if (from.commit != kCommit)
@@ -42,8 +43,8 @@ int fork(const ResumeOptions& options) {
   const auto session =
       Session::fork({options.run, options.from_stage, options.more, options.as.changes},
                     {options.as.out, options.as.overwrite, options.as.command}, choices_of(options.as));
-  print_kept(session->folder(), session->foreign());
-  RunLog log(session->folder() / "run.log", options.as.speech);
+  print_kept(options.as.out, session->foreign());
+  RunLog log(file_in(session->folder(), "run.log"), options.as.speech);
   log.say(fmt::format("fork            of {}, from the end of stage {}", options.run.string(),
                       session->run().last_begun_stage()));
   log.say(describe_start(*session));
@@ -83,10 +84,12 @@ Command add_resume(CLI::App& cli) {
   add_checkpoint(resume, options->as);
   add_speech(resume, options->as);
   add_watching(resume, options->as);
+  add_mpi(resume, options->as);
   return {resume,
           [options](const std::vector<std::string>& typed) {
             options->as.command = shell_command(typed);
-            require_one_copy("a run goes on in one process yet");
+            if (options->as.mpi) return run_on_ranks(options->as, [&] { return go_on_or_fork(*options); });
+            require_one_copy("say --mpi, and they hold parts of one body");
             return go_on_or_fork(*options);
           },
           false};

@@ -214,7 +214,7 @@ int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   if (!ranks.is_first()) return exit_code(summary);
   if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   log.say(describe(summary, session.opened().setup.specimen, folder));
-  if (summary.outcome == Outcome::stopped && ranks.count() == 1)
+  if (summary.outcome == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", shell_path(folder)));
   if (options.figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
@@ -237,17 +237,16 @@ int run_from_start(const RunOptions& options) {
   return run_to_end(*session, log, options);
 }
 
-/// Runs a deck on the ranks of an MPI job. The first one alone writes and speaks.
-int run_on_ranks(RunOptions options) {
+}  // namespace
+
+int run_on_ranks(RunOptions& options, const std::function<int()>& act) {
   return on_ranks([&](const RanksOfRun& given) {
     options.held_by = given.ranks;
     if (options.threads == 0) options.threads = given.threads;
     if (!given.ranks->is_first()) options.speech = Speech::quiet;
-    return run_from_start(options);
+    return act();
   });
 }
-
-}  // namespace
 
 Command add_run(CLI::App& cli) {
   const auto options = std::make_shared<RunOptions>();
@@ -262,10 +261,7 @@ Command add_run(CLI::App& cli) {
   add_checkpoint(run, *options);
   add_speech(run, *options);
   add_watching(run, *options);
-  auto* const mpi =
-      run->add_flag("--mpi", options->mpi,
-                    "Hold the body by the ranks of an MPI job: mpirun -n 4 pyroclast run DECK --mpi; "
-                    "results are the same for any number");
+  auto* const mpi = add_mpi(run, *options);
   run->add_option("--seeds", options->seeds,
                   "Run this many specimens, from seed 1 or --seed on: print each result with its mean and 95 "
                   "% interval, "
@@ -283,7 +279,7 @@ Command add_run(CLI::App& cli) {
   return {run,
           [options](const std::vector<std::string>& typed) {
             options->command = shell_command(typed);
-            if (options->mpi) return run_on_ranks(*options);
+            if (options->mpi) return run_on_ranks(*options, [&] { return run_from_start(*options); });
             if (options->seeds > 1) scatter(*options);
             if (options->dry_run) return printed(check(*options));
             require_one_copy("say --mpi, and they hold parts of one body");

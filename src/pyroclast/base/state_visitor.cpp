@@ -27,6 +27,19 @@ void StateVisitor::refuse(const std::string& name, const std::string& what) cons
   throw Error(fmt::format("the state is not sound: \"{}\" {}", name, what));
 }
 
+void StateVisitor::visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& /*ranks*/) {
+  std::byte* data = piece.data;
+  if (piece.resize) {
+    const std::size_t chunks = piece.counts.size();
+    const auto in_order = [](std::vector<std::uint64_t>& counts) {
+      return reinterpret_cast<std::byte*>(counts.data());
+    };
+    visit_piece(name + ".counts", {sizeof(std::uint64_t), chunks, in_order(piece.counts), {}});
+    if (replaces()) data = piece.resize();
+  }
+  visit_piece(name, {piece.item, piece.count(), data, {}});
+}
+
 void StateVisitor::check_size(const std::string& name, std::size_t count,
                               const std::optional<std::size_t>& wanted) const {
   if (wanted && count != *wanted)

@@ -5,13 +5,16 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/flat_array.hpp"
 
 namespace pyroclast {
@@ -53,6 +56,37 @@ constexpr StateRule index(std::size_t size) {
 }
 
 }  // namespace state
+
+/// Entries by chunk that are not as many for another state: those of own chunks, one chunk after the other.
+template <class T>
+struct ListByChunk {
+  std::vector<T> entries;
+  std::vector<std::uint64_t> counts;  ///< number of entries of each own chunk
+
+  /// Makes the list of a body: `add(chunk, entries)` appends the entries of an own chunk.
+  template <class Add>
+  static ListByChunk of(const ChunkList& chunks, Add add) {
+    ListByChunk list;
+    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+      if (chunks.is_foreign(chunk)) continue;
+      const std::size_t before = list.entries.size();
+      add(chunk, list.entries);
+      list.counts.push_back(list.entries.size() - before);
+    }
+    return list;
+  }
+  /// Calls `f(chunk, entries)` for each own chunk.
+  template <class F>
+  void for_each(const ChunkList& chunks, F f) const {
+    std::span<const T> rest(entries);
+    auto count = counts.begin();
+    for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+      if (chunks.is_foreign(chunk)) continue;
+      f(chunk, rest.first(*count));
+      rest = rest.subspan(*count++);
+    }
+  }
+};
 
 /// Visitor to which a moving thing shows, under its name, everything that the thing keeps from one batch of
 /// steps to the next. The visitor reads each value, or replaces it by the value that an equal thing kept
@@ -110,12 +144,43 @@ class StateVisitor {
       if (checks()) check_numbers(full, &value, 1, rule);
     }
   }
-  /// Visits plain objects whose values the caller checks with `require`.
+  // Where several ranks hold a body, the state has each chunk once, as its owner shows it: collectives.
+  // Nothing is done to foreign entries, of which the owner can tell.
+
+  /// Visits an array of numbers that has one entry for each item of a list, or of plain objects made of
+  /// nothing but `double`. \param chunks  chunks of the list
   template <class Array>
-  void visit_plain(std::string_view name, Array& values, std::optional<std::size_t> size = std::nullopt) {
+  void visit_by_chunk(std::string_view name, Array& values, const ChunkList& chunks,
+                      const StateRule& rule = state::finite()) {
+    using T = std::decay_t<decltype(*values.data())>;
+    const auto [first, last] = chunks.own();
+    std::vector<std::uint64_t> counts;
+    chunks.for_each_own(
+        [&](int begin, int end) { counts.push_back(static_cast<std::uint64_t>(end - begin)); });
     const std::string full = scope_ + std::string(name);
-    visit_array(full, values);
-    if (checks()) check_size(full, values.size(), size);
+    T* const own = values.data() + first;
+    const auto count = static_cast<std::size_t>(last - first);
+    visit_chunks(full, {sizeof(T), counts, reinterpret_cast<std::byte*>(own), {}}, chunks.ranks());
+    if (!checks()) return;
+    if constexpr (std::is_arithmetic_v<T>)
+      check(full, own, count, rule.of(count));
+    else
+      check_numbers(full, own, count, rule.of(count));
+  }
+  /// Visits a list whose numbers of entries may be others in another state; the caller checks its values with
+  /// `require`.
+  template <class T>
+  void visit_by_chunk(std::string_view name, ListByChunk<T>& list, const ChunkList& chunks) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto resize = [&] {
+      std::size_t total = 0;
+      for (const std::uint64_t count : list.counts) total += count;
+      list.entries.resize(total);
+      return reinterpret_cast<std::byte*>(list.entries.data());
+    };
+    visit_chunks(scope_ + std::string(name),
+                 {sizeof(T), list.counts, reinterpret_cast<std::byte*>(list.entries.data()), resize},
+                 chunks.ranks());
   }
   /// Refuses a value from outside where a promise about the value does not hold.
   void require(bool holds, std::string_view name, std::string_view what) const {
@@ -165,6 +230,18 @@ class StateVisitor {
     std::function<std::byte*(std::size_t)> resize;
   };
   virtual void visit_piece(const std::string& name, const Piece& piece) = 0;
+  /// Plain data of own chunks, one chunk after the other.
+  struct ChunksPiece {
+    std::size_t item;                    ///< bytes of one item
+    std::vector<std::uint64_t>& counts;  ///< number of items of each own chunk
+    std::byte* data;
+    /// Function that makes room for other `counts` and returns its place; empty where they are fixed.
+    std::function<std::byte*()> resize;
+
+    std::uint64_t count() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+  };
+  /// By default what this rank holds is visited as pieces.
+  virtual void visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& ranks);
   /// Throws an Error that says what is wrong with the value of a name.
   virtual void refuse(const std::string& name, const std::string& what) const;
 

@@ -11,6 +11,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/energy_ledger.hpp"
+#include "pyroclast/model/item_halo.hpp"
 
 namespace pyroclast {
 
@@ -245,38 +246,90 @@ void Body<Dim>::forget() {
       if (!forces->empty()) (*forces)[slot] = nothing;
   auto& corners = arrays.corner_force;
   if (!corners.empty()) std::fill(corners.begin(), corners.end() - kLanes, nothing);
+  std::fill(arrays.crack_step.end() - kLanes, arrays.crack_step.end(), kNotCracked);  // the idle pack
 }
 
-/// Shows one array that lasts. Lists of constraints and ties may have another length in another state; all
-/// other arrays keep theirs.
+/// Returns the chunks of an array that lasts; none for lists of constraints.
 template <int Dim>
-template <class Array>
-void Body<Dim>::visit_array(StateVisitor& visitor, const char* name, Array& array) {
-  using T = std::decay_t<decltype(*array.data())>;
-  if constexpr (std::is_same_v<T, int>) {
-    const bool is_of_bundles = static_cast<void*>(&array) == &arrays.constraints_of_bundle;
-    visitor.visit(
-        name, array,
-        is_of_bundles ? state::within(-1, kMostOfAKind).of(array.size()) : state::within(0, kMostOfAKind));
-  } else if constexpr (std::is_same_v<T, BundleConstraints> || std::is_same_v<T, Tie> ||
-                       std::is_same_v<T, ConstraintPack<Dim>>) {
-    visitor.visit_plain(name, array);
-  } else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t> ||
-                       std::is_same_v<T, std::byte>) {
-    throw Error(
-        fmt::format("\"{}\" has no form in which a state can keep it", name));  // a fault of the program
-  } else {
-    visitor.visit_numbers(name, array, state::finite().of(array.size()));
+ChunkList Body<Dim>::chunks_of(const ArrayInfo& info, const void* array) const {
+  const auto from = [](const ChunkList& items, auto first) {
+    std::vector<int> begins;
+    for (const int item : items.begins()) begins.push_back(first(item));
+    return items.of(std::move(begins));
+  };
+  const Chunks& chunks = layout.chunks;
+  const auto pack = [&](int bundle) {
+    return bundle < std::ssize(layout.bundles) ? layout.bundles[bundle].first_pack : layout.gridpoint_packs;
+  };
+  switch (info.per) {
+    case Per::bundle:
+      return chunks.bundles;
+    case Per::gridpoint_pack:
+      return from(chunks.bundles, pack);
+    case Per::gridpoint_slot:
+      return from(chunks.bundles, [&](int bundle) { return kLanes * pack(bundle); });
+    case Per::face_pack:
+      return chunks.face_packs;
+    case Per::point_slot_or_idle:
+      return from(chunks.face_packs, [&](int faces) { return kLanes * layout.first_point_of(faces); });
+    default:
+      break;
   }
+  for (const auto& [lines, first] :
+       {std::pair{&arrays.internals, &arrays.first_internal}, std::pair{&arrays.loss, &arrays.first_loss}})
+    if (array == lines) return from(chunks.face_packs, [&, of = first](int faces) { return (*of)[faces]; });
+  throw Error(fmt::format("\"{}\" has no form in which a state can keep it", info.name));  // a fault here
 }
 
 template <int Dim>
 void Body<Dim>::visit_arrays(StateVisitor& visitor) {
   for_each_array(
       [&](const ArrayInfo& info, auto& array) {
-        if (info.lasts == Lasts::kept) visit_array(visitor, info.name, array);
+        using T = std::decay_t<decltype(*array.data())>;
+        if constexpr (!std::is_same_v<T, BundleConstraints> && !std::is_same_v<T, ConstraintPack<Dim>> &&
+                      !std::is_same_v<T, Tie> && !std::is_integral_v<T> && !std::is_same_v<T, std::byte>)
+          if (info.lasts == Lasts::kept) visitor.visit_by_chunk(info.name, array, chunks_of(info, &array));
       },
       arrays);
+  if (visitor.replaces() && model.part) take_contacts_from_owners();
+}
+
+/// Gives contacts between an own block and one of an earlier rank the numbers that their owner keeps.
+template <int Dim>
+void Body<Dim>::take_contacts_from_owners() {
+  std::size_t most = 0;
+  for (const LawTable* law : laws) most = std::max(most, law->internals(Dim).size() + law->losses.size());
+  const std::size_t of_each = most + 1;  // and the step of the crack
+  std::vector<double> numbers(of_each * static_cast<std::size_t>(model.contact_count()));
+  const auto move = [&](int contact, auto one) {
+    const LawTable& law = law_of(contact);
+    const int slot = layout.contact_slot[contact], lane = slot % kLanes;
+    double* number = numbers.data() + of_each * static_cast<std::size_t>(contact);
+    const auto move_lines = [&](auto& lines, const auto& first, std::size_t count) {
+      Line* const line = lines_of(layout, lines, first, contact, count);
+      for (std::size_t i = 0; i < count; ++i) one(*number++, line[i].number[lane]);
+    };
+    one(*number++, arrays.crack_step[slot]);
+    move_lines(arrays.internals, arrays.first_internal, law.internals(Dim).size());
+    move_lines(arrays.loss, arrays.first_loss, law.losses.size());
+  };
+  const ChunkList& chunks = layout.chunks.contacts;
+  const ChunkList::Items own = chunks.own();
+  for (int i = own.first; i < own.last; ++i)
+    move(layout.contacts_by_chunk[i], [](double& number, double here) { number = here; });
+  contact_halo(model).spread(numbers.data(), of_each);
+  for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+    if (!chunks.is_foreign(chunk)) continue;
+    const auto fill = [&](auto& array, const ArrayInfo& info, const auto& value) {
+      const ChunkList of_array = chunks_of(info, &array);
+      std::fill(array.begin() + of_array[chunk], array.begin() + of_array[chunk + 1], value);
+    };
+    fill(arrays.internals, {"internals", Per::entry}, Line{});  // idle lanes too
+    fill(arrays.loss, {"loss", Per::entry}, Line{});
+    fill(arrays.crack_step, {"crack_step", Per::point_slot_or_idle}, kNotCracked);
+    for (int i = chunks[chunk]; i < chunks[chunk + 1]; ++i)
+      move(layout.contacts_by_chunk[i], [](double number, double& here) { here = number; });
+  }
 }
 
 template struct Body<2>;

@@ -122,7 +122,7 @@ struct Body {
   /// Fills all that steps change with NaN; in idle places forces stay zero, for gridpoints gather from them
   /// too.
   void forget();
-  /// Shows the arrays that last from one step to the next.
+  /// Shows the arrays that last from one step to the next, but those of constraints.
   void visit_arrays(StateVisitor& visitor);
 
   const ModelOf<Dim>& model;
@@ -165,8 +165,8 @@ struct Body {
   void place_model();
   void place_positions();
   void place_internals();
-  template <class Array>
-  void visit_array(StateVisitor& visitor, const char* name, Array& array);
+  ChunkList chunks_of(const ArrayInfo& info, const void* array) const;
+  void take_contacts_from_owners();
 };
 
 /// Returns the lines of the point of a contact in the internal variables or the losses, from the first of its

@@ -165,95 +165,134 @@ void Constraints<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
   drop_if_free(body_.layout.bundle_of(gridpoint));
 }
 
-/// Throws Error where constraints or ties of a state from outside name something that is not there, or have
-/// numbers that are not finite.
+/// Makes the constraints of a bundle anew, as a state has them.
 template <int Dim>
-void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
-  if (!visitor.checks()) return;
-  const auto& s = body_.arrays;
-  const auto packs = static_cast<std::int64_t>(s.constraint_packs.size());
-  const auto within = [](std::int64_t first, std::int64_t last, std::size_t size) {
-    return 0 <= first && first <= last && last <= static_cast<std::int64_t>(size);
+void Constraints<Dim>::make(int bundle, bool act, double loading_work,
+                            std::span<const ConstraintPack<Dim>> packs) {
+  auto& s = body_.arrays;
+  const auto index = s.constraints.size(), first_pack = s.constraint_packs.size();
+  s.constraints.resize(index + 1);
+  s.constraints[index].first_pack = static_cast<int>(first_pack);
+  s.constraints[index].loading_work = loading_work;
+  s.constraint_packs.resize(first_pack + packs.size());
+  std::copy(packs.begin(), packs.end(), s.constraint_packs.begin() + first_pack);
+  body_.made_constraints[bundle] = static_cast<int>(index);
+  s.constraints_of_bundle[bundle] = act ? static_cast<int>(index) : -1;
+}
+
+template <int Dim>
+void Constraints<Dim>::visit_state(StateVisitor& visitor) {
+  const ChunkList& bundles = body_.layout.chunks.bundles;
+  auto& s = body_.arrays;
+  using Packs = std::span<const ConstraintPack<Dim>>;
+  const auto for_each_made = [&](int chunk, auto f) {
+    for (int b = bundles[chunk]; b < bundles[chunk + 1]; ++b)
+      if (const int index = body_.made_constraints[b]; index >= 0)
+        f(b, s.constraints[index],
+          Packs(s.constraint_packs.data() + s.constraints[index].first_pack,
+                static_cast<std::size_t>(body_.layout.bundles[b].packs)));
   };
-  std::size_t made = 0, functions_of_made = 0, tied = 0;
-  for (std::size_t b = 0; b < body_.made_constraints.size(); ++b)
-    if (body_.made_constraints[b] >= 0) {
-      ++made;
-      functions_of_made += static_cast<std::size_t>(body_.layout.bundles[b].packs);
+  // a bundle is known by its number in its chunk, twice that, plus one where its constraints act
+  auto made = ListByChunk<int>::of(bundles, [&](int chunk, std::vector<int>& list) {
+    for_each_made(chunk, [&](int b, const auto& /*made*/, Packs /*packs*/) {
+      list.push_back(2 * (b - bundles[chunk]) + (s.constraints_of_bundle[b] >= 0 ? 1 : 0));
+    });
+  });
+  auto works = ListByChunk<double>::of(bundles, [&](int chunk, std::vector<double>& list) {
+    for_each_made(chunk, [&](int /*b*/, const BundleConstraints& of, Packs /*packs*/) {
+      list.push_back(of.loading_work);
+    });
+  });
+  auto packs = ListByChunk<ConstraintPack<Dim>>::of(bundles, [&](int chunk, auto& list) {
+    for_each_made(chunk, [&](int /*b*/, const auto& /*made*/, Packs of) {
+      list.insert(list.end(), of.begin(), of.end());
+    });
+  });
+  auto ties = ties_by_chunk();
+  visitor.visit_by_chunk("constrained_bundles", made, bundles);
+  visitor.visit_by_chunk("loading_works", works, bundles);
+  visitor.visit_by_chunk("constraint_packs", packs, bundles);
+  visitor.visit_by_chunk("ties", ties, bundles);
+  if (!visitor.replaces()) return;
+
+  s.constraints.resize(0);
+  s.constraint_packs.resize(0);
+  std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
+  std::ranges::fill(body_.made_constraints, -1);
+  visitor.require(works.counts == made.counts, "loading_works", "are not those of the constrained bundles");
+  std::vector<Packs> packs_of_chunk;
+  packs.for_each(bundles, [&](int /*chunk*/, Packs of) { packs_of_chunk.push_back(of); });
+  auto work = works.entries.begin();
+  auto next = packs_of_chunk.begin();
+  made.for_each(bundles, [&](int chunk, std::span<const int> of_chunk) {
+    Packs rest = *next++;
+    int last = -1;
+    for (const int entry : of_chunk) {
+      const int b = bundles[chunk] + entry / 2;
+      visitor.require(entry >= 0 && b > last && b < bundles[chunk + 1], "constrained_bundles",
+                      "names one that is not there, or not in order");
+      last = b;
+      const auto count = static_cast<std::size_t>(body_.layout.bundles[b].packs);
+      visitor.require(count <= rest.size(), "constraint_packs", "are fewer than the bundles have");
+      make(b, entry % 2 == 1, *work, rest.first(count));
+      visitor.require(std::isfinite(*work++), "loading_works", "has a work that is not finite");
+      rest = rest.subspan(count);
     }
-  for (const TieOfBundle& tie : body_.made_ties) tied += tie.slots.size();
-  visitor.require(s.constraints.size() == made, "constraints", "name others than the bundles that have some");
-  visitor.require(s.constraint_packs.size() == functions_of_made, "constraint_packs",
-                  "name others than the bundles that have some");
-  visitor.require(s.ties.size() == body_.made_ties.size(), "ties", "differ in number from the bundles'");
-  visitor.require(s.tied_slots.size() == tied, "tied_slots", "differ in number from the bundles'");
-  for (std::size_t b = 0; b < body_.made_constraints.size(); ++b) {
-    const int index = body_.made_constraints[b];
-    visitor.require(s.constraints_of_bundle[b] < 0 || s.constraints_of_bundle[b] == index,
-                    "constraints_of_bundle", "names others than those that were made for it");
-    if (index < 0) continue;
-    const Bundle& bundle = body_.layout.bundles[b];
-    visitor.require(index < static_cast<int>(s.constraints.size()), "made_constraints",
-                    "names one that is not there");
-    const BundleConstraints& own = s.constraints[index];
-    visitor.require(own.first_pack >= 0 && own.first_pack + static_cast<std::int64_t>(bundle.packs) <= packs,
-                    "constraints", "names packs that are not there");
-    visitor.require(within(own.first_tie, own.last_tie, s.ties.size()), "constraints",
-                    "names ties that are not there");
-    visitor.require(std::isfinite(own.loading_work), "constraints", "has a work that is not finite");
-    for (int i = own.first_tie; i < own.last_tie; ++i) {
-      const Tie& tie = s.ties[i];
-      visitor.require(within(tie.begin, tie.end, s.tied_slots.size()), "ties",
-                      "names slots that are not there");
-      visitor.require(0 <= tie.component && tie.component < Dim, "ties", "has no direction of this body");
-      for (int j = tie.begin; j < tie.end; ++j)
-        visitor.require(is_slot_of(body_, s.tied_slots[j], body_.first_bundle_of(static_cast<int>(b))),
-                        "tied_slots", "names a slot of another bundle");
-    }
-  }
+    visitor.require(rest.empty(), "constraint_packs", "are more than the bundles have");
+  });
   for (const auto& pack : s.constraint_packs)
     for (int i = 0; i < Dim; ++i)
       for (int lane = 0; lane < kLanes; ++lane)
         visitor.require(
             std::isfinite(pack.prescribed_velocity[i][lane]) && std::isfinite(pack.applied[i][lane]),
             "constraint_packs", "has a velocity or a force that is not finite");
-  for (const TieOfBundle& tie : body_.made_ties)
-    for (const int slot : tie.slots) {
-      visitor.require(is_slot_of(body_, slot, tie.bundle), "ties_of_bundles",
-                      "names a slot of another bundle");
-      visitor.require(body_.arrays.constraints_of_bundle[body_.layout.bundle_of_pack[slot / kLanes]] >= 0,
-                      "ties_of_bundles", "ties a bundle without constraints");
+  take_ties(visitor, ties);
+  body_.constraints_are_in_order = true;
+  place_ties();
+}
+
+/// Returns the ties of own bundles: bundle and slots by their numbers in the chunk.
+template <int Dim>
+ListByChunk<int> Constraints<Dim>::ties_by_chunk() const {
+  const ChunkList& bundles = body_.layout.chunks.bundles;
+  return ListByChunk<int>::of(bundles, [&](int chunk, std::vector<int>& list) {
+    for (const TieOfBundle& tie : body_.made_ties) {
+      if (tie.bundle < bundles[chunk] || tie.bundle >= bundles[chunk + 1]) continue;
+      list.insert(list.end(),
+                  {tie.bundle - bundles[chunk], tie.component, static_cast<int>(tie.slots.size())});
+      for (const int slot : tie.slots) list.push_back(slot - first_slot_of(bundles[chunk]));
     }
+  });
 }
 
 template <int Dim>
-void Constraints<Dim>::visit_state(StateVisitor& visitor) {
-  visitor.visit("made_constraints", body_.made_constraints,
-                state::within(-1, kMostOfAKind).of(body_.made_constraints.size()));
-  visit_ties(visitor);
-  require_valid(visitor);
-  if (visitor.replaces()) place_ties();  // so that the step meets the ties that were made, and no others
-}
-
-template <int Dim>
-void Constraints<Dim>::visit_ties(StateVisitor& visitor) {
-  std::vector<int> numbers;
-  for (const TieOfBundle& tie : body_.made_ties) {
-    numbers.insert(numbers.end(), {tie.bundle, tie.component, static_cast<int>(tie.slots.size())});
-    numbers.insert(numbers.end(), tie.slots.begin(), tie.slots.end());
-  }
-  visitor.visit("ties_of_bundles", numbers, state::within(0, kMostOfAKind));
-  if (!visitor.replaces()) return;
+void Constraints<Dim>::take_ties(const StateVisitor& visitor, const ListByChunk<int>& ties) {
+  const ChunkList& bundles = body_.layout.chunks.bundles;
   body_.made_ties.clear();
-  for (auto i = numbers.begin(); i != numbers.end();) {
-    visitor.require(numbers.end() - i >= 3 && i[2] <= numbers.end() - i - 3 && i[1] < Dim &&
-                        i[0] < static_cast<int>(body_.layout.bundles.size()),
-                    "ties_of_bundles", "is no list of ties");
-    const auto slots = i + 3;
-    const auto end = slots + i[2];
-    body_.made_ties.push_back({i[0], i[1], {slots, end}});
-    i = end;
-  }
+  ties.for_each(bundles, [&](int chunk, std::span<const int> numbers) {
+    while (!numbers.empty()) {
+      visitor.require(numbers.size() >= 3 && numbers[0] >= 0 &&
+                          numbers[0] < bundles[chunk + 1] - bundles[chunk] && 0 <= numbers[1] &&
+                          numbers[1] < Dim && numbers[2] >= 0 && numbers[2] <= std::ssize(numbers) - 3,
+                      "ties", "is no list of ties");
+      TieOfBundle& tie =
+          body_.made_ties.emplace_back(TieOfBundle{bundles[chunk] + numbers[0], numbers[1], {}});
+      for (const int slot : numbers.subspan(3, static_cast<std::size_t>(numbers[2]))) {
+        tie.slots.push_back(first_slot_of(bundles[chunk]) + slot);
+        visitor.require(is_slot_of(body_, tie.slots.back(), tie.bundle), "ties",
+                        "names a slot of another bundle");
+        const int bundle = body_.layout.bundle_of_pack[tie.slots.back() / kLanes];
+        visitor.require(body_.arrays.constraints_of_bundle[bundle] >= 0, "ties",
+                        "ties a bundle without constraints");
+      }
+      numbers = numbers.subspan(3 + static_cast<std::size_t>(numbers[2]));
+    }
+  });
+}
+
+template <int Dim>
+int Constraints<Dim>::first_slot_of(int bundle) const {
+  return slot_of(body_.layout.bundles[bundle].first_pack, 0);
 }
 
 template class Constraints<2>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
@@ -28,7 +29,7 @@ class Constraints {
   /// Puts constraints into the order of their bundles, so that a state does not depend on the order in which
   /// they were made.
   void order();
-  /// Shows constraints and ties to a visitor, after the arrays of the body.
+  /// Shows constraints and ties to a visitor, those of own bundles.
   void visit_state(StateVisitor& visitor);
 
  private:
@@ -36,8 +37,10 @@ class Constraints {
   void drop_if_free(int bundle);
   ConstraintPack<Dim>& constraint_pack(int gridpoint);
   void place_ties();
-  void visit_ties(StateVisitor& visitor);
-  void require_valid(const StateVisitor& visitor) const;
+  void make(int bundle, bool act, double loading_work, std::span<const ConstraintPack<Dim>> packs);
+  ListByChunk<int> ties_by_chunk() const;
+  void take_ties(const StateVisitor& visitor, const ListByChunk<int>& ties);
+  int first_slot_of(int bundle) const;
 
   Body<Dim>& body_;
 };

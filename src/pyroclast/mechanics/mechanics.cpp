@@ -117,11 +117,13 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("begun_mass_scaling", body.books.begun_mass_scaling);
   visitor.visit("creep_work", body.books.creep_work);
   // the stiffness is that of the contact frames at the last change of properties; they have turned since
-  visitor.visit("stiffness", body.stiffness, state::at_least(0).of(body.stiffness.size()));
+  visitor.visit_by_chunk("stiffness", body.stiffness, body.layout.chunks.gridpoints, state::at_least(0));
   body.visit_arrays(visitor);
   constraints().visit_state(visitor);
   Properties<Dim>(body).visit_state(visitor);
-  if (visitor.replaces()) Masses<Dim>(body).follow_state();
+  if (!visitor.replaces()) return;
+  Masses<Dim>(body).follow_state();
+  mover_.take_from_owners();
 }
 
 template class Mechanics<2>;

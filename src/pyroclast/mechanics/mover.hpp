@@ -17,6 +17,12 @@ class Mover {
 
   /// Takes a number of sweeps over faces and bundles, of one kind.
   void sweep(int steps, Pass pass);
+  /// Gives foreign gridpoints the displacements and velocities that their owners have.
+  void take_from_owners() {
+    if (halo_.is_empty()) return;
+    halo_.exchange(body_->arrays, Travels::each_step);
+    halo_.exchange(body_->arrays, Travels::each_call);
+  }
 
  private:
   /// Share and memory of a thread in a step.

@@ -1,7 +1,9 @@
 #include "pyroclast/mechanics/properties.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/reader.hpp"
+#include "pyroclast/model/item_halo.hpp"
 
 namespace pyroclast {
 
@@ -142,8 +145,12 @@ void Properties<Dim>::place_own_constants() {
 
 template <int Dim>
 void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
+  if (!body_.creeps()) return;
   const Reader<Dim> reader(body_);
-  if (std::ranges::none_of(creep, [](const CreepIncrement& i) { return i.compliance != 0.0; })) return;
+  const auto [first, last] = body_.layout.chunks.zones.own();
+  const bool none = std::none_of(creep.begin() + first, creep.begin() + last,
+                                 [](const CreepIncrement& i) { return i.compliance != 0.0; });
+  if (!body_.model.ranks().any(!none)) return;
   body_.creep_under_way.resize(creep.size());
   for (int z = 0; z < body_.model.zone_count(); ++z) {
     CreepUnderWay<Dim>& zone = body_.creep_under_way[z];
@@ -202,13 +209,17 @@ bool Properties<Dim>::break_contact(int contact) {
 /// others by now.
 template <int Dim>
 void Properties<Dim>::visit_state(StateVisitor& visitor) {
-  auto& creep_strain = body_.creep_strain;
-  auto& under_way = body_.creep_under_way;
-  visitor.visit_numbers("creep_strains", creep_strain, state::finite().of(creep_strain.size()));
-  visitor.visit_numbers("creep_under_way", under_way);
-  visitor.require(under_way.empty() || (body_.creeps() && under_way.size() == creep_strain.size()),
-                  "creep_under_way", "does not have each zone, or nothing creeps");
-  bool by_block = body_.state.by_bundle;
+  const Chunks& chunks = body_.layout.chunks;
+  Ranks& ranks = body_.model.ranks();
+  if (body_.creeps()) {
+    auto& under_way = body_.creep_under_way;
+    bool creeps_now = !under_way.empty();
+    visitor.visit_by_chunk("creep_strains", body_.creep_strain, chunks.zones);
+    visitor.visit("creeps_now", creeps_now);
+    under_way.resize(creeps_now ? body_.creep_strain.size() : 0);
+    if (creeps_now) visitor.visit_by_chunk("creep_under_way", under_way, chunks.zones);
+  }
+  bool by_block = !ranks.any(!body_.state.by_bundle);
   visitor.visit("properties_by_block", by_block);
   std::vector<ZoneProperties> zones;
   if (by_block)
@@ -216,45 +227,130 @@ void Properties<Dim>::visit_state(StateVisitor& visitor) {
       zones.push_back(body_.properties.zones[body_.model.block_zones[b]]);
   else
     zones = body_.properties.zones;
-  const int count = by_block ? body_.model.block_count() : body_.model.zone_count();
-  visitor.visit_numbers("zone_properties", zones, state::finite().of(static_cast<std::size_t>(count)));
+  visitor.visit_by_chunk("zone_properties", zones, by_block ? chunks.blocks : chunks.zones);
+  if (visitor.replaces())
+    for (int b = 0; b < body_.model.block_count(); ++b)
+      for (int z = body_.model.block_zones[b]; z < body_.model.block_zones[b + 1]; ++z)
+        body_.properties.zones[z] = zones.at(by_block ? b : z);
+  visit_contacts_sets(visitor);
+  if (visitor.replaces()) place();
+}
 
+/// Shows the parameters of contacts: each chunk has the sets that occur in it, as it comes to them.
+template <int Dim>
+void Properties<Dim>::visit_contacts_sets(StateVisitor& visitor) {
+  const ChunkList& chunks = body_.layout.chunks.contacts;
+  const auto& contacts = body_.layout.contacts_by_chunk;
   ContactSets& sets = body_.properties.contacts;
-  std::vector<int> laws, choices;
-  std::vector<double> numbers;
-  for (int set = 0; set < sets.size(); ++set) {
-    laws.push_back(static_cast<int>(std::ranges::find(body_.laws, &sets.law(set)) - body_.laws.begin()));
-    numbers.insert(numbers.end(), sets.numbers(set).begin(), sets.numbers(set).end());
-    choices.insert(choices.end(), sets.choices(set).begin(), sets.choices(set).end());
+  std::vector<int>& of_contact = body_.properties.of_contact;
+  std::vector<int> set_by_chunk(contacts.size());  // numbers of the chunk's own sets
+  std::vector<int> number_in_chunk(static_cast<std::size_t>(sets.size()), -1);
+  std::vector<std::vector<int>> sets_of_chunk(static_cast<std::size_t>(chunks.count()));
+  for (int chunk = 0; chunk < chunks.count(); ++chunk) {
+    std::vector<int>& here = sets_of_chunk[chunk];
+    for (int i = chunks[chunk]; i < chunks[chunk + 1]; ++i) {
+      const int set = of_contact[contacts[i]];
+      if (number_in_chunk[set] < 0) {
+        number_in_chunk[set] = static_cast<int>(here.size());
+        here.push_back(set);
+      }
+      set_by_chunk[i] = number_in_chunk[set];
+    }
+    for (const int set : here) number_in_chunk[set] = -1;
   }
-  visitor.visit("law_of_set", laws, state::index(body_.laws.size()));
-  std::size_t number_count = 0, choice_count = 0;
-  for (const int index : laws) {
-    number_count += body_.laws.at(index)->properties.size();
-    choice_count += body_.laws.at(index)->choices.size();
-  }
-  visitor.visit("numbers_of_sets", numbers, state::number().of(number_count));
-  visitor.visit("choices_of_sets", choices, state::index(ChoiceInfo::kMostOptions).of(choice_count));
-  visitor.visit("set_of_contact", body_.properties.of_contact,
-                state::index(laws.size()).of(body_.model.contacts.size()));
+  const auto law_of = [&](int set) {
+    return static_cast<int>(std::ranges::find(body_.laws, &sets.law(set)) - body_.laws.begin());
+  };
+  auto laws = ListByChunk<int>::of(chunks, [&](int chunk, std::vector<int>& list) {
+    for (const int set : sets_of_chunk[chunk]) list.push_back(law_of(set));
+  });
+  auto choices = ListByChunk<int>::of(chunks, [&](int chunk, std::vector<int>& list) {
+    for (const int set : sets_of_chunk[chunk])
+      list.insert(list.end(), sets.choices(set).begin(), sets.choices(set).end());
+  });
+  auto numbers = ListByChunk<double>::of(chunks, [&](int chunk, std::vector<double>& list) {
+    for (const int set : sets_of_chunk[chunk])
+      list.insert(list.end(), sets.numbers(set).begin(), sets.numbers(set).end());
+  });
+  visitor.visit_by_chunk("laws_of_sets", laws, chunks);
+  visitor.visit_by_chunk("choices_of_sets", choices, chunks);
+  visitor.visit_by_chunk("numbers_of_sets", numbers, chunks);
+  visitor.visit_by_chunk("set_of_contact", set_by_chunk, chunks, state::at_least(0));
   if (!visitor.replaces()) return;
 
-  for (int b = 0; b < body_.model.block_count(); ++b)
-    for (int z = body_.model.block_zones[b]; z < body_.model.block_zones[b + 1]; ++z)
-      body_.properties.zones[z] = zones.at(by_block ? b : z);
   sets = {};
-  auto number = numbers.begin();
-  auto choice = choices.begin();
-  for (const int index : laws) {
-    const LawTable& law = *body_.laws.at(index);
-    const auto last_number = number + static_cast<std::ptrdiff_t>(law.properties.size());
-    const auto last_choice = choice + static_cast<std::ptrdiff_t>(law.choices.size());
-    std::copy(number, last_number, sets.add(law, {choice, last_choice}).begin());
-    if (visitor.checks()) sets.validate(sets.size() - 1, law.name);
-    number = last_number;
-    choice = last_choice;
+  std::span<const int> next_law(laws.entries), next_choice(choices.entries);
+  std::span<const double> next_number(numbers.entries);
+  const auto take = [&](auto& rest, std::size_t count, const char* name) {
+    visitor.require(count <= rest.size(), name, "are fewer than the laws have");
+    const auto taken = rest.first(count);
+    rest = rest.subspan(count);
+    return taken;
+  };
+  laws.for_each(chunks, [&](int chunk, std::span<const int> of_chunk) {
+    const int first = sets.size();
+    for (const int index : of_chunk) {
+      visitor.require(index >= 0 && index < std::ssize(body_.laws), "laws_of_sets",
+                      "names a law that is not there");
+      const LawTable& law = *body_.laws[index];
+      add_set(visitor, law, take(next_choice, law.choices.size(), "choices_of_sets"),
+              take(next_number, law.properties.size(), "numbers_of_sets"));
+    }
+    for (int i = chunks[chunk]; i < chunks[chunk + 1]; ++i) {
+      visitor.require(set_by_chunk[i] < std::ssize(of_chunk), "set_of_contact",
+                      "names a set that is not there");
+      of_contact[contacts[i]] = first + set_by_chunk[i];
+    }
+  });
+  visitor.require(next_choice.empty(), "choices_of_sets", "are more than the laws have");
+  visitor.require(next_number.empty(), "numbers_of_sets", "are more than the laws have");
+  if (body_.model.part) take_sets_from_owners();
+}
+
+/// Adds a set of parameters from a state.
+template <int Dim>
+void Properties<Dim>::add_set(const StateVisitor& visitor, const LawTable& law, std::span<const int> choices,
+                              std::span<const double> numbers) {
+  for (const int choice : choices)
+    visitor.require(choice >= 0 && choice < ChoiceInfo::kMostOptions, "choices_of_sets",
+                    "names an option that is not there");
+  for (const double number : numbers)
+    visitor.require(!std::isnan(number), "numbers_of_sets", "holds one that is no number");
+  ContactSets& sets = body_.properties.contacts;
+  std::ranges::copy(numbers, sets.add(law, {choices.begin(), choices.end()}).begin());
+  if (visitor.checks()) sets.validate(sets.size() - 1, law.name);
+}
+
+/// Gives contacts of other ranks the parameters that their owners have.
+template <int Dim>
+void Properties<Dim>::take_sets_from_owners() {
+  ContactSets& sets = body_.properties.contacts;
+  std::size_t most = 0;
+  for (const LawTable* law : body_.laws) most = std::max(most, law->choices.size() + law->properties.size());
+  const std::size_t of_each = 1 + most;  // the law, its choices, its numbers
+  const auto count = static_cast<std::size_t>(body_.model.contact_count());
+  std::vector<double> all(of_each * count);
+  const ChunkList::Items own = body_.layout.chunks.contacts.own();
+  const auto entry = [&](int i) { return all.begin() + of_each * body_.layout.contacts_by_chunk[i]; };
+  for (int i = own.first; i < own.last; ++i) {
+    const int set = body_.properties.of_contact[body_.layout.contacts_by_chunk[i]];
+    auto to = entry(i);
+    *to++ = static_cast<double>(std::ranges::find(body_.laws, &sets.law(set)) - body_.laws.begin());
+    to = std::ranges::copy(sets.choices(set), to).out;
+    std::ranges::copy(sets.numbers(set), to);
   }
-  place();
+  contact_halo(body_.model).spread(all.data(), of_each);
+  std::map<std::vector<double>, int> set_of;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    if (own.first <= i && i < own.last) continue;
+    const auto from = entry(i);
+    const LawTable& law = *body_.laws[static_cast<std::size_t>(*from)];
+    const auto choices = from + 1, numbers = choices + std::ssize(law.choices);
+    const auto end = numbers + std::ssize(law.properties);
+    const auto [set, is_new] = set_of.try_emplace(std::vector<double>(from, end), sets.size());
+    body_.properties.of_contact[body_.layout.contacts_by_chunk[i]] = set->second;
+    if (is_new) std::copy(numbers, end, sets.add(law, std::vector<int>(choices, numbers)).begin());
+  }
 }
 
 template class Properties<2>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
@@ -28,6 +29,10 @@ class Properties {
   void place_contact_properties();
   std::vector<int> find_sets_of_faces();
   void place_own_constants();
+  void visit_contacts_sets(StateVisitor& visitor);
+  void add_set(const StateVisitor& visitor, const LawTable& law, std::span<const int> choices,
+               std::span<const double> numbers);
+  void take_sets_from_owners();
 
   Body<Dim>& body_;
 };

@@ -1,5 +1,6 @@
 #include "pyroclast/results/checkpoint_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -30,7 +31,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::array<char, 8> kBegin{'p', 'y', 'r', 'o', 'c', 'l', 'a', 's'};
-constexpr std::array<char, 8> kEnd{'t', '-', 's', 't', 'a', 't', 'e', '1'};
+constexpr std::array<char, 8> kEnd{'t', '-', 's', 't', 'a', 't', 'e', '2'};
+
+constexpr std::array<char, 8> kEndOfOldForm{'t', '-', 's', 't', 'a', 't', 'e', '1'};
 
 /// Last bytes of a checkpoint.
 struct Trailer {
@@ -66,15 +69,33 @@ class File {
   static File to_read(const std::filesystem::path& path) {
     return {path, open(path.c_str(), O_RDONLY | O_CLOEXEC), "cannot be read"};
   }
-  static File to_write(const std::filesystem::path& path) {
-    return {path, open_aside(path), "cannot be written"};
+  /// Makes a file for all ranks: a collective.
+  static File to_write(const std::filesystem::path& path, Ranks& ranks) {
+    File made(path, ranks.is_first() ? open_aside(path) : kNone, "cannot be written");
+    ranks.any(true);  // now the file is there
+    if (ranks.is_first()) return made;
+    return {
+        path, open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC),
+        "cannot be opened by this rank, though the first one has made it: all ranks need one file system"};
   }
-  ~File() { close(descriptor_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
+  ~File() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  File(File&& other) noexcept : path_(other.path_), descriptor_(std::exchange(other.descriptor_, kNone)) {}
+  File& operator=(File&&) = delete;
 
-  void write(const void* data, std::uint64_t bytes) {
-    if (!write_all(descriptor_, data, bytes)) fail("cannot be written");
+  void write(std::uint64_t from, const void* data, std::uint64_t bytes) {
+    for (std::span rest(static_cast<const char*>(data), bytes); !rest.empty();) {
+      const ssize_t done =
+          pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(from + bytes - rest.size()));
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) fail("cannot be written");
+      rest = rest.subspan(static_cast<std::size_t>(done));
+    }
+  }
+  /// Waits until all is on disk.
+  void sync() {
+    if (fsync(descriptor_) != 0) fail("cannot be written");
   }
   /// Reads bytes from a place on; returns false where the file ends before.
   bool read(std::uint64_t from, void* data, std::uint64_t bytes) const {
@@ -95,9 +116,11 @@ class File {
   }
 
  private:
+  static constexpr int kNone = -2;  ///< descriptor of no file
+
   File(const std::filesystem::path& path, int descriptor, const char* why)
       : path_(path), descriptor_(descriptor) {
-    if (descriptor_ < 0) fail(why);
+    if (descriptor_ < 0 && descriptor_ != kNone) fail(why);
   }
   [[noreturn]] void fail(const char* what) const {
     throw Error(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
@@ -109,39 +132,80 @@ class File {
 
 class CheckpointWriter : public StateVisitor {
  public:
-  explicit CheckpointWriter(File& file) : file_(file) {
-    file_.write(kBegin.data(), kBegin.size());
+  CheckpointWriter(File& file, Ranks& ranks) : file_(file), is_first_(ranks.is_first()) {
+    if (is_first_) file_.write(0, kBegin.data(), kBegin.size());
     end_ = kBegin.size();
   }
   bool replaces() const override { return false; }
 
+  /// Writes the table. Called on the first rank.
   std::uint64_t finish(const CheckpointInfo& info) {
     Json json;
     CheckpointInfo::each(info, [&](const char* name, const auto& value) { json[name] = value; });
     json["rows"] = std::move(pieces_);
     const std::string table = json.dump();
     const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
-    file_.write(table.data(), table.size());
-    file_.write(&trailer, sizeof(trailer));
+    file_.write(end_, table.data(), table.size());
+    file_.write(end_ + table.size(), &trailer, sizeof(trailer));
     return end_ + table.size() + sizeof(trailer);
   }
 
  protected:
   void visit_piece(const std::string& name, const Piece& piece) override {
-    if (!names_.insert(name).second)
-      throw Error(fmt::format("the state names \"{}\" twice", name));  // a fault of the program
+    note(name);
+    if (!is_first_) return;
     const std::uint64_t bytes = piece.item * piece.count;
     pieces_.push_back({name, end_, piece.item, piece.count, XXH3_64bits(piece.data, bytes)});
-    file_.write(piece.data, bytes);
+    file_.write(end_, piece.data, bytes);
     end_ += bytes;
+  }
+  void visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& ranks) override {
+    note(name);
+    struct Chunk {
+      int rank;
+      std::uint64_t end, count, hash;  // where the first rank stands, and the chunk
+    };
+    std::vector<Chunk> own;
+    const std::byte* data = piece.data;
+    for (const std::uint64_t count : piece.counts) {
+      own.push_back({ranks.me(), end_, count, XXH3_64bits(data, piece.item * count)});
+      data += piece.item * count;
+    }
+    std::uint64_t before = 0, all = 0;
+    std::vector<std::uint64_t> counts, hashes;
+    const std::vector<Chunk> chunks = ranks.collect(own);
+    for (const Chunk& chunk : chunks) {
+      if (chunk.rank < ranks.me()) before += piece.item * chunk.count;
+      all += piece.item * chunk.count;
+      counts.push_back(chunk.count);
+      hashes.push_back(chunk.hash);
+    }
+    if (!chunks.empty()) end_ = chunks.front().end;
+    file_.write(end_ + before, piece.data, static_cast<std::uint64_t>(data - piece.data));
+    if (is_first_) pieces_.push_back({name, end_, piece.item, counts, hashes});
+    end_ += all;
   }
 
  private:
+  void note(const std::string& name) {
+    if (!names_.insert(name).second)
+      throw Error(fmt::format("the state names \"{}\" twice", name));  // a fault of the program
+  }
+
   File& file_;
+  bool is_first_;
   Json pieces_ = Json::array();
   std::set<std::string> names_;
-  std::uint64_t end_ = 0;
+  std::uint64_t end_ = 0;  ///< end of what is written, as far as this rank knows
 };
+
+/// Reads the entries of one chunk, or of all.
+std::vector<std::uint64_t> read_list(const Json& json) {
+  std::vector<std::uint64_t> list;
+  for (const Json& entry : json.is_array() ? json : Json::array({json}))
+    read_entry(entry, list.emplace_back());
+  return list;
+}
 
 }  // namespace
 
@@ -162,31 +226,77 @@ class CheckpointReader : public StateVisitor {
   void verify() {
     std::vector<std::byte> data;
     for (const auto& [name, piece] : checkpoint_.pieces_) {
-      data.resize(piece.bytes());
-      read(name, piece, data.data());
+      std::uint64_t from = piece.begin;
+      for (std::size_t chunk = 0; chunk < piece.counts.size(); ++chunk) {
+        data.resize(piece.item * piece.counts[chunk]);
+        read(name, piece, chunk, from, data.data());
+        from += data.size();
+      }
     }
   }
 
  protected:
   void visit_piece(const std::string& name, const Piece& piece) override {
-    const auto found = checkpoint_.pieces_.find(name);
-    if (found == checkpoint_.pieces_.end()) refuse_body(fmt::format("does not hold \"{}\"", name));
-    const CheckpointFile::Piece& kept = found->second;
-    if (kept.item != piece.item || (!piece.resize && kept.count != piece.count))
-      refuse_body(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count,
-                              kept.item, name, piece.count, piece.item));
-    read(name, kept, piece.resize ? piece.resize(kept.count) : piece.data);
-    taken_.insert(name);
+    const CheckpointFile::Piece& kept = take(name, false);
+    const std::uint64_t count = kept.counts.front();
+    require_same(name, {count, kept.item}, {piece.resize ? count : piece.count, piece.item});
+    read(name, kept, 0, kept.begin, piece.resize ? piece.resize(count) : piece.data);
+  }
+  void visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& ranks) override {
+    const CheckpointFile::Piece& kept = take(name, true);
+    std::size_t first = 0, all = 0;
+    const auto of_ranks = ranks.collect(std::vector<std::size_t>{piece.counts.size()});
+    for (std::size_t rank = 0; rank < of_ranks.size(); ++rank) {
+      if (std::cmp_less(rank, ranks.me())) first += of_ranks[rank];
+      all += of_ranks[rank];
+    }
+    if (kept.counts.size() != all)
+      refuse_body(
+          fmt::format("holds {} chunks of \"{}\", but this run has {}", kept.counts.size(), name, all));
+    std::uint64_t from = kept.begin;
+    for (std::size_t chunk = 0; chunk < first; ++chunk) from += kept.item * kept.counts[chunk];
+    const std::span own(kept.counts.data() + first, piece.counts.size());
+    std::byte* to = piece.data;
+    if (piece.resize) {
+      std::ranges::copy(own, piece.counts.begin());
+      to = piece.resize();
+    }
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      require_same(name, {own[i], kept.item}, {piece.counts[i], piece.item});
+      read(name, kept, first + i, from, to);
+      from += kept.item * own[i];
+      to += kept.item * own[i];
+    }
   }
   void refuse(const std::string& name, const std::string& what) const override {
     throw Error(fmt::format("{}: is not sound: \"{}\" {}", checkpoint_.path().string(), name, what));
   }
 
  private:
-  void read(const std::string& name, const CheckpointFile::Piece& piece, std::byte* data) const {
-    if ((piece.bytes() > 0 && !file_.read(piece.begin, data, piece.bytes())) ||
-        XXH3_64bits(data, piece.bytes()) != piece.hash)
-      fail(fmt::format("is damaged: \"{}\" differs from the bytes that were written", name));
+  /// Returns a piece by its name.
+  const CheckpointFile::Piece& take(const std::string& name, bool is_by_chunk) {
+    const auto found = checkpoint_.pieces_.find(name);
+    if (found == checkpoint_.pieces_.end()) refuse_body(fmt::format("does not hold \"{}\"", name));
+    const CheckpointFile::Piece& kept = found->second;
+    if (kept.is_by_chunk != is_by_chunk) refuse_body(fmt::format("holds \"{}\" in another form", name));
+    taken_.insert(name);
+    return kept;
+  }
+  void read(const std::string& name, const CheckpointFile::Piece& piece, std::size_t chunk,
+            std::uint64_t from, std::byte* data) const {
+    const std::uint64_t bytes = piece.item * piece.counts[chunk];
+    if ((bytes > 0 && !file_.read(from, data, bytes)) || XXH3_64bits(data, bytes) != piece.hashes[chunk])
+      fail(fmt::format("is damaged: \"{}\"{} differs from the bytes that were written", name,
+                       piece.is_by_chunk ? fmt::format(" of chunk {}", chunk) : ""));
+  }
+  struct Size {
+    std::uint64_t count, item;
+    bool operator==(const Size&) const = default;
+  };
+  void require_same(const std::string& name, const Size& kept, const Size& here) const {
+    if (!(kept == here))
+      refuse_body(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count,
+                              kept.item, name, here.count, here.item));
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}", checkpoint_.path().string(), what));
@@ -207,21 +317,23 @@ class CheckpointReader : public StateVisitor {
 };
 
 std::uint64_t write_checkpoint(const std::filesystem::path& path, const CheckpointInfo& info,
-                               const std::function<void(StateVisitor&)>& visit) {
+                               const std::function<void(StateVisitor&)>& visit, Ranks& ranks) {
   std::filesystem::path partial = path;
   partial += ".partial";
   std::uint64_t bytes = 0;
   try {
-    File file = File::to_write(partial);
-    CheckpointWriter writer(file);
+    File file = File::to_write(partial, ranks);
+    CheckpointWriter writer(file, ranks);
     visit(writer);
-    bytes = writer.finish(info);
+    if (!ranks.is_first()) file.sync();
+    ranks.any(true);  // now all have written
+    if (ranks.is_first()) bytes = writer.finish(info);
   } catch (const Error&) {
     std::error_code ignored;
     std::filesystem::remove(partial, ignored);
     throw;
   }
-  publish(partial, path);
+  if (ranks.is_first()) publish(partial, path);
   return bytes;
 }
 
@@ -235,9 +347,11 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   Trailer trailer;
   if (size < begin.size() || !file.read(0, begin.data(), begin.size()) || begin != kBegin)
     fail("is no checkpoint of pyroclast");
-  if (size < begin.size() + sizeof(trailer) ||
-      !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)) || trailer.end != kEnd)
-    fail("is cut short, or damaged at its end");
+  if (size < begin.size() + sizeof(trailer) || !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)))
+    fail("is cut short");
+  if (trailer.end == kEndOfOldForm)
+    fail("is in an older form: resume it with the build that wrote it, or run its deck anew");
+  if (trailer.end != kEnd) fail("is cut short, or damaged at its end");
   if (trailer.table_bytes > size || trailer.table_begin > size ||
       trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
     fail("is damaged at its end");
@@ -252,10 +366,17 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
       Piece r;
       read_entry(piece.at(1), r.begin);
       read_entry(piece.at(2), r.item);
-      read_entry(piece.at(3), r.count);
-      read_entry(piece.at(4), r.hash);
-      if (r.begin > size || r.item == 0 || r.count > (size - r.begin) / r.item)
+      r.is_by_chunk = piece.at(3).is_array();
+      r.counts = read_list(piece.at(3));
+      r.hashes = read_list(piece.at(4));
+      if (r.begin > size || r.item == 0 || r.counts.size() != r.hashes.size() ||
+          (!r.is_by_chunk && r.counts.size() != 1))
         fail("is damaged in its table");
+      std::uint64_t left = (size - r.begin) / r.item;
+      for (const std::uint64_t count : r.counts) {
+        if (count > left) fail("is damaged in its table");
+        left -= count;
+      }
       pieces_[piece.at(0).get<std::string>()] = r;
     }
   } catch (const Json::exception&) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/base/ranks.hpp"
 #include "pyroclast/base/state_visitor.hpp"
 
 namespace pyroclast {
@@ -48,14 +49,16 @@ struct CheckpointInfo {
 /// written.
 ///
 ///     "pyroclas"  pieces of plain data, one after the other  table of the pieces and the info (JSON)
-///     where the table begins, its length, its hash (XXH3), "t-state1"
+///     where the table begins, its length, its hash (XXH3), "t-state2"
 ///
-/// The table has name, place, size and hash (XXH3) of each piece. Numbers are as the processor has them,
-/// little end first.
+/// The table has name, place, size and hash (XXH3) of each piece; of a piece by chunk, size and hash of each
+/// chunk. Numbers are as the processor has them, little end first. The bytes are the same for any number of
+/// ranks: each writes its own chunks, and the first the rest. A collective.
 /// \param visit  shows the whole state
-/// \return the length of the checkpoint, bytes
+/// \param ranks  ranks that hold the body; all reach the file under the same path
+/// \return the length of the checkpoint, bytes; 0 on ranks but the first
 std::uint64_t write_checkpoint(const std::filesystem::path& path, const CheckpointInfo& info,
-                               const std::function<void(StateVisitor&)>& visit);
+                               const std::function<void(StateVisitor&)>& visit, Ranks& ranks = one_rank());
 
 /// Checkpoint to be read. All its errors are Errors that name the file and the fault.
 class CheckpointFile {
@@ -66,8 +69,9 @@ class CheckpointFile {
   const std::filesystem::path& path() const { return path_; }
   const CheckpointInfo& info() const { return info_; }
 
-  /// Replaces everything that `visit` shows by the contents of the file. Throws Error when a piece is
-  /// damaged, or of another size, or when the file lacks one, or holds one that is not asked for.
+  /// Replaces everything that `visit` shows by the contents of the file; of pieces by chunk each rank reads
+  /// its own. Throws Error when a piece is damaged, or of another size, or when the file lacks one, or holds
+  /// one that is not asked for.
   void restore(const std::function<void(StateVisitor&)>& visit) const;
   /// Reads all pieces and compares their hashes. Throws Error for the first piece that is damaged.
   void verify() const;
@@ -75,8 +79,9 @@ class CheckpointFile {
  private:
   friend class CheckpointReader;
   struct Piece {
-    std::uint64_t begin = 0, item = 0, count = 0, hash = 0;
-    std::uint64_t bytes() const { return item * count; }
+    std::uint64_t begin = 0, item = 0;
+    bool is_by_chunk = false;
+    std::vector<std::uint64_t> counts, hashes;  ///< by chunk; one of a piece that is not by chunk
   };
 
   std::filesystem::path path_;

@@ -39,6 +39,7 @@ class Hash {
   }
   void add(const std::string& text) { add(std::vector<char>(text.begin(), text.end())); }
 
+  std::uint64_t low() const { return XXH3_128bits_digest(state_.get()).low64; }
   std::string text() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
@@ -80,25 +81,42 @@ std::vector<fs::path> files_of(const fs::path& run_folder) {
 
 std::string body_hash(const Simulation& simulation) {
   const Model& model = simulation.model();
-  Hash hash;
-  hash.add(model.block_gridpoints);
-  hash.add(model.block_zones);
-  hash.add(model.block_material);
-  hash.add(model.chunk_blocks);  // the order of a state
-  with_dimension(model, [&](const auto& of_dimension) {
-    hash.add(of_dimension.position);
-    hash.add(of_dimension.zones);
-    std::vector<int> joined;
-    std::vector<double> frames;
-    for (const auto& c : of_dimension.contacts) {
-      joined.insert(joined.end(), {c.a, c.b, c.face, c.interface});
-      frames.push_back(c.area);
-      frames.insert(frames.end(), c.normal.c.begin(), c.normal.c.end());
-      for (const auto& t : c.tangents) frames.insert(frames.end(), t.c.begin(), t.c.end());
+  const auto* const part = model.part.get();
+  // numbers of the whole, so that no hash depends on the parts
+  const auto gridpoint = [&](int g) { return part ? part->gridpoint[g] : g; };
+  const ContactsByChunk contacts = contacts_by_chunk(model);
+  const ChunkList blocks = model.chunks();
+  std::vector<std::uint64_t> of_chunks;
+  for (int chunk = 0; chunk < blocks.count(); ++chunk) {
+    if (blocks.is_foreign(chunk)) continue;
+    Hash hash;
+    std::vector<int> integers;
+    std::vector<double> numbers;
+    for (int b = blocks[chunk]; b < blocks[chunk + 1]; ++b) {
+      integers.insert(integers.end(),
+                      {model.block_material[b], model.block_zones[b + 1] - model.block_zones[b]});
+      for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) {
+        const Vec<3> place = model.place(g);
+        numbers.insert(numbers.end(), place.c.begin(), place.c.end());
+      }
+      for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
+        for (const int g : model.gridpoints_of_zone(z)) integers.push_back(gridpoint(g));
     }
-    hash.add(joined);
-    hash.add(frames);
-  });
+    with_dimension(model, [&](const auto& of_dimension) {
+      for (int i = contacts.chunks[chunk]; i < contacts.chunks[chunk + 1]; ++i) {
+        const auto& c = of_dimension.contacts[contacts.contacts[i]];
+        integers.insert(integers.end(), {gridpoint(c.a), gridpoint(c.b), c.interface});
+        numbers.push_back(c.area);
+        numbers.insert(numbers.end(), c.normal.c.begin(), c.normal.c.end());
+        for (const auto& t : c.tangents) numbers.insert(numbers.end(), t.c.begin(), t.c.end());
+      }
+    });
+    hash.add(integers);
+    hash.add(numbers);
+    of_chunks.push_back(hash.low());
+  }
+  Hash hash;
+  hash.add(model.ranks().collect(of_chunks));
   for (const auto& name : model.interface_names) hash.add(name);
   if (simulation.moves())
     for (const LawTable* law : simulation.motion().laws()) {
@@ -162,7 +180,6 @@ CheckpointFile newest_checkpoint(const fs::path& run_folder) {
 Checkpoints::Checkpoints(fs::path run_folder, const CheckpointChoice& choice, Sources sources,
                          std::int64_t last)
     : run_folder_(std::move(run_folder)), choice_(choice), sources_(std::move(sources)), number_(last) {
-  fs::create_directories(checkpoint_folder(run_folder_));
   written_ = Clock::now();
 }
 
@@ -175,10 +192,6 @@ bool Checkpoints::is_due() const {
 
 fs::path Checkpoints::next_file() const {
   return checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding);
-}
-
-void Checkpoints::between_batches(const Run& run, bool stops) {
-  if (stops || is_due()) write(run, next_file());
 }
 
 void Checkpoints::end_stage(const Run& run) {
@@ -200,10 +213,12 @@ void Checkpoints::write(const Run& run, const fs::path& path) {
   info.step = run.simulation().moves() ? run.simulation().motion().steps() : 0;
   info.wall_time = sources_.wall_time();
   info.log_bytes = sources_.log_bytes();
-  write_checkpoint(path, info, sources_.visit);
+  Ranks& ranks = run.simulation().ranks();
+  if (ranks.is_first()) fs::create_directories(path.parent_path());
+  write_checkpoint(path, info, sources_.visit, ranks);
   number_ = info.number;
   last_ = path;
-  remove_old();
+  if (ranks.is_first()) remove_old();
   written_ = Clock::now();
   took_ = std::chrono::duration<double>(written_ - begin).count();
 }

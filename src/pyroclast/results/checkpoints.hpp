@@ -16,7 +16,7 @@
 namespace pyroclast {
 
 /// Returns the hash of a body as it was made: its model, and the laws of its contacts. A checkpoint fits one
-/// body only.
+/// body only. The hash is the same for any number of ranks: a collective.
 std::string body_hash(const Simulation& simulation);
 
 /// Returns the folder of the checkpoints in a run's folder.
@@ -45,13 +45,16 @@ class Checkpoints {
     std::function<std::uint64_t()> log_bytes;
   };
 
+  /// \param run_folder  folder that all ranks reach
   /// \param last  number of the checkpoint from which the run goes on; 0 where it begins
   Checkpoints(std::filesystem::path run_folder, const CheckpointChoice& choice, Sources sources,
               std::int64_t last);
 
-  /// Writes a checkpoint where the last one is old enough, or the run will stop. Call it between batches.
-  void between_batches(const Run& run, bool stops);
-  /// Writes the checkpoint of a stage. Call it after a look that ended the stage.
+  /// Tells whether the last checkpoint is old enough for a next one, by the clock of this rank.
+  bool is_due() const;
+  /// Writes a checkpoint: a collective. Call it between batches.
+  void write(const Run& run) { write(run, next_file()); }
+  /// Writes the checkpoint of a stage: a collective. Call it after a look that ended the stage.
   void end_stage(const Run& run);
 
   /// Sets another hash of the inputs, from the next checkpoint on.
@@ -61,7 +64,6 @@ class Checkpoints {
   const std::filesystem::path& last() const { return last_; }
 
  private:
-  bool is_due() const;
   void write(const Run& run, const std::filesystem::path& path);
   std::filesystem::path next_file() const;
   void remove_old() const;

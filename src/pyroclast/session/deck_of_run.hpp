@@ -24,6 +24,8 @@ struct RunChoices {
   StageRegistry kinds;
   LawSources laws = LawSources::of_environment();
   std::shared_ptr<Ranks> ranks;  ///< ranks that hold the body; null: one
+  /// Tells whether this process writes the files of a run.
+  bool is_first() const { return !ranks || ranks->is_first(); }
   bool needs_code = true;  ///< false: code that the deck names and that may not run is listed in its setup
   /// Function that is called before the specimen is made, which may take long.
   std::function<void(const DeckOfRun&)> before_making = [](const DeckOfRun&) {};

@@ -130,23 +130,32 @@ void copy_frames(const fs::path& from, const fs::path& to, int count) {
         write_text_file(to / name, read_file(from / name));  // on the disk before a checkpoint counts on it
 }
 
+/// Returns the newest checkpoint of a run, as the first rank finds it: a collective.
+CheckpointFile newest_on_ranks(const fs::path& run, const RunChoices& choices) {
+  if (!choices.ranks) return newest_checkpoint(run);
+  const std::string found = choices.is_first() ? newest_checkpoint(run).path().string() : "";
+  const auto path = choices.ranks->collect(std::vector<char>(found.begin(), found.end()));
+  return CheckpointFile(std::string(path.begin(), path.end()));
+}
+
 std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path& stated,
                                          const RunChoices& choices) {
   RunFolder::require(folder);
-  auto lock = std::make_unique<FolderLock>(folder);
+  auto lock = choices.is_first() ? std::make_unique<FolderLock>(folder) : nullptr;
   require_deck_alone(folder);
-  const CheckpointFile checkpoint = stated.empty() ? newest_checkpoint(folder) : CheckpointFile(stated);
+  const CheckpointFile checkpoint =
+      stated.empty() ? newest_on_ranks(folder, choices) : CheckpointFile(stated);
   std::unique_ptr<Session> session(new Session(open_from(folder, {}, {}, choices), std::move(lock), folder));
   require_same(checkpoint, session->inputs_.hash(), *session->simulation_);
   session->restore(checkpoint);
   const Run& run = session->run_;
   // where the disk was full at the end, the summary is still to be written
-  if (run.outcome() != Outcome::running && fs::exists(folder / "summary.json"))
+  if (run.outcome() != Outcome::running && choices.is_first() && fs::exists(folder / "summary.json"))
     throw Error(fmt::format(
         "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
         folder.string(), describe(run.outcome()), shell_path(folder)));
   session->last_checkpoint_ = checkpoint.path();
-  RunFolder::remove_drawn(folder);
+  if (choices.is_first()) RunFolder::remove_drawn(folder);
   session->open(checkpoint.info().number);
   return session;
 }
@@ -167,7 +176,8 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   DeckOfRun opened = open_from(of.run, of.changes, more, choices);
   if (!of.more.empty() && opened.setup.stages.size() == parent.setup.stages.size())
     throw Error(fmt::format("{}: has no [[stages]], so that nothing follows", of.more.string()));
-  std::unique_ptr<Session> session(new Session(std::move(opened), lock(output), output.folder));
+  auto held = choices.is_first() ? lock(output) : nullptr;
+  std::unique_ptr<Session> session(new Session(std::move(opened), std::move(held), output.folder));
   if (is_of(states.back(), of.run))
     require_same(checkpoint, states.back().inputs, *session->simulation_);
   else
@@ -179,8 +189,10 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
                             stage, describe(session->run_.outcome())));
   std::vector<std::string> changes = of.changes;
   if (!of.more.empty()) changes.push_back(of.more.string());
-  session->make_folder(output, Parent{of.run, stage, changes, states});
-  copy_frames(of.run, output.folder, static_cast<int>(session->writer_.frames().rows.size()));
+  if (choices.is_first()) {
+    session->make_folder(output, Parent{of.run, stage, changes, states});
+    copy_frames(of.run, output.folder, static_cast<int>(session->writer_.frames().rows.size()));
+  }
   session->open(checkpoint.info().number);
   session->checkpoint_is_due_ = true;
   return session;

@@ -26,9 +26,9 @@ std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
   return make_simulation(opened.setup, opened.team, opened.choices.ranks);
 }
 
-/// Tells whether this process writes the files of a run.
-bool writes_files(const RunChoices& choices) {
-  return !choices.ranks || choices.ranks->is_first();
+/// Returns the folder into which this process writes the files of a run; none on ranks but the first.
+std::filesystem::path written_folder(const std::filesystem::path& folder, const RunChoices& choices) {
+  return choices.is_first() ? folder : std::filesystem::path();
 }
 
 /// Returns the inputs. Throws Error where ranks run different programs, decks or files that a deck names.
@@ -102,26 +102,32 @@ auto Session::telling_where_to_go_on(Act act) {
     if (last_checkpoint_.empty()) throw;
     throw NotWritten(
         fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
-                    error.what(), last_checkpoint_.string(), shell_path(folder_)));
+                    error.what(), last_checkpoint_.string(), shell_path(shared_folder_)));
   }
 }
 
 Session::Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
                  std::optional<MadeSpecimen> specimen)
     : lock_(std::move(lock)),
-      folder_(std::move(folder)),
+      folder_(written_folder(folder, opened.choices)),
+      shared_folder_(std::move(folder)),
       opened_(std::move(opened)),
       inputs_(same_on_all_ranks(opened_, inputs_of(opened_.deck, opened_.setup))),
       simulation_(make_simulation_of(opened_, std::move(specimen))),
       writer_(folder_, opened_.setup),
       run_(*simulation_, std::move(opened_.setup.stages)) {
-  run_.stop_when([this] { return stop_asked_(); });
-  run_.between_batches([this](Run& run) {
-    if (checkpoints_)
+  run_.ask([this] {
+    const bool is_due = checkpoints_ && is_first() && (checkpoint_is_due_ || checkpoints_->is_due());
+    return Wishes{.stop = stop_asked_(), .save = is_due};
+  });
+  run_.between_batches([this](Run& run, const Wishes& wishes) {
+    if (checkpoints_ && (wishes.stop || wishes.save)) {
+      checkpoint_is_due_ = false;
       telling_where_to_go_on([&] {
-        checkpoints_->between_batches(run, std::exchange(checkpoint_is_due_, false) || stop_asked_());
+        checkpoints_->write(run);
         last_checkpoint_ = checkpoints_->last();
       });
+    }
     between_batches_();
   });
 }
@@ -134,10 +140,10 @@ std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
 }
 
 std::unique_ptr<Session> Session::begin(DeckOfRun opened, const std::optional<RunOutput>& output) {
-  const bool writes = output && writes_files(opened.choices);
+  const bool writes = output && opened.choices.is_first();
   auto held = writes ? lock(*output) : nullptr;
   std::unique_ptr<Session> session(
-      new Session(std::move(opened), std::move(held), writes ? output->folder : std::filesystem::path()));
+      new Session(std::move(opened), std::move(held), output ? output->folder : std::filesystem::path()));
   if (writes) session->make_folder(*output, std::nullopt);
   if (output) session->open(0);
   return session;
@@ -154,13 +160,12 @@ void Session::make_folder(const RunOutput& output, std::optional<Parent> parent)
 /// \param last_checkpoint  number of the checkpoint that the run goes on from; 0 where it begins
 void Session::open(std::int64_t last_checkpoint) {
   has_files_ = true;
-  if (simulation_->ranks().count() == 1)
-    checkpoints_.emplace(
-        folder_, opened_.setup.checkpoints,
-        Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
-                             [this](StateVisitor& visitor) { visit_state(visitor); },
-                             [this] { return writer_.wall_time(); }, [this] { return log_bytes_(); }},
-        last_checkpoint);
+  checkpoints_.emplace(
+      shared_folder_, opened_.setup.checkpoints,
+      Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
+                           [this](StateVisitor& visitor) { visit_state(visitor); },
+                           [this] { return writer_.wall_time(); }, [this] { return log_bytes_(); }},
+      last_checkpoint);
   writer_.begin(run_);
 }
 
@@ -242,7 +247,7 @@ void Session::leave_folder() {
 
 void Session::write_checkpoint() {
   if (!checkpoints_) throw Error("this run has no folder, so a checkpoint has no place: say out=");
-  checkpoints_->between_batches(run_, true);
+  checkpoints_->write(run_);
   last_checkpoint_ = checkpoints_->last();
 }
 

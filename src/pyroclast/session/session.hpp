@@ -118,10 +118,12 @@ class Session {
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
 
  private:
+  /// \param folder  folder of the run, on all ranks; empty without files
   Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
           std::optional<MadeSpecimen> specimen = std::nullopt);
 
   static std::unique_ptr<FolderLock> lock(const RunOutput& output);
+  bool is_first() const { return simulation_->ranks().is_first(); }
   void make_folder(const RunOutput& output, std::optional<Parent> parent);
   void open(std::int64_t last_checkpoint);
   void visit_state(StateVisitor& visitor);
@@ -132,14 +134,15 @@ class Session {
   auto telling_where_to_go_on(Act act);
 
   std::unique_ptr<FolderLock> lock_;
-  std::filesystem::path folder_;
+  std::filesystem::path folder_;         ///< empty where nothing is written, or another rank writes
+  std::filesystem::path shared_folder_;  ///< the same on all ranks; empty where nothing is written
   DeckOfRun opened_;
   Inputs inputs_;
   std::unique_ptr<Simulation> simulation_;
   ResultsWriter writer_;
   Run run_;
   bool has_files_ = false;  ///< true where results go into a folder, by this rank or the first of several
-  std::optional<Checkpoints> checkpoints_;  ///< empty without files, and on several ranks
+  std::optional<Checkpoints> checkpoints_;  ///< empty without files
   std::optional<CheckpointInfo> goes_on_from_;
   std::filesystem::path last_checkpoint_;
   std::vector<std::filesystem::path> foreign_;

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "pyroclast/model/visit_contacts.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -112,9 +114,12 @@ BodyProperties properties_at_one_temperature(const Model& model, const std::vect
 
 HottestTemperatures::HottestTemperatures(const Model& model, const ConcreteMaterials& materials,
                                          const TemperatureField& field,
-                                         const std::vector<double>& stress_free) {
-  if (materials.asks_for_hottest()) zones_ = field.zones();
-  if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
+                                         const std::vector<double>& stress_free)
+    : model_(&model),
+      keeps_zones_(materials.asks_for_hottest()),
+      keeps_contacts_(materials.on_cooling == OnCooling::irreversible) {
+  if (keeps_zones_) zones_ = field.zones();
+  if (keeps_contacts_) contacts_ = field.contacts();
   body_ = field.mean();
   if (materials.stress_free) {
     begin_at(model, std::vector<double>(model.gridpoint_count(), *materials.stress_free));
@@ -157,10 +162,11 @@ void HottestTemperatures::note_exchange(const TemperatureField& field) {
 }
 
 void HottestTemperatures::visit_state(StateVisitor& visitor) {
-  visitor.visit("zones", zones_, kTemperatures.of(zones_.size()));
-  visitor.visit("contacts", contacts_, kTemperatures.of(contacts_.size()));
-  visitor.visit("seen_zones", seen_zones_, kTemperatures.of(seen_zones_.size()));
-  visitor.visit("seen_contacts", seen_contacts_, kTemperatures.of(seen_contacts_.size()));
+  const ChunkList zones = model_->zone_chunks();
+  if (keeps_zones_) visitor.visit_by_chunk("zones", zones_, zones, kTemperatures);
+  if (keeps_zones_) visitor.visit_by_chunk("seen_zones", seen_zones_, zones, kTemperatures);
+  if (keeps_contacts_) visit_contacts(visitor, "contacts", *model_, contacts_, kTemperatures);
+  if (keeps_contacts_) visit_contacts(visitor, "seen_contacts", *model_, seen_contacts_, kTemperatures);
   visitor.visit("body", body_, kTemperatures);
 }
 

@@ -19,6 +19,7 @@ class HottestTemperatures {
   HottestTemperatures() = default;
   /// Begins as if the body had come without stress to the field's present temperatures, from the temperature
   /// without stress where the materials state one.
+  /// \param model        kept by reference; must outlive this object
   /// \param stress_free  temperature without stress of each gridpoint where it is a field, °C
   HottestTemperatures(const Model& model, const ConcreteMaterials& materials, const TemperatureField& field,
                       const std::vector<double>& stress_free = {});
@@ -50,6 +51,8 @@ class HottestTemperatures {
   /// Raises the temperatures to those of the gridpoints, without bearings, and returns the mean of each zone.
   std::vector<double> begin_at(const Model& model, const std::vector<double>& gridpoints);
 
+  const Model* model_ = nullptr;
+  bool keeps_zones_ = false, keeps_contacts_ = false;
   std::vector<double> zones_, contacts_;            ///< highest at exchanges
   std::vector<double> seen_zones_, seen_contacts_;  ///< highest at exchanges and since the last one
   double body_ = 0.0;

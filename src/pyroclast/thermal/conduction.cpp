@@ -146,7 +146,7 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   store_ = NodeEnthalpy(grid_, tables_, shares);
   volume_ = total_volumes(shares);
   node_chunks_ = model_.gridpoint_chunks().of_some(nodes_.gridpoint);
-  halo_ = NodeHalo(model_, nodes_, node_chunks_);
+  halo_ = node_halo(model_, nodes_, node_chunks_);
   total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
   for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_})
     field->assign(volume_.size(), 0.0);
@@ -847,19 +847,28 @@ void Conduction<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("stages", s.stages, state::count());
   visitor.visit_numbers("ledger", s.ledger);
   visitor.visit("stored_at_start", s.stored_at_start);
-  visitor.visit("temperature", s.temperature, kTemperatures);
-  visitor.visit("enthalpy", s.enthalpy);
+  if (visitor.replaces()) {
+    widen_temperature_range(s.temperature_range);
+    if (gaps_) set_nodes(join_through_contacts(model_, conducts_, gaps_->parts()));
+    for (auto* of_nodes : {&s.temperature, &s.enthalpy})
+      of_nodes->resize(static_cast<std::size_t>(nodes_.count()));
+  }
+  visit_nodes(visitor, "temperature", s.temperature, kTemperatures);
+  visit_nodes(visitor, "enthalpy", s.enthalpy, state::finite());
   if (!visitor.replaces()) return;
-  widen_temperature_range(s.temperature_range);
-  if (gaps_) set_nodes(join_through_contacts(model_, conducts_, gaps_->parts()));
-  const auto nodes = static_cast<std::size_t>(nodes_.count());
-  visitor.require(s.temperature.size() == nodes, "temperature", "does not have one for each node");
-  visitor.require(s.enthalpy.size() == nodes, "enthalpy", "does not have one for each node");
+  halo_.spread(s.temperature);
+  halo_.spoil(s.enthalpy);
   state_ = std::move(s);
   trial_.under_way = false;
   before_run_.holds = false;
   for (auto* of_a_step : {&trial_.increment, &trial_.before, &trial_.first_rate})
     std::fill(of_a_step->begin(), of_a_step->end(), std::numeric_limits<double>::quiet_NaN());
+}
+
+template <int Dim>
+void Conduction<Dim>::visit_nodes(StateVisitor& visitor, std::string_view name, std::vector<double>& of_nodes,
+                                  const StateRule& rule) const {
+  visitor.visit_by_chunk(name, of_nodes, node_chunks_, rule);
 }
 
 template <int Dim>

@@ -144,6 +144,8 @@ class Conduction final : public HeatSolver {
   /// conduction goes on from it as if nothing had been replaced; a step under way is done again from its
   /// beginning.
   void visit_state(StateVisitor& visitor) override;
+  void visit_nodes(StateVisitor& visitor, std::string_view name, std::vector<double>& of_nodes,
+                   const StateRule& rule) const override;
   double time() const override { return state_.time; }
   const ThermalNodes& nodes() const override { return nodes_; }
   /// Returns the temperature of each node, °C.
@@ -281,7 +283,7 @@ class Conduction final : public HeatSolver {
   NodeEnthalpy store_;
   std::vector<double> volume_;  ///< volume of each node, m³
   ChunkList node_chunks_;
-  NodeHalo halo_;
+  ItemHalo halo_;
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;

@@ -10,6 +10,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/outline.hpp"
+#include "pyroclast/model/visit_contacts.hpp"
 #include "pyroclast/thermal/require.hpp"
 #include "pyroclast/thermal/zone_conduction.hpp"
 
@@ -194,9 +195,19 @@ double GapConduction<Dim>::area() const {
 
 template <int Dim>
 void GapConduction<Dim>::visit_state(StateVisitor& visitor) {
-  visitor.visit_numbers("gaps", gaps_, state::at_least(0).of(gaps_.size()));
-  for (const ContactGap& gap : gaps_) visitor.require(gap.damage <= 1.0, "gaps", "has a damage above 1");
-  visitor.visit("parts", parts_, state::within(0, 1).of(parts_.size()));
+  struct Gap {
+    double damage, opening, parts;
+  };
+  std::vector<Gap> gaps;
+  for (std::size_t i = 0; i < gaps_.size(); ++i)
+    gaps.push_back({gaps_[i].damage, gaps_[i].opening, static_cast<double>(parts_[i])});
+  visit_contacts(visitor, "gaps", model_, gaps, state::at_least(0));
+  for (std::size_t i = 0; i < gaps_.size(); ++i) {
+    visitor.require(gaps[i].damage <= 1.0, "gaps", "has a damage above 1");
+    visitor.require(gaps[i].parts == 0.0 || gaps[i].parts == 1.0, "gaps", "parts neither, nor joins");
+    gaps_[i] = {gaps[i].damage, gaps[i].opening};
+    parts_[i] = static_cast<std::uint8_t>(gaps[i].parts);
+  }
 }
 
 template class GapConduction<2>;

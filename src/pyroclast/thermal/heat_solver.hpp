@@ -79,6 +79,9 @@ class HeatSolver {
   virtual void drop_trial() = 0;
   virtual std::int64_t stages_per_batch() const = 0;
   virtual void visit_state(StateVisitor& visitor) = 0;
+  /// Shows numbers of nodes to a visitor, those of own nodes: a collective.
+  virtual void visit_nodes(StateVisitor& visitor, std::string_view name, std::vector<double>& of_nodes,
+                           const StateRule& rule) const = 0;
 
   virtual double time() const = 0;
   virtual const ThermalNodes& nodes() const = 0;

@@ -11,6 +11,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/item_halo.hpp"
 
 namespace pyroclast {
 
@@ -150,8 +151,9 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
     return;
   }
   conduction_->visit_state(visitor);
-  visitor.visit("gridpoints", gridpoints_,
-                kTemperatures.of(gridpoints_.size()));  // an advance under way leaves them where it began
+  // an advance under way leaves the gridpoints where it began
+  visitor.visit_by_chunk("gridpoints", gridpoints_, model_.gridpoint_chunks(), kTemperatures);
+  if (visitor.replaces()) gridpoint_halo(model_).spread(gridpoints_);
   visitor.visit("time", time_, state::at_least(0));
   visitor.visit("fastest", fastest_, state::number());
   const StateVisitor::Scope scope(visitor, "advance");
@@ -160,9 +162,10 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
   visitor.visit("until", advance_.until);
   visitor.visit("steady_rate", advance_.steady_rate);
   visitor.visit("change", advance_.change);
-  visitor.visit("begin", advance_.begin, kTemperatures);
-  visitor.require(!advance_.under_way || advance_.begin.size() == conduction_->temperature().size(), "begin",
-                  "does not have the temperature of each node");
+  if (advance_.under_way) {
+    if (visitor.replaces()) advance_.begin = conduction_->temperature();
+    conduction_->visit_nodes(visitor, "begin", advance_.begin, kTemperatures);
+  }
   if (visitor.replaces()) update();
 }
 

@@ -184,13 +184,14 @@ void Run::begin_stage() {
 /// Moves on to the next look; returns false when the run was stopped on the way.
 bool Run::move_to_look() {
   for (bool there = false; !there;) {
-    between_batches_(*this);
-    const bool asked = stop_asked_();
-    const bool stops = simulation_.ranks().together([&] {
+    const Wishes own = asked_();
+    Ranks& ranks = simulation_.ranks();
+    const Wishes wishes = ranks.together([&] {
       stages_[stage_]->read(simulation_);
-      return simulation_.ranks().any(asked);
+      return Wishes{.stop = ranks.any(own.stop), .save = ranks.any(own.save)};
     });
-    if (stops) {
+    between_batches_(*this, wishes);
+    if (wishes.stop) {
       courses_[stage_].outcome = Outcome::stopped;
       outcome_ = Outcome::stopped;
       return false;
@@ -279,15 +280,19 @@ void Run::visit_state(StateVisitor& visitor) {
 
 /// Shows the courses of the stages up to the present one; later stages have not begun.
 void Run::visit_courses(StateVisitor& visitor) {
-  std::vector<StageCourse> courses(courses_.begin(), courses_.begin() + stage_ + 1);
-  if (outcome_ == Outcome::stopped) courses.back().outcome = Outcome::running;
-  visitor.visit_plain("courses", courses, static_cast<std::size_t>(stage_) + 1);
-  for (const StageCourse& course : courses)
-    visitor.require(course.outcome <= Outcome::stopped, "courses", "has an outcome that there is none of");
+  constexpr auto kLast = static_cast<double>(Outcome::stopped);
+  for (std::int64_t i = 0; i <= stage_; ++i) {
+    const StateVisitor::Scope scope(visitor, fmt::format("courses[{}]", i));
+    StageCourse& course = courses_[i];
+    Outcome of_stage = course.outcome == Outcome::stopped ? Outcome::running : course.outcome;
+    visitor.visit("outcome", of_stage, state::within(0, kLast));
+    visitor.visit("first_row", course.rows.first, state::count());
+    visitor.visit("last_row", course.rows.last, state::count());
+    if (visitor.replaces()) course.outcome = of_stage;
+  }
   Outcome outcome = outcome_ == Outcome::stopped ? Outcome::running : outcome_;
-  visitor.visit("outcome", outcome, state::within(0, static_cast<double>(Outcome::stopped)));
+  visitor.visit("outcome", outcome, state::within(0, kLast));
   if (!visitor.replaces()) return;
-  std::ranges::copy(courses, courses_.begin());
   const bool has_more = stage_ + 1 < static_cast<std::int64_t>(stages_.size());
   outcome_ = stage_is_over_ && !stage_ends_run_ && has_more ? Outcome::running : outcome;
   visitor.require(outcome_ != Outcome::running || !stage_is_over_ || has_more, "outcome",

@@ -21,6 +21,12 @@ struct StageCourse {
   RowRange rows;  ///< rows in the history; the row at the start of the run belongs to no stage
 };
 
+/// What a rank asks for between two batches. What one rank asks for, all do.
+struct Wishes {
+  bool stop = false;  ///< stop the run
+  bool save = false;  ///< keep the state
+};
+
 /// Run of a simulation through a list of stages, from look to look:
 ///
 ///     while (run.next()) writer.write(run);
@@ -41,13 +47,17 @@ class Run {
   Outcome run();
 
   /// Sets a function that the run asks before every batch; true stops the run, on all ranks.
-  void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
+  void stop_when(std::function<bool()> asked) {
+    ask([asked = std::move(asked)] { return Wishes{.stop = asked()}; });
+  }
+  /// Sets a function that the run asks before every batch.
+  void ask(std::function<Wishes()> asked) { asked_ = std::move(asked); }
   /// Sets a function that the run calls once, when the mechanics has done so many steps since its beginning.
   /// The batch ends there. Throws Error when that step is past, or nothing moves.
   void call_at(std::int64_t step, std::function<void(Run&)> call);
-  /// Sets a function that the run calls between batches, and before it stops; the function may read or write
-  /// the state.
-  void between_batches(std::function<void(Run&)> call) { between_batches_ = std::move(call); }
+  /// Sets a function that the run calls between batches, and before it stops, with what is to be done; the
+  /// function may read or write the state.
+  void between_batches(std::function<void(Run&, const Wishes&)> call) { between_batches_ = std::move(call); }
 
   /// Tells whether a frame is due at the last look.
   bool frame_is_due() const { return frame_is_due_; }
@@ -112,8 +122,8 @@ class Run {
   std::vector<Gauge> gauges_;
   std::size_t stages_columns_ = 0;  ///< gauge before whose columns the stages' own columns stand
   History history_;
-  std::function<bool()> stop_asked_ = [] { return false; };
-  std::function<void(Run&)> between_batches_ = [](Run&) {};
+  std::function<Wishes()> asked_ = [] { return Wishes{}; };
+  std::function<void(Run&, const Wishes&)> between_batches_ = [](Run&, const Wishes&) {};
   std::multimap<std::int64_t, std::function<void(Run&)>> calls_;  ///< functions to call, by step
   const int most_steps_;                                          ///< most steps of a batch
 
