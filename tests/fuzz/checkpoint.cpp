@@ -183,7 +183,7 @@ void read_table(std::string_view table) {
     std::ofstream file(path, std::ios::binary);
     file << rows << table;
     file.write(reinterpret_cast<const char*>(trailer.data()), sizeof(trailer));
-    file << "t-state1";
+    file << "t-state2";
   }
   const CheckpointFile file(path);
   require(file.info().number >= 0 && file.info().step >= 0, "what is counted is not negative");

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -87,6 +86,13 @@ struct ListByChunk {
     }
   }
 };
+
+/// Returns the number of entries of all own chunks.
+inline std::uint64_t total(const std::vector<std::uint64_t>& counts) {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t count : counts) sum += count;
+  return sum;
+}
 
 /// Visitor to which a moving thing shows, under its name, everything that the thing keeps from one batch of
 /// steps to the next. The visitor reads each value, or replaces it by the value that an equal thing kept
@@ -173,9 +179,7 @@ class StateVisitor {
   void visit_by_chunk(std::string_view name, ListByChunk<T>& list, const ChunkList& chunks) {
     static_assert(std::is_trivially_copyable_v<T>);
     const auto resize = [&] {
-      std::size_t total = 0;
-      for (const std::uint64_t count : list.counts) total += count;
-      list.entries.resize(total);
+      list.entries.resize(total(list.counts));
       return reinterpret_cast<std::byte*>(list.entries.data());
     };
     visit_chunks(scope_ + std::string(name),
@@ -238,7 +242,7 @@ class StateVisitor {
     /// Function that makes room for other `counts` and returns its place; empty where they are fixed.
     std::function<std::byte*()> resize;
 
-    std::uint64_t count() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+    std::uint64_t count() const { return total(counts); }
   };
   /// By default what this rank holds is visited as pieces.
   virtual void visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& ranks);

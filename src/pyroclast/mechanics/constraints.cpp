@@ -15,8 +15,7 @@ namespace {
 /// Tells whether a slot is one of a bundle, or of the block whose first bundle this is.
 template <int Dim>
 bool is_slot_of(const Body<Dim>& body, int slot, int first_bundle) {
-  return 0 <= slot && slot < kLanes * body.layout.gridpoint_packs &&
-         body.first_bundle_of(body.layout.bundle_of_pack[slot / kLanes]) == first_bundle;
+  return body.first_bundle_of(body.layout.bundle_of_pack[slot / kLanes]) == first_bundle;
 }
 
 }  // namespace
@@ -278,9 +277,11 @@ void Constraints<Dim>::take_ties(const StateVisitor& visitor, const ListByChunk<
       TieOfBundle& tie =
           body_.made_ties.emplace_back(TieOfBundle{bundles[chunk] + numbers[0], numbers[1], {}});
       for (const int slot : numbers.subspan(3, static_cast<std::size_t>(numbers[2]))) {
-        tie.slots.push_back(first_slot_of(bundles[chunk]) + slot);
-        visitor.require(is_slot_of(body_, tie.slots.back(), tie.bundle), "ties",
-                        "names a slot of another bundle");
+        const int first = first_slot_of(bundles[chunk]);
+        visitor.require(0 <= slot && slot < slot_of(body_.layout.gridpoint_packs, 0) - first &&
+                            is_slot_of(body_, first + slot, tie.bundle),
+                        "ties", "names a slot of another bundle");
+        tie.slots.push_back(first + slot);
         const int bundle = body_.layout.bundle_of_pack[tie.slots.back() / kLanes];
         visitor.require(body_.arrays.constraints_of_bundle[bundle] >= 0, "ties",
                         "ties a bundle without constraints");
