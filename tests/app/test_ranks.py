@@ -11,6 +11,8 @@ import json
 import os
 import pathlib
 import re
+import shutil
+import signal
 import subprocess
 import time
 import unittest
@@ -164,6 +166,50 @@ class Ranks(InAFolder):
         program.chmod(0o755)
         self.assertIn("rank 1 reads another deck than rank 0",
                       self.refused(2, "run", "deck.toml", *SMALL, "--mpi", program=str(program)))
+
+    def ended(self, end) -> tuple[subprocess.Popen, str, str]:
+        """Starts a long run on two ranks and ends it by `end(mpirun, processes of the ranks)`. All are gone soon.
+
+        Returns mpirun and all that was said.
+        """
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        words = ["run", CASE, *SMALL, "--set", "stages[1].stop_strain=0.5", "--set", "stages[1].velocity=1 mm/s", "-t", "1",
+                 "--mpi", "--out", "out"]
+        with subprocess.Popen(["mpirun", "-n", "2", PROGRAM, *words], cwd=self.folder, env={**os.environ, **MPI},
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as mpirun:
+            history = self.folder / "out/history.csv"
+            while mpirun.poll() is None and not (history.exists() and len(history.read_text().splitlines()) > 5):
+                time.sleep(0.05)
+            copies = list(map(int, subprocess.run(["pgrep", "--parent", str(mpirun.pid)], capture_output=True, text=True,
+                                                  check=False).stdout.split()))
+            self.assertEqual(len(copies), 2)
+            began = time.monotonic()
+            end(mpirun, copies)
+            said = mpirun.communicate(timeout=60)
+            self.assertLess(time.monotonic() - began, SOON)
+        while any(pathlib.Path(f"/proc/{copy}").exists() for copy in copies):
+            self.assertLess(time.monotonic() - began, SOON)
+            time.sleep(0.05)
+        return mpirun, *said
+
+    @NEEDS_MPI
+    def test_a_signal_that_time_is_short_stops_all_ranks_after_a_batch(self):
+        """mpirun passes SIGUSR1 on, more than once too; one rank that gets it alone stops the others."""
+        for end in (lambda mpirun, copies: [mpirun.send_signal(signal.SIGUSR1), time.sleep(0.05),
+                                            mpirun.send_signal(signal.SIGUSR1)],
+                    lambda mpirun, copies: os.kill(copies[1], signal.SIGUSR1)):
+            mpirun, said, _ = self.ended(end)
+            self.assertEqual(mpirun.returncode, 130)
+            self.assertEqual(said.count("\nended           stopped"), 1)
+            self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["outcome_id"], "stopped")
+
+    @NEEDS_MPI
+    def test_a_rank_that_dies_ends_all_and_this_is_told(self):
+        mpirun, _, errors = self.ended(lambda mpirun, copies: os.kill(copies[1], signal.SIGKILL))
+        self.assertEqual(mpirun.returncode, 128 + signal.SIGKILL)
+        self.assertIn("rank 1", errors)
+        self.assertIn("signal 9", errors)
+        self.assertFalse((self.folder / "out/summary.json").exists())
 
     def test_copies_that_know_nothing_of_each_other_are_refused(self):
         """The count is that of the step at hand. A large allocation in which one copy runs is none."""

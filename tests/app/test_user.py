@@ -69,7 +69,7 @@ class UserTest(InAFolder):
     def interrupt(self, deck: pathlib.Path, rows: int, by: signal.Signals = signal.SIGINT) -> dict:
         """Runs a deck into out/, stops it once its history has so many rows, and sees it end cleanly and soon.
 
-        Returns the summary.
+        SIGUSR1 comes again and again until the end. Returns the summary.
         """
         shutil.rmtree(self.folder / "out", ignore_errors=True)
         with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"],
@@ -80,6 +80,9 @@ class UserTest(InAFolder):
                     break
                 time.sleep(0.1)
             process.send_signal(by)
+            while by == signal.SIGUSR1 and process.poll() is None:
+                time.sleep(0.01)
+                process.send_signal(by)
             output, _ = process.communicate(timeout=20)
         self.assertEqual(process.returncode, 130)
         self.assertIn("stopped", output)
@@ -928,7 +931,7 @@ class Running(UserTest):
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
         deck = self.write(small_deck(stop_strain="stop_strain = 0.5"))
-        for by in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for by in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1):
             summary = self.interrupt(deck, rows=50, by=by)
             self.assertEqual(summary["outcome"], "stopped")
             self.assertEqual([stage["outcome"] for stage in summary["stages"]], ["completed", "stopped"])
