@@ -180,7 +180,7 @@ class Test:
         row = self.key
         if self.kind in ("heated", "restrained"):
             run = heated(self.specimen, self.level, self.to, "fixed" if self.kind == "restrained" else "force")
-            row.update(_of_heating(run))
+            row.update(_of_heating(run, self.specimen.in_space))
         else:
             temperature = 20.0 if self.kind == "cold" else self.to
             found = crushed(self.specimen, temperature, self.level, self.kind == "residual")
@@ -193,7 +193,7 @@ class Test:
         return runs.rounded(row)
 
 
-def _of_heating(run: Results) -> dict:
+def _of_heating(run: Results, in_space: bool) -> dict:
     hot = Heated(run)
     strains = hot.standing_strain(TEMPERATURES)
     row = {f"strain_{t}_1e-3": 1e3 * e for t, e in zip(TEMPERATURES, strains.tolist()) if not math.isnan(e)}
@@ -205,7 +205,7 @@ def _of_heating(run: Results) -> dict:
         row.update(largest_thrust_MPa=float(stress[largest]), thrust_at_degC=float(temperature[largest]))
     if temperature.max() >= 400.0:
         row["lateral_400_1e-3"] = 1e3 * float(np.interp(400.0, temperature, history["lateral_strain"][standing]))
-        if run.dimension == 2:
+        if not in_space:
             row.update(_cracks_at(run, 400.0))
     return row
 
@@ -269,7 +269,7 @@ def print_table(head: list[str], lines: list[list[str]]) -> None:
     print("| " + " | ".join(head) + " |")
     print("|" + "---|" * len(head))
     for line in lines:
-        print("| " + " | ".join(line) + " |")
+        print("| " + " | ".join(map(str, line)) + " |")
     print()
 
 

@@ -74,7 +74,7 @@ class Ranks(InAFolder):
         self.assertIn("2 ranks with 1 thread", together.stdout)
         files = [{str(file.relative_to(self.folder / run)) for file in (self.folder / run).rglob("*") if file.is_file()}
                  for run in ("alone", "together")]
-        self.assertEqual({file for file in files[0] if not file.startswith("checkpoints")}, files[1])
+        self.assertEqual(files[0], files[1])
 
     def calls(self, ranks: int, case: str, *words) -> list[list[tuple[str, list[list[str]]]]]:
         """Runs a case into a folder of its name. Returns the calls of each rank: collectives and messages by turns."""
@@ -210,6 +210,46 @@ class Ranks(InAFolder):
         self.assertIn("rank 1", errors)
         self.assertIn("signal 9", errors)
         self.assertFalse((self.folder / "out/summary.json").exists())
+
+    @NEEDS_MPI
+    def test_a_run_that_lost_a_rank_goes_on_on_another_number(self):
+        """Killed on two ranks, stopped on three, and ended by two: files and checkpoints are those of one process."""
+        def start(ranks: int, *words) -> subprocess.Popen:
+            return subprocess.Popen(["mpirun", "-n", str(ranks), PROGRAM, *map(str, words), "-t", "1", "--mpi", "--quiet",
+                                     "--no-figures", "--checkpoint", "0s"], cwd=self.folder, env={**os.environ, **MPI},
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+        def wait_for(rows: int) -> None:
+            history = self.folder / "broken/history.csv"
+            while not (history.exists() and len(history.read_text().splitlines()) > rows):
+                time.sleep(0.02)
+
+        self.pyroclast("run", CASE, *SMALL, *PRESS, "-t", "1", "--out", "whole",
+                       env={**os.environ, "PYROCLAST_CHUNK_BLOCKS": "16"})
+        with start(2, "run", CASE, *SMALL, *PRESS, "--out", "broken") as mpirun:
+            wait_for(4)
+            subprocess.run(["pkill", "-KILL", "--parent", str(mpirun.pid)], check=True)
+        with start(3, "resume", "broken") as mpirun:
+            wait_for(10)
+            mpirun.send_signal(signal.SIGUSR1)
+        self.assertEqual(mpirun.returncode, 130)
+        with start(2, "resume", "broken") as mpirun:
+            pass
+        self.assertEqual(mpirun.returncode, 0)
+        self.assertEqual(validation_ranks.differences(self.folder / "whole", self.folder / "broken"), [])
+
+    @NEEDS_MPI
+    def test_a_checkpoint_that_one_rank_cannot_reach_ends_all(self):
+        """The first rank makes the file; a rank that does not see it says so, and the checkpoint before it stays."""
+        program = self.folder / "program"
+        program.write_text('#!/bin/sh\n[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" = 1 ] && cd elsewhere\n'
+                           f'exec {PROGRAM} "$@"\n')
+        program.chmod(0o755)
+        (self.folder / "elsewhere").mkdir()
+        error = self.refused(2, "run", CASE, *SMALL, "--mpi", "--out", "out", program=str(program))
+        self.assertIn("rank 1", error)
+        self.assertIn("all ranks need one file system", error)
+        self.assertEqual(list(self.folder.rglob("*.state")), [])
 
     def test_copies_that_know_nothing_of_each_other_are_refused(self):
         """The count is that of the step at hand. A large allocation in which one copy runs is none."""

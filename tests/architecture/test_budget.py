@@ -4,8 +4,8 @@ import pathlib
 import unittest
 
 SOURCE = pathlib.Path(__file__).parents[2] / "src" / "pyroclast"
-BUDGET = {"app": 4100, "base": 3450, "deck": 3500, "laws": 2900, "material": 3400, "mechanics": 5850, "model":
-          1900, "parallel": 250, "plugin": 1450, "python": 1700, "results": 3550, "session": 1350, "setup":
+BUDGET = {"app": 4150, "base": 3550, "deck": 3500, "laws": 2900, "material": 3400, "mechanics": 6050, "model":
+          2100, "parallel": 250, "plugin": 1450, "python": 1700, "results": 3700, "session": 1400, "setup":
           5300, "simulation": 6450, "solid": 2400, "specimen": 7450, "stages": 4850, "tables": 2800, "thermal":
           3650, "units": 1200}
 SPARE = 100  # lines: a module that shrinks by more hands them back
