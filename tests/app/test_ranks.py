@@ -237,19 +237,23 @@ class Ranks(InAFolder):
             pass
         self.assertEqual(mpirun.returncode, 0)
         self.assertEqual(validation_ranks.differences(self.folder / "whole", self.folder / "broken"), [])
+        with self.subTest("other chunks"):
+            self.assertIn("chunks of 16 blocks, and this run has chunks of 1024",
+                          self.pyroclast("resume", "whole", code=1).stderr)
 
     @NEEDS_MPI
-    def test_a_checkpoint_that_one_rank_cannot_reach_ends_all(self):
-        """The first rank makes the file; a rank that does not see it says so, and the checkpoint before it stays."""
-        program = self.folder / "program"
-        program.write_text('#!/bin/sh\n[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" = 1 ] && cd elsewhere\n'
-                           f'exec {PROGRAM} "$@"\n')
-        program.chmod(0o755)
-        (self.folder / "elsewhere").mkdir()
-        error = self.refused(2, "run", CASE, *SMALL, "--mpi", "--out", "out", program=str(program))
-        self.assertIn("rank 1", error)
-        self.assertIn("all ranks need one file system", error)
-        self.assertEqual(list(self.folder.rglob("*.state")), [])
+    def test_a_checkpoint_that_one_rank_cannot_write_ends_all(self):
+        """Rank 1 does not see the file that the first one made, or its disk is full: it says so. No file is left."""
+        program, deck = self.folder / "program", self.folder / "elsewhere"
+        deck.mkdir()
+        for how, says in (("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")):
+            program.write_text(f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_RANK:-$PMI_RANK}}" = 1 ] && {how}\n'
+                               f'exec {PROGRAM} "$@"\n')
+            program.chmod(0o755)
+            error = self.refused(2, "run", CASE, *SMALL, "--mpi", "--out", "out", "--overwrite", program=str(program))
+            self.assertIn("rank 1", error)
+            self.assertIn(says, error)
+            self.assertEqual(list(self.folder.rglob("*.state*")), [])
 
     def test_copies_that_know_nothing_of_each_other_are_refused(self):
         """The count is that of the step at hand. A large allocation in which one copy runs is none."""

@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -69,11 +70,11 @@ class File {
   static File to_read(const std::filesystem::path& path) {
     return {path, open(path.c_str(), O_RDONLY | O_CLOEXEC), "cannot be read"};
   }
-  /// Makes a file for all ranks: a collective.
-  static File to_write(const std::filesystem::path& path, Ranks& ranks) {
-    File made(path, ranks.is_first() ? open_aside(path) : kNone, "cannot be written");
-    ranks.any(true);  // now the file is there
-    if (ranks.is_first()) return made;
+  static File to_write(const std::filesystem::path& path) {
+    return {path, open_aside(path), "cannot be written"};
+  }
+  /// Opens a file that the first rank has made.
+  static File of_other(const std::filesystem::path& path) {
     return {
         path, open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC),
         "cannot be opened by this rank, though the first one has made it: all ranks need one file system"};
@@ -81,7 +82,7 @@ class File {
   ~File() {
     if (descriptor_ >= 0) close(descriptor_);
   }
-  File(File&& other) noexcept : path_(other.path_), descriptor_(std::exchange(other.descriptor_, kNone)) {}
+  File(File&& other) noexcept : path_(other.path_), descriptor_(std::exchange(other.descriptor_, -1)) {}
   File& operator=(File&&) = delete;
 
   void write(std::uint64_t from, const void* data, std::uint64_t bytes) {
@@ -116,11 +117,9 @@ class File {
   }
 
  private:
-  static constexpr int kNone = -2;  ///< descriptor of no file
-
   File(const std::filesystem::path& path, int descriptor, const char* why)
       : path_(path), descriptor_(descriptor) {
-    if (descriptor_ < 0 && descriptor_ != kNone) fail(why);
+    if (descriptor_ < 0) fail(why);
   }
   [[noreturn]] void fail(const char* what) const {
     throw Error(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
@@ -132,8 +131,10 @@ class File {
 
 class CheckpointWriter : public StateVisitor {
  public:
-  CheckpointWriter(File& file, Ranks& ranks) : file_(file), is_first_(ranks.is_first()) {
-    if (is_first_) file_.write(0, kBegin.data(), kBegin.size());
+  /// \param write  writes bytes at a place of the file
+  CheckpointWriter(std::function<void(std::uint64_t, const void*, std::uint64_t)> write, const Ranks& ranks)
+      : write_(std::move(write)), is_first_(ranks.is_first()) {
+    if (is_first_) write_(0, kBegin.data(), kBegin.size());
     end_ = kBegin.size();
   }
   bool replaces() const override { return false; }
@@ -145,8 +146,8 @@ class CheckpointWriter : public StateVisitor {
     json["rows"] = std::move(pieces_);
     const std::string table = json.dump();
     const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
-    file_.write(end_, table.data(), table.size());
-    file_.write(end_ + table.size(), &trailer, sizeof(trailer));
+    write_(end_, table.data(), table.size());
+    write_(end_ + table.size(), &trailer, sizeof(trailer));
     return end_ + table.size() + sizeof(trailer);
   }
 
@@ -156,7 +157,7 @@ class CheckpointWriter : public StateVisitor {
     if (!is_first_) return;
     const std::uint64_t bytes = piece.item * piece.count;
     pieces_.push_back({name, end_, piece.item, piece.count, XXH3_64bits(piece.data, bytes)});
-    file_.write(end_, piece.data, bytes);
+    write_(end_, piece.data, bytes);
     end_ += bytes;
   }
   void visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& ranks) override {
@@ -181,7 +182,7 @@ class CheckpointWriter : public StateVisitor {
       hashes.push_back(chunk.hash);
     }
     if (!chunks.empty()) end_ = chunks.front().end;
-    file_.write(end_ + before, piece.data, static_cast<std::uint64_t>(data - piece.data));
+    write_(end_ + before, piece.data, static_cast<std::uint64_t>(data - piece.data));
     if (is_first_) pieces_.push_back({name, end_, piece.item, counts, hashes});
     end_ += all;
   }
@@ -192,7 +193,7 @@ class CheckpointWriter : public StateVisitor {
       throw Error(fmt::format("the state names \"{}\" twice", name));  // a fault of the program
   }
 
-  File& file_;
+  std::function<void(std::uint64_t, const void*, std::uint64_t)> write_;
   bool is_first_;
   Json pieces_ = Json::array();
   std::set<std::string> names_;
@@ -320,19 +321,32 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, const Checkpoi
                                const std::function<void(StateVisitor&)>& visit, Ranks& ranks) {
   std::filesystem::path partial = path;
   partial += ".partial";
+  std::optional<File> file;
+  // A rank whose file fails goes through all collectives, so that the first one removes what was written.
+  std::exception_ptr failure;
+  const auto attempt = [&](const auto& act) {
+    try {
+      if (!failure) act();
+    } catch (const Error&) {
+      failure = std::current_exception();
+    }
+  };
+  if (ranks.is_first()) attempt([&] { file.emplace(File::to_write(partial)); });
+  ranks.any(true);  // now the file is there
+  if (!ranks.is_first()) attempt([&] { file.emplace(File::of_other(partial)); });
+  CheckpointWriter writer([&](std::uint64_t from, const void* data,
+                              std::uint64_t bytes) { attempt([&] { file->write(from, data, bytes); }); },
+                          ranks);
+  visit(writer);
+  if (!ranks.is_first()) attempt([&] { file->sync(); });
+  const bool is_broken = ranks.any(failure != nullptr);
   std::uint64_t bytes = 0;
-  try {
-    File file = File::to_write(partial, ranks);
-    CheckpointWriter writer(file, ranks);
-    visit(writer);
-    if (!ranks.is_first()) file.sync();
-    ranks.any(true);  // now all have written
-    if (ranks.is_first()) bytes = writer.finish(info);
-  } catch (const Error&) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw;
-  }
+  if (ranks.is_first() && !is_broken) bytes = writer.finish(info);
+  file.reset();
+  std::error_code ignored;
+  if (ranks.is_first() && (is_broken || failure)) std::filesystem::remove(partial, ignored);
+  if (failure) std::rethrow_exception(failure);
+  if (is_broken) ranks.any(true);  // the rank that failed ends all
   if (ranks.is_first()) publish(partial, path);
   return bytes;
 }

@@ -20,6 +20,7 @@ struct CheckpointInfo {
   int physics_version = 0;
   std::string inputs;                    ///< hash of all inputs of the run
   std::string body;                      ///< hash of model and laws, as they were made from the inputs
+  int blocks_of_a_chunk = 0;             ///< see Model; sums and the order of a state go by chunks
   std::vector<std::string> stage_kinds;  ///< kinds of all stages
   std::int64_t stage = 0;                ///< number of the stage, from 0
   bool stage_is_over = false;
@@ -36,6 +37,7 @@ struct CheckpointInfo {
     f("physics_version", info.physics_version);
     f("inputs", info.inputs);
     f("body", info.body);
+    f("blocks_of_a_chunk", info.blocks_of_a_chunk);
     f("stage_kinds", info.stage_kinds);
     f("stage", info.stage);
     f("stage_is_over", info.stage_is_over);

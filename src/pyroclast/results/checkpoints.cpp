@@ -207,6 +207,7 @@ void Checkpoints::write(const Run& run, const fs::path& path) {
   info.physics_version = kPhysicsVersion;
   info.inputs = sources_.inputs;
   info.body = sources_.body;
+  info.blocks_of_a_chunk = blocks_of_a_chunk(run.simulation().model().dimension());
   for (const auto& stage : run.stages()) info.stage_kinds.emplace_back(stage->kind());
   info.stage = run.stage_number();
   info.stage_is_over = run.stage_is_over();
