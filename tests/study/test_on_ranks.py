@@ -128,7 +128,7 @@ class OnRanks(StudyTest):
         self.assertFalse(study.setup.folder.exists())
 
     def test_ranks_are_of_decks_alone(self) -> None:
-        with self.assertRaisesRegex(Error, 'ranks: has no meaning with runner = "function"'):
+        with self.assertRaisesRegex(Error, 'ranks = 2: has no meaning with runner = "function"'):
             self.study(self.of_function('kind = "ensemble"', " ", "ranks = 2"))
 
 
