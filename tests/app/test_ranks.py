@@ -273,5 +273,34 @@ class Ranks(InAFolder):
             self.assertIn("--mpi", self.pyroclast("run", CASE, "--mpi", *words, code=1).stderr)
 
 
+class ScriptOfSlurm(InAFolder):
+    def test_the_script_of_the_docs_goes_on_after_its_time_limit(self):
+        """A run of one process stands for the ranks; srun sends the signal that Slurm sends before the time is over."""
+        page = (ROOT / "docs/do/cluster.md").read_text()
+        script = re.search(r"```sh\n(#!/bin/bash\n.*?)```", page, re.DOTALL)[1]
+        options = re.findall(r"^#SBATCH --([a-z-]+)", script, re.MULTILINE)
+        self.assertLessEqual({"ntasks", "time", "signal", "requeue", "open-mode"}, set(options))
+        (self.folder / "deck.toml").write_text(pathlib.Path(CASE).read_text().replace("count = 1000", "count = 80"))
+        for name, text in (("srun", """
+            echo "srun $*" >>said
+            while [[ $1 == --* ]]; do shift; done
+            words=(); for word; do [[ $word == --mpi ]] || words+=("$word"); done
+            "${words[@]}" & until [[ $(wc -l 2>/dev/null <runs/beam/history.csv) -gt 5 ]]; do sleep 0.05; done
+            [[ ${words[1]} == resume ]] || kill -USR1 $!
+            wait $!"""), ("scontrol", 'echo "scontrol $*" >>said')):
+            (self.folder / name).write_text(f"#!/bin/bash\n{text}\n")
+            (self.folder / name).chmod(0o755)
+        (self.folder / "pyroclast").symlink_to(PROGRAM)
+        for count in ("0", "1"):
+            done = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, timeout=100,
+                                  check=False, env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}",
+                                                    "SLURM_JOB_ID": "7", "SLURM_RESTART_COUNT": count})
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        said = (self.folder / "said").read_text().splitlines()
+        self.assertEqual([" ".join(line.split()[:4]) for line in said],
+                         ["srun --mpi=pmix pyroclast run", "scontrol requeue 7", "srun --mpi=pmix pyroclast resume"])
+        self.assertNotEqual(json.loads((self.folder / "runs/beam/summary.json").read_text())["outcome_id"], "stopped")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
 
     run = command("run", "Make the missing runs of a study; finished runs are never made again")
     run.add_argument("--executor", choices=EXECUTORS, default="local", help="where the runs are made")
-    run.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
+    run.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores, over the ranks of a run)")
     run.add_argument("--keep", choices=KEEP, help="files to keep of each new run (default: as the study file says)")
     run.add_argument("--dry-run", action="store_true",
                      help="tell the number of runs, their time and disk space; run nothing")

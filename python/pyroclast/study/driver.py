@@ -31,6 +31,7 @@ from .outputs import Output, read_facts, read_summary
 from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
+from .start import require_mpi
 from .store import DONE, FAILED, NO_VALUE, RunResult, Store, judged
 from .work import Job, made
 
@@ -108,6 +109,11 @@ class Driver:
 
     def check(self) -> None:
         """Raises Error with all that is wrong; see `Study.check`."""
+        if self.study.ranks > 1:
+            try:
+                require_mpi(self.program)
+            except Error as error:
+                raise Error(f"{self.study.place('study.ranks')}: {error}") from error
         wrong = self.points.check_ends()
         if not self.points.has_seed:
             stated = {"seeds": len(self.study.seeds) > 1, "first_seed": self.study.seeds[0] != FIRST_SEED}
@@ -135,7 +141,7 @@ class Driver:
         known = sum(self._result(w) is not None for w in wanted)
         points = set(self._points(proposal.points))
         return StudyForecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
-                        (len(wanted) - known) * self.expected, proposal.is_complete,
+                        (len(wanted) - known) * self.expected * self.study.ranks, proposal.is_complete,
                         len(wanted) if proposal.is_complete else
                         self.plan.most_points and self.plan.most_points * len(proposal.seeds))
 
@@ -345,7 +351,7 @@ class Driver:
                    tuple(o.what for o in study.outputs if not o.is_function), study.keep,
                    study.wall_limit, max(_LEAST_CHECKPOINT, _SHARE_OF_CHECKPOINTS * expected),
                    _core.physics_version if study.runner.kind == "pyroclast" else 0, expected,
-                   self.points.code.hash, dict(self.points.code.files))
+                   self.points.code.hash, dict(self.points.code.files), study.ranks)
 
     def _take_in_earlier(self) -> None:
         """Runs of earlier tables, by their identity."""

@@ -128,6 +128,7 @@ class StudySetup:
     accept_version: int | None = None
     earlier: tuple[Path, ...] = ()
     slurm: SlurmSettings = SlurmSettings()
+    ranks: int = 1  #: processes that share the body of a run
 
     def place(self, key: str) -> str:
         """Returns where a table or key of the study file stands, as "file:line"."""
@@ -164,6 +165,10 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
     title = root.text("title", "Heading of figures and of the report; without one the file's name.", file.stem)
     own = root.table("study", "Deck, number of runs, and the parts of a run that are kept.")
     runner = _runner(own, file.parent)
+    ranks = own.integer("ranks", "Processes that share the body of each run, each with one thread; see [Studies]"
+                        "(../do/studies.md#runs-on-several-ranks).", 1, None, 1)
+    if ranks > 1 and runner.kind != "pyroclast":
+        own.error("ranks", f'has no meaning with runner = "{runner.kind}"')
     count = own.integer("seeds", "Realisations of the specimen that each point is run with; the same for all points. "
                         "Results of a point are means over them.", 1, 10000, 1)
     first = own.integer("first_seed", "The first of them; the others follow.", 0, None, FIRST_SEED)
@@ -199,7 +204,8 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> St
     _check_together(root, own, method, parameters, outputs, targets)
     return StudySetup(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
                       tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), tuple(may_lack), keep,
-                      wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm)
+                      wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm,
+                      ranks)
 
 
 def _runner(own: _core.Table, folder: Path) -> Runner:

@@ -83,7 +83,7 @@ class Study:
         """Makes all runs that are missing; whether the study is complete.
 
         executor: "local", "slurm", "commands", or one of your own (`pyroclast.study.executors`).
-        jobs: runs at once; None: as many as there are cores.
+        jobs: runs at once; None: as many as there are cores for their ranks.
         say: gets lines of progress; `print` will do.
 
         Ctrl-C stops it: each run keeps its state and goes on the next time.
@@ -99,7 +99,7 @@ class Study:
     def executor(self, name: str, jobs: int | None = None) -> Executor:
         """Returns an executor by its name. Raises Error for another one."""
         if name == "local":
-            return Local(jobs or free_cores())
+            return Local(jobs or max(1, free_cores() // self.setup.ranks))
         if name == "commands":
             return Commands(self.setup.folder / "commands.txt", self.setup.slurm)
         if name == "slurm":

@@ -22,7 +22,7 @@ from ..errors import Error
 from ..writing import make_folder, refuse_link
 from .hashes import require_unchanged
 from .outputs import Output, read_facts, read_summary
-from .start import FOLDER, environment, python
+from .start import FOLDER, environment, on_ranks, python
 from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, REASON_LENGTH, TIMED_OUT, RunResult,
                     begun_file, judged, read_result, result_file, write_result)
 
@@ -38,6 +38,8 @@ _PR_SET_PDEATHSIG = 1
 _REASON_LINES = 3  # of what a process wrote last: an error, and what it says of it
 _libc = ctypes.CDLL(None)  # before a fork: a child may not import
 
+_QUIETLY = ("--no-figures", "--threads", "1", "--quiet")
+
 _STATES = {"not_settled": NOT_SETTLED, "unstable": CRASHED}
 """States of runs that came to their end and give no value, by `outcome_id` of the run or of one of its stages."""
 
@@ -50,6 +52,7 @@ class Job:
     checkpoint: wall time between two checkpoints, s.
     expected: wall time that it will probably take, s; 0: not known.
     code: hash of the code of a function or a command. files: that a command runs, with the SHA-256 of each.
+    ranks: processes that share the body.
     """
 
     id: str
@@ -65,6 +68,7 @@ class Job:
     expected: float = 0.0
     code: str = ""
     files: dict[str, str] = field(default_factory=dict)
+    ranks: int = 1
 
     @classmethod
     def from_json(cls, text: str) -> Job:
@@ -83,7 +87,7 @@ class Job:
         if self.kind == "command":
             return [word.replace(FOLDER, str(folder)) for word in self.command]
         fields = [] if self.keep == "all" else ["--no-fields"]
-        return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
+        return on_ranks(self.ranks, [*self.command, "--out", str(folder), *_QUIETLY, *fields])
 
 
 def _log_file(runs: Path, run: str) -> Path:
@@ -126,7 +130,7 @@ class Attempt:
             return job.line(self.folder)
         checkpoint = ["--checkpoint", f"{job.checkpoint:g} s"]
         if kept(self.folder) is not None:
-            return [job.command[0], "resume", str(self.folder), "--no-figures", "--threads", "1", "--quiet", *checkpoint]
+            return on_ranks(job.ranks, [job.command[0], "resume", str(self.folder), *_QUIETLY, *checkpoint])
         shutil.rmtree(self.folder, ignore_errors=True)  # of an attempt that was ended before its first checkpoint
         return [*job.line(self.folder), *checkpoint]
 
@@ -144,7 +148,8 @@ class Attempt:
         if (stopped or late) and self._asked is None:
             self._asked, self.is_late = time.monotonic(), late and not stopped
             self.asked_to_stop = stopped
-            _signal(self.process, signal.SIGTERM)
+            # mpirun and srun would leave the ranks no time on SIGTERM
+            _signal(self.process, signal.SIGTERM if self.job.ranks == 1 else signal.SIGUSR1)
         elif self._asked is not None and time.monotonic() - self._asked > PATIENCE:
             _signal(self.process, signal.SIGKILL)
 
@@ -155,6 +160,8 @@ class Attempt:
         Raises Error where the disk is full: that is no fault of the run, and the next one would fare no better.
         """
         code = self.process.wait()
+        if self.job.ranks > 1 and code > 128:
+            code = 128 - code  # so do mpirun and srun tell the signal that ended a rank
         summary = read_summary(self.folder)
         is_whole = summary is not None and not was_stopped(summary)
         if is_whole and (code in (0, 2) or (code < 0 and self.job.kind == "pyroclast")):
@@ -199,7 +206,9 @@ class Attempt:
             lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
             return ""
-        return "; ".join([line.strip() for line in lines if line.strip()][-_REASON_LINES:])
+        said = [line.strip() for line in lines if line.strip(" -")]
+        errors = [line for line in said if line.startswith("error:")]
+        return "; ".join(errors if errors and self.job.ranks > 1 else said[-_REASON_LINES:])  # mpirun speaks last
 
 
 def collected(job: Job, runs: Path) -> RunResult:

@@ -43,6 +43,7 @@ class Commands:
         """Takes in what is done and writes the rest; see executors."""
         make_folder(runs)
         lines = []
+        ranks = max((job.ranks for job in jobs), default=1)
         for job in jobs:
             folder = runs / job.id
             if read_summary(folder) is not None:
@@ -54,16 +55,16 @@ class Commands:
         write_text(self.file, "".join(f"{line}\n" for line in lines))
         self.written = len(lines)
         if lines:
-            write_text(self.script, self._script())
+            write_text(self.script, self._script(ranks))
         else:
             self.script.unlink(missing_ok=True)
 
-    def _script(self) -> str:
+    def _script(self, ranks: int) -> str:
         asked = self.settings
         of_task = max(asked.points_per_task, math.ceil(self.written / _MOST_TASKS), 1)
         seconds = round(asked.time)
         options = [f"--array=1-{math.ceil(self.written / of_task)}%{asked.slots}",
-                   f"--time={seconds // 60}:{seconds % 60:02d}", "--ntasks=1", "--cpus-per-task=1",
+                   f"--time={seconds // 60}:{seconds % 60:02d}", f"--ntasks={ranks}", "--cpus-per-task=1",
                    *(option for option in asked.options if option not in asked.unusual)]
         left_out = [f"# left out, as it may run a program: {option}\n" for option in asked.unusual]
         return ("#!/bin/sh\n"
@@ -71,7 +72,8 @@ class Commands:
                 "# The program, the deck and the folders need the paths of the list on all nodes.\n"
                 + "".join(f"#SBATCH {shlex.quote(option)}\n" for option in options) + "".join(left_out)
                 + f"first=$(( (SLURM_ARRAY_TASK_ID - 1) * {of_task} + 1 ))\n"
-                f"sed -n \"$first,$((first + {of_task - 1}))p\" {shlex.quote(str(self.file.resolve()))} | {{\n"
+                f"sed -n \"s/^mpirun /srun --mpi=pmix /; $first,$((first + {of_task - 1}))p\" "
+                f"{shlex.quote(str(self.file.resolve()))} | {{\n"
                 "  failed=0\n"
                 "  while IFS= read -r line; do sh -c \"$line\" < /dev/null || failed=1; done\n"
                 "  exit $failed\n"

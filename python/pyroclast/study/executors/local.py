@@ -1,4 +1,4 @@
-"""Runs in processes of this machine, one thread each."""
+"""Runs in processes of this machine, of one thread or of several ranks."""
 
 from __future__ import annotations
 

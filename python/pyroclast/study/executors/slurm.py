@@ -155,6 +155,7 @@ class _Queue:
                  stopped: Callable[[], bool]):
         self._slurm, self._runs, self._finished, self._stopped = slurm, runs, finished, stopped
         self._left = {job.id: job for job in jobs}
+        self._ranks = max((job.ranks for job in jobs), default=1)
         self._book = Book(runs.parent)
         self._walls: list[float] = []  # of runs that are over, s
         self._lost: dict[str, tuple[int, tuple[str, int] | None]] = {}  # times, and what was kept at the last
@@ -341,7 +342,7 @@ class _Queue:
         log = str(self._book.log(array, "TASK")).replace("%", "%%").replace("TASK", "%a")
         words = ["sbatch", "--parsable", f"--job-name={array.name}", f"--array=0-{tasks - 1}%{settings.slots}",
                  f"--time={seconds // 60}:{seconds % 60:02d}", f"--signal=B:TERM@{warning}", "--requeue",
-                 "--open-mode=append", f"--output={log}", "--ntasks=1", "--cpus-per-task=1",
+                 "--open-mode=append", f"--output={log}", f"--ntasks={self._ranks}", "--cpus-per-task=1",
                  *([f"--dependency=afterany:{after}"] if after else []), *settings.options]
         # a session of its own: Ctrl-C is the driver's, and must not end it half-way
         lines = []
