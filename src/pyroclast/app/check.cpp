@@ -186,7 +186,7 @@ int check(const RunOptions& options) {
   if (options.ranks > 0) held = held_by_ranks(*simulation, options.ranks);
   fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
   say(fmt::format("{}{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup),
-                  describe_own_laws(), describe(simulation->specimen()),
+                  describe_own_laws(), describe(*simulation->specimen()),
                   describe_warnings(simulation->warnings_of_specimen())));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              setup.moving && !setup.moving->bearings.empty() ? " with the bearings" : "", model.zone_count(),

@@ -97,6 +97,7 @@ RunChoices choices_of(const RunOptions& options) {
   choices.instructions = options.instructions;
   choices.checkpoint = options.checkpoint;
   choices.ranks = options.held_by;
+  choices.body = options.body;
   choices.laws = sources_of(options.laws);
   choices.before_making = [speech = options.speech](const DeckOfRun& opened) {
     const int blocks = opened.setup.specimen.blocks.count;

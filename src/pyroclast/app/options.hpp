@@ -29,7 +29,8 @@ enum class Speech : std::uint8_t { quiet, usual, verbose };
 
 struct RunOptions {
   std::filesystem::path deck;
-  std::filesystem::path out;  ///< output folder; empty: runs/<name of the deck>
+  std::filesystem::path out;   ///< output folder; empty: runs/<name of the deck>
+  std::filesystem::path body;  ///< folder of a body that was made before; empty: the run makes it
   bool overwrite = false;
   bool figures = true;
   bool page = true;  ///< false: no page of the run at its end

@@ -167,7 +167,8 @@ std::string describe_start(Session& session) {
   const Simulation& simulation = session.simulation();
   const DeckOfRun& opened = session.opened();
   std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
-                     describe_own_laws() + describe(simulation.specimen()) +
+                     describe_own_laws() +
+                     (simulation.told() ? simulation.told()->text : describe(*simulation.specimen())) +
                      describe_warnings(simulation.warnings_of_specimen());
   if (const Model* const whole = simulation.whole())
     text +=
@@ -256,6 +257,8 @@ Command add_run(CLI::App& cli) {
   add_seed(run, options->seed);
   add_changes(run, *options);
   add_output(run, *options);
+  run->add_option("--body", options->body,
+                  "Take the body that `pyroclast specimen` wrote into this folder, and make none");
   add_page(run, *options);
   add_processor(run, *options);
   add_checkpoint(run, *options);

@@ -30,7 +30,8 @@ int make_specimen(const RunOptions& asked) {
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
   const MadeSpecimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
-  const auto model = make_model(specimen, setup.thickness, setup.moving);
+  SpecimenBody body = make_body(specimen, setup.thickness, setup.sets, setup.moving);
+  const Model* const model = body.model.get();
   const auto warned = warnings_of(setup, specimen, *model);  // may refuse the deck: before a folder is made
   const RunFolder folder(output_folder(options), options.overwrite,
                          {opened.deck.name(),
@@ -44,8 +45,11 @@ int make_specimen(const RunOptions& asked) {
   print_kept(folder.path(), folder.foreign());
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", *model);
-  write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  say(fmt::format("{}{}{}results         {}\n", describe_warnings(opened.warnings), app::describe(specimen),
+  body.told =
+      std::make_shared<const SpecimenTold>(told_of(specimen, setup.specimen, app::describe(specimen)));
+  write_specimen_files(folder.path() / "specimen", body.told->files);
+  write_body(folder.path(), body_inputs(opened.deck, setup), body);
+  say(fmt::format("{}{}{}results         {}\n", describe_warnings(opened.warnings), body.told->text,
                   describe_warnings(warned), folder.path().string()));
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;

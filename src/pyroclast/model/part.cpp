@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,21 +28,50 @@ Sets cut_sets(const Sets& whole, const std::vector<int>& here) {
 
 }  // namespace
 
-std::vector<int> ranks_of_chunks(const Model& whole, int ranks) {
-  const ChunkList zones = whole.zone_chunks();
-  if (ranks > zones.count())
+std::vector<int> ranks_of_chunks(const std::vector<int>& zones, int ranks) {
+  const int count = static_cast<int>(zones.size()) - 1;
+  if (ranks > count)
     throw Error(
         fmt::format("{} ranks cannot share a body of {} chunks: take {} ranks at most, or more blocks", ranks,
-                    zones.count(), zones.count()));
+                    count, count));
   std::vector<int> rank;
-  for (int c = 0; c < zones.count(); ++c) {
+  for (int c = 0; c < count; ++c) {
     const std::int64_t twice_the_middle = zones[c] + zones[c + 1];
-    const auto by_zones = static_cast<int>(twice_the_middle * ranks / (2 * std::int64_t{whole.zone_count()}));
-    const int least = std::max(rank.empty() ? 0 : rank.back(), ranks - (zones.count() - c));
+    const auto by_zones = static_cast<int>(twice_the_middle * ranks / (2 * std::int64_t{zones.back()}));
+    const int least = std::max(rank.empty() ? 0 : rank.back(), ranks - (count - c));
     const int most = rank.empty() ? 0 : rank.back() + 1;  // no rank is passed over
     rank.push_back(std::clamp(by_zones, least, std::max(least, most)));
   }
   return rank;
+}
+
+std::vector<int> ranks_of_chunks(const Model& whole, int ranks) {
+  std::vector<int> zones;
+  for (const int block : whole.chunk_blocks) zones.push_back(whole.block_zones[block]);
+  return ranks_of_chunks(zones, ranks);
+}
+
+std::vector<std::vector<int>> neighbours_of_chunks(const Model& whole) {
+  const std::vector<int> chunk_of = whole.gridpoint_chunks().of_items();
+  std::vector<int> root(chunk_of.size());  // of the gridpoints in one place
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int gridpoint) {
+    while (root[gridpoint] != gridpoint) gridpoint = root[gridpoint] = root[root[gridpoint]];
+    return gridpoint;
+  };
+  for (int c = 0; c < whole.contact_count(); ++c) root[find(whole.joint(c).a)] = find(whole.joint(c).b);
+  std::map<int, std::set<int>> chunks_at;  // by root, where a place is in several chunks
+  for (int g = 0; g < whole.gridpoint_count(); ++g)
+    if (chunk_of[g] != chunk_of[find(g)]) chunks_at[find(g)].insert({chunk_of[g], chunk_of[find(g)]});
+  std::vector<std::set<int>> with(static_cast<std::size_t>(whole.chunks().count()));
+  for (const auto& [at, chunks] : chunks_at)
+    for (const int c : chunks) with[static_cast<std::size_t>(c)].insert(chunks.begin(), chunks.end());
+  std::vector<std::vector<int>> neighbours;
+  for (std::size_t c = 0; c < with.size(); ++c) {
+    with[c].erase(static_cast<int>(c));
+    neighbours.emplace_back(with[c].begin(), with[c].end());
+  }
+  return neighbours;
 }
 
 template <int Dim>
@@ -72,7 +102,7 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
   part.symmetry = whole.symmetry;
   part.chunk_blocks.clear();
   PartOfBody of;
-  of.zones_of_whole = whole.zone_count();
+  of.zones_of_whole = whole.whole_zone_count();
   std::vector<int> here(whole.position.size(), -1);
   for (int b = 0; b < blocks; ++b) {
     if (!is_in[b]) continue;
@@ -118,6 +148,14 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
   }
   part.sets = cut_sets(whole.sets, here);
   part.contact_sets = cut_sets(whole.contact_sets, contact_here);
+  if (whole.part) {
+    const PartOfBody& given = *whole.part;
+    for (const auto& [numbers, of_whole] :
+         {std::pair(&of.chunk, &given.chunk), std::pair(&of.block, &given.block),
+          std::pair(&of.gridpoint, &given.gridpoint), std::pair(&of.zone, &given.zone),
+          std::pair(&of.contact, &given.contact)})
+      for (int& number : *numbers) number = (*of_whole)[number];
+  }
   of.ranks = std::move(ranks);
   part.part = std::make_shared<const PartOfBody>(std::move(of));
   return part;
@@ -125,7 +163,7 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
 
 std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
                                const std::vector<int>& nodes) {
-  const auto rank_of_chunk = ranks_of_chunks(whole, ranks->count());
+  const auto rank_of_chunk = whole.part ? whole.part->rank_of_chunk : ranks_of_chunks(whole, ranks->count());
   return with_dimension(whole, [&]<int Dim>(const ModelOf<Dim>& of_dimension) -> std::unique_ptr<Model> {
     return std::make_unique<ModelOf<Dim>>(part_of(of_dimension, ranks, rank_of_chunk, nodes));
   });

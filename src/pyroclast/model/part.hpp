@@ -11,13 +11,22 @@ namespace pyroclast {
 
 /// Shares the chunks of a body out to ranks: runs of chunks with about as many zones each. Returns the rank
 /// of each chunk. Throws Error where there are more ranks than chunks.
+/// \param zones  first zone of each chunk, and the number of all zones
+std::vector<int> ranks_of_chunks(const std::vector<int>& zones, int ranks);
 std::vector<int> ranks_of_chunks(const Model& whole, int ranks);
+
+/// Returns, for each chunk of a whole body, the other chunks that have a gridpoint in the place of one of its
+/// own: those whose faces, directly or through others, join it to theirs.
+std::vector<std::vector<int>> neighbours_of_chunks(const Model& whole);
 
 /// Makes the part of a body that a rank holds: its own chunks, and of others the blocks that share a face
 /// with an own one. Sets are cut and stay where they become empty; all else that is not of an item stays as
 /// it is.
 ///
-/// \param rank_of_chunk  rank of each chunk of the whole
+/// \param whole          the whole, or those chunks of it alone that are of this rank or neighbours of its
+/// own,
+///                       see neighbours_of_chunks
+/// \param rank_of_chunk  rank of each chunk of `whole`
 /// \param nodes          thermal node of each gridpoint, below 0 for none: blocks at a node of an own block
 ///                       then come along, with the faces between foreign blocks. Empty: no heat flows
 template <int Dim>

@@ -388,7 +388,13 @@ void bind_arrays(py::class_<Held>& bound) {
             return members(h.get().simulation(), set, of_contacts);
           },
           arg("set"), arg("of_contacts"))
-      .def_property_readonly("specimen", [](const Held& h) { return h.get().simulation().specimen(); })
+      .def_property_readonly("specimen",
+                             [](const Held& h) {
+                               const auto& specimen = h.get().simulation().specimen();
+                               if (!specimen)
+                                 throw Error("the body of this run was read, and its specimen is not there");
+                               return *specimen;
+                             })
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
 }
 

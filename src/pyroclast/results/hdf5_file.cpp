@@ -148,7 +148,13 @@ bool Hdf5File::is_whole(const std::filesystem::path& path) {
   }
 }
 
-void Hdf5File::close() {
+std::uint64_t Hdf5File::place_of(const std::string& name) const {
+  const Hdf5Handle<H5Dclose> set{H5Dopen2(file_, name.c_str(), H5P_DEFAULT)};
+  const haddr_t place = set.id < 0 ? HADDR_UNDEF : H5Dget_offset(set.id);
+  return place == HADDR_UNDEF ? 0 : place;
+}
+
+std::string Hdf5File::image() {
   errno = 0;
   if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("cannot be made");
   const ssize_t bytes = H5Fget_file_image(file_, nullptr, 0);
@@ -156,7 +162,12 @@ void Hdf5File::close() {
   if (bytes <= 0 || H5Fget_file_image(file_, image.data(), image.size()) != bytes) fail("cannot be made");
   H5Fclose(file_);
   file_ = -1;
-  if (!path_.empty()) write_text_file(path_, image);
+  return image;
+}
+
+void Hdf5File::close() {
+  const std::string bytes = image();
+  if (!path_.empty()) write_text_file(path_, bytes);
 }
 
 }  // namespace pyroclast

@@ -31,7 +31,11 @@ class Hdf5File {
   /// Links to an object of another file of the same folder.
   void external_link(const std::string& name, const std::string& file, const std::string& object);
 
+  /// Returns the place of a dataset's bytes in the file; 0 where it has none.
+  std::uint64_t place_of(const std::string& name) const;
   void close();
+  /// Returns the bytes of the file in place of `close`, which writes them.
+  std::string image();
 
   /// Tells whether a file is there, was written to its end and holds its data, see Hdf5Reader.
   static bool is_whole(const std::filesystem::path& path);

@@ -40,8 +40,12 @@ void ResultsWriter::begin(const Run& run) {
     write_text_file(file_in(folder_, "properties.csv"),
                     properties_csv(property_curves(run.simulation().materials(), run.simulation().moves()),
                                    temperatures_, PropertyRows::few));
-  if (run.simulation().has_specimen() && !folder_.empty())
-    write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
+  const Simulation& simulation = run.simulation();
+  if (folder_.empty()) return;
+  if (const SpecimenTold* told = simulation.told())
+    write_specimen_files(folder_ / "specimen", told->files);
+  else if (simulation.specimen())
+    write_specimen_files(folder_ / "specimen", specimen_files(*simulation.specimen(), specimen_));
 }
 
 void ResultsWriter::write(const Run& run) {

@@ -36,6 +36,7 @@ constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,
     "run.json",
+    "body.h5",
     "history.csv",
     "temperature_profile.csv",
     "isotherm.csv",
@@ -137,6 +138,7 @@ bool is_own(const fs::path& file) {
 constexpr const char* kDepartures = "not_reproducible_from_the_deck";
 constexpr const char* kParent = "parent";
 constexpr const char* kStates = "states";
+constexpr const char* kBody = "body";
 
 /// Reads the manifest of a folder; no object where there is none.
 nlohmann::ordered_json manifest_of(const fs::path& folder) {
@@ -257,6 +259,17 @@ void RunFolder::note_departure(const fs::path& path, const Departure& departure)
   write_text_file(path / kManifest, manifest.dump(2) + "\n");
 }
 
+std::optional<BodyOfRun> RunFolder::body(const fs::path& path) {
+  const auto manifest = manifest_of(path);
+  if (!manifest.is_object() || !manifest.contains(kBody)) return std::nullopt;
+  try {
+    const auto& body = manifest[kBody];
+    return BodyOfRun{body.at("folder").get<std::string>(), body.at("hash").get<std::string>()};
+  } catch (const nlohmann::json::exception&) {
+    throw Error(fmt::format("{}: {} is no folder and hash of a body", (path / kManifest).string(), kBody));
+  }
+}
+
 std::vector<StageState> RunFolder::inherited_states(const fs::path& path) {
   const auto manifest = manifest_of(path);
   const auto parent = manifest.is_object() ? manifest.value(kParent, nlohmann::ordered_json()) : manifest;
@@ -306,6 +319,8 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
                             {"shared_object", law.shared_object.string()},
                             {"compiler", law.compiler},
                             {"header", law.header.string()}});
+  if (manifest.body)
+    json[kBody] = {{"folder", whole_path(manifest.body->folder)}, {"hash", manifest.body->hash}};
   if (manifest.parent) {
     json[kParent] = {{"folder", whole_path(manifest.parent->folder)},
                      {"from_stage", manifest.parent->stage},

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/results/body_file.hpp"
 #include "pyroclast/results/inputs.hpp"
 
 namespace pyroclast {
@@ -53,6 +54,7 @@ struct Manifest {
   std::string command;
   std::vector<OwnLaw> laws;
   std::optional<Parent> parent;
+  std::optional<BodyOfRun> body = {};  ///< body that was made before
 };
 
 /// What to do about a folder that exists, by options of the program.
@@ -80,6 +82,8 @@ class RunFolder {
   static std::vector<Departure> departures(const std::filesystem::path& path);
   /// Adds a departure to the manifest, unless it is there.
   static void note_departure(const std::filesystem::path& path, const Departure& departure);
+  /// Returns the body of a run that did not make one; empty where the run made its own.
+  static std::optional<BodyOfRun> body(const std::filesystem::path& path);
   /// Returns the states of stages that a fork did not compute itself, from stage 0 on.
   static std::vector<StageState> inherited_states(const std::filesystem::path& path);
   /// Replaces the deck of a run that goes on with other stages, and the files that the deck names.

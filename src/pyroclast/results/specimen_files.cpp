@@ -17,6 +17,8 @@ namespace pyroclast {
 
 namespace {
 
+using Files = std::map<std::string, std::string>;
+
 constexpr int kGradationPoints = 60;
 constexpr double kSideOfCircle = 0.05;  ///< side of the polygon for a circle, as a share of the diameter
 
@@ -83,20 +85,20 @@ std::string grain_fit_csv(const specimen::Specimen& s) {
   return csv;
 }
 
-/// Writes the stones as they were placed, and their gradation.
+/// Adds the stones as they were placed, and their gradation.
 template <int Dim>
-void write_stones(const std::filesystem::path& folder, const std::vector<specimen::Grain<Dim>>& stones,
-                  const specimen::SpecimenParameters& asked) {
+void add_stones(Files& files, const std::vector<specimen::Grain<Dim>>& stones,
+                const specimen::SpecimenParameters& asked) {
   std::string csv = Dim == 2 ? "x_m,y_m,diameter_m,phase\n" : "x_m,y_m,z_m,diameter_m,phase\n";
   for (const auto& stone : stones) {
     for (const double x : stone.centre.c) csv += fmt::format("{:.9g},", x);
     csv += fmt::format("{:.9g},{}\n", stone.diameter, stone.phase);
   }
-  write_text_file(folder / "aggregates.csv", csv);
+  files["aggregates.csv"] = csv;
   if constexpr (Dim == 2)
     if (std::ranges::any_of(stones, [](const auto& stone) { return stone.shape != nullptr; }))
-      write_text_file(folder / "outlines.csv", outlines_csv(stones));
-  if (!stones.empty()) write_text_file(folder / "gradation.csv", gradation_csv(stones, asked));
+      files["outlines.csv"] = outlines_csv(stones);
+  if (!stones.empty()) files["gradation.csv"] = gradation_csv(stones, asked);
 }
 
 std::size_t block_count(const specimen::Specimen& s) {
@@ -132,8 +134,7 @@ void add_common(nlohmann::ordered_json& json, const Specimen& s) {
   json["largest_block_size_m"] = largest;
 }
 
-void write_made(const std::filesystem::path& folder, const specimen::Specimen& s,
-                const specimen::SpecimenParameters& asked) {
+void add_made(Files& files, const specimen::Specimen& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
   json["width_m"] = s.region.box().width();
   json["height_m"] = s.region.box().height();
@@ -144,13 +145,12 @@ void write_made(const std::filesystem::path& folder, const specimen::Specimen& s
   json["edges_left_short"] = s.metrics.edges_left_short;
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
   json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
-  write_text_file(folder / "specimen.json", json.dump(2) + "\n");
-  write_stones(folder, s.aggregates, asked);
-  if (!s.grain.empty() && !s.aggregates.empty()) write_text_file(folder / "grain_fit.csv", grain_fit_csv(s));
+  files["specimen.json"] = json.dump(2) + "\n";
+  add_stones(files, s.aggregates, asked);
+  if (!s.grain.empty() && !s.aggregates.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 
-void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen& s,
-                const specimen::SpecimenParameters& asked) {
+void add_made(Files& files, const solid::SolidSpecimen& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
   const Vec<3> size = s.body.high() - s.body.low();
   json["width_m"] = size[0];
@@ -175,8 +175,8 @@ void write_made(const std::filesystem::path& folder, const solid::SolidSpecimen&
                                     {"superposed", c.superposed},
                                     {"stones", c.stones},
                                     {"without_a_block", c.without_a_block}});
-  write_text_file(folder / "specimen.json", json.dump(2) + "\n");
-  write_stones(folder, s.balls, asked);
+  files["specimen.json"] = json.dump(2) + "\n";
+  add_stones(files, s.balls, asked);
 }
 
 }  // namespace
@@ -187,10 +187,15 @@ nlohmann::ordered_json specimen_facts(const MadeSpecimen& made) {
   return json;
 }
 
-void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
-                          const specimen::SpecimenParameters& asked) {
+Files specimen_files(const MadeSpecimen& made, const specimen::SpecimenParameters& asked) {
+  Files files;
+  std::visit([&](const auto& s) { add_made(files, s, asked); }, made);
+  return files;
+}
+
+void write_specimen_files(const std::filesystem::path& folder, const Files& files) {
   std::filesystem::create_directories(folder);
-  std::visit([&](const auto& s) { write_made(folder, s, asked); }, made);
+  for (const auto& [name, text] : files) write_text_file(folder / name, text);
 }
 
 }  // namespace pyroclast

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -12,9 +14,12 @@ namespace pyroclast {
 /// and `summary.json`.
 nlohmann::ordered_json specimen_facts(const MadeSpecimen& made);
 
-/// Writes `specimen.json`, `aggregates.csv`, `gradation.csv` and, in the plane, `grain_fit.csv` and
-/// `outlines.csv` of a specimen into a folder.
-void write_specimen_files(const std::filesystem::path& folder, const MadeSpecimen& made,
-                          const specimen::SpecimenParameters& asked);
+/// Returns `specimen.json`, `aggregates.csv`, `gradation.csv` and, in the plane, `grain_fit.csv` and
+/// `outlines.csv` of a specimen: their texts, by name.
+std::map<std::string, std::string> specimen_files(const MadeSpecimen& made,
+                                                  const specimen::SpecimenParameters& asked);
+/// Writes such files into a folder.
+void write_specimen_files(const std::filesystem::path& folder,
+                          const std::map<std::string, std::string>& files);
 
 }  // namespace pyroclast

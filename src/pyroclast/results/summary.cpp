@@ -125,7 +125,9 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   if (simulation.moves()) add_motion(json, s, run);
   if (simulation.field().conduction()) add_heat(json, s, run);
   for (const ReferenceDistances& of : s.references) json["references"][of.name] = json_of(of);
-  if (simulation.has_specimen()) json["specimen"] = specimen_facts(simulation.specimen());
+  if (simulation.specimen()) json["specimen"] = specimen_facts(*simulation.specimen());
+  if (const SpecimenTold* told = simulation.told(); told && !told->facts.empty())
+    json["specimen"] = OrderedJson::parse(told->facts);
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
   return json;

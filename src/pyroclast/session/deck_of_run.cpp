@@ -40,6 +40,9 @@ DeckOfRun::DeckOfRun(Deck read, std::filesystem::path folder_of_deck, RunChoices
   if (choices.seed) setup.specimen.seed = *choices.seed;
   if (choices.checkpoint) setup.checkpoints.interval = *choices.checkpoint;
   if (setup.moving) setup.moving->mechanics.instructions = instructions;
+  if (choices.body.empty()) return;
+  body.emplace(choices.body);
+  body->require(body_inputs(deck, setup));
 }
 
 std::vector<OwnLaw> own_laws() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/results/body_file.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
 
@@ -24,6 +25,7 @@ struct RunChoices {
   StageRegistry kinds;
   LawSources laws = LawSources::of_environment();
   std::shared_ptr<Ranks> ranks;  ///< ranks that hold the body; null: one
+  std::filesystem::path body;    ///< folder of a body that was made before; empty: it is made here
   /// Tells whether this process writes the files of a run.
   bool is_first() const { return !ranks || ranks->is_first(); }
   bool needs_code = true;  ///< false: code that the deck names and that may not run is listed in its setup
@@ -43,6 +45,7 @@ struct DeckOfRun {
   InstructionSet instructions;
   Setup setup;
   std::shared_ptr<Team> team;
+  std::optional<BodyFile> body;       ///< body that was made before, of these inputs
   std::vector<std::string> warnings;  ///< warnings of deck and choices, one line each
 };
 

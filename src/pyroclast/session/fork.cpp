@@ -51,6 +51,7 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
 DeckOfRun open_from(const fs::path& run, const std::vector<std::string>& changes, const Appendix& more,
                     RunChoices choices) {
   choices.seed.reset();  // the folder's deck has the seed
+  if (const auto body = RunFolder::body(run); body && is_there(*body)) choices.body = body->folder;
   return {Deck::open(run / kDeck, changes, more), run, std::move(choices)};
 }
 

@@ -22,8 +22,16 @@ namespace {
 std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
                                                std::optional<MadeSpecimen> specimen) {
   if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team, opened.choices.ranks);
+  if (opened.body)
+    return make_simulation(opened.setup, opened.body->read(opened.choices.ranks), opened.team,
+                           opened.choices.ranks);
   opened.choices.before_making(opened);
   return make_simulation(opened.setup, opened.team, opened.choices.ranks);
+}
+
+std::optional<BodyOfRun> body_of(const DeckOfRun& opened) {
+  if (!opened.body) return std::nullopt;
+  return BodyOfRun{opened.choices.body, opened.body->hash()};
 }
 
 /// Returns the folder into which this process writes the files of a run; none on ranks but the first.
@@ -150,9 +158,10 @@ std::unique_ptr<Session> Session::begin(DeckOfRun opened, const std::optional<Ru
 }
 
 void Session::make_folder(const RunOutput& output, std::optional<Parent> parent) {
-  const RunFolder made(folder_, output.overwrite,
-                       {opened_.deck.name(), inputs_, opened_.setup.specimen.seed, opened_.team->size(),
-                        name(opened_.instructions), output.command, own_laws(), std::move(parent)});
+  const RunFolder made(
+      folder_, output.overwrite,
+      {opened_.deck.name(), inputs_, opened_.setup.specimen.seed, opened_.team->size(),
+       name(opened_.instructions), output.command, own_laws(), std::move(parent), body_of(opened_)});
   foreign_ = made.foreign();
   for (const Departure& departure : departures_) RunFolder::note_departure(folder_, departure);
 }

@@ -505,6 +505,14 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
                                       std::move(ranks));
 }
 
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, SpecimenBody body, std::shared_ptr<Team> team,
+                                            std::shared_ptr<Ranks> ranks) {
+  if (setup.moving) body.model->symmetry = setup.moving->symmetry;
+  if (!setup.specimen.prism) body.notches = setup.specimen.region.notches();
+  return std::make_unique<Simulation>(std::move(body), setup.block_materials, setup.heat, setup.probes,
+                                      setup.records, setup.moving, std::move(team), std::move(ranks));
+}
+
 double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts) {
   if (specimen.blocks.count == 0) return contacts.fracture_zone_size.value_or(1.0);
   return specimen.block_size();

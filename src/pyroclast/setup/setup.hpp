@@ -79,6 +79,10 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
                                             std::shared_ptr<Team> team = nullptr,
                                             std::shared_ptr<Ranks> ranks = nullptr);
 
+/// Makes field and mechanics of a body that was made of this deck's inputs, see BodyFile.
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, SpecimenBody body, std::shared_ptr<Team> team,
+                                            std::shared_ptr<Ranks> ranks);
+
 /// Returns the block size that a deck foresees, m; where the tessellation is read from a file, the size at
 /// which t_b holds.
 double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts);

@@ -59,7 +59,7 @@ std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model>& whole, const std::sh
                                     const std::vector<BlockMaterial>& block_materials) {
   if (!ranks || ranks->count() == 1) return std::move(whole);
   auto part = part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
-  if (!ranks->is_first()) whole.reset();
+  if (whole->part || !ranks->is_first()) whole.reset();
   return part;
 }
 

@@ -111,11 +111,13 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        const std::vector<RecordParameters>& records, const std::optional<MovingBody>& moving,
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
+      told_(std::move(body.told)),
       whole_(required(std::move(body.model))),
       model_(part_of_rank(whole_, ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
+  if (model_->part && !whole_ && ranks->is_first()) whole_ = body.read_whole();
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!moving) {
     materials_.block_materials = block_materials;
@@ -145,8 +147,13 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 }
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {
-  if (!has_specimen() || !whole()) return {};
-  return moves() ? warnings(*specimen_, *whole(), materials_.contacts) : warnings(*specimen_);
+  if (!whole() || !(specimen_ || told_)) return {};
+  auto lines = specimen_ ? warnings(*specimen_) : told_->warnings;
+  if (!moves()) return lines;
+  const std::vector<int>& grain = specimen_ ? grains(*specimen_) : told_->grain;
+  if (auto line = skeleton(*whole(), grain, materials_.contacts); !line.empty())
+    lines.push_back(std::move(line));
+  return lines;
 }
 
 const Record& Simulation::record(std::string_view name) const {

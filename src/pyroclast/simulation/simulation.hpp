@@ -63,9 +63,10 @@ class Simulation {
 
   /// Returns the team, whose number of threads may change between two batches.
   Team& team() { return *team_; }
-  /// Tells whether the body was made of a specimen here, not elsewhere.
-  bool has_specimen() const { return specimen_.has_value(); }
-  const MadeSpecimen& specimen() const { return *specimen_; }
+  /// Returns the specimen of which the body was made here; empty where the body was made elsewhere.
+  const std::optional<MadeSpecimen>& specimen() const { return specimen_; }
+  /// Returns what is told of the specimen of a body that was read; else null.
+  const SpecimenTold* told() const { return told_.get(); }
   /// Returns what a user should know of the specimen and of stones that hold together, one line each; nothing
   /// where another rank is the first.
   std::vector<std::string> warnings_of_specimen() const;
@@ -144,6 +145,7 @@ class Simulation {
  private:
   std::shared_ptr<Team> team_;
   std::optional<MadeSpecimen> specimen_;
+  std::shared_ptr<const SpecimenTold> told_;
   std::unique_ptr<Model> whole_;  ///< whole body on the first of several ranks, else null
   std::unique_ptr<Model> model_;
   SpecimenNumbers numbers_;

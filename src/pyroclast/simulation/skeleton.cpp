@@ -87,8 +87,8 @@ std::string skeleton(const Model& model, std::span<const int> grain,
 std::vector<std::string> warnings(const MadeSpecimen& specimen, const Model& model,
                                   const std::vector<ContactMaterial>& contacts) {
   auto lines = warnings(specimen);
-  const auto& grain = std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, specimen);
-  if (auto line = skeleton(model, grain, contacts); !line.empty()) lines.push_back(std::move(line));
+  if (auto line = skeleton(model, grains(specimen), contacts); !line.empty())
+    lines.push_back(std::move(line));
   return lines;
 }
 

@@ -112,6 +112,10 @@ const std::vector<std::string>& phases(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) -> const std::vector<std::string>& { return s.phases; }, specimen);
 }
 
+const std::vector<int>& grains(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, specimen);
+}
+
 std::vector<std::string> warnings(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) { return warnings(s); }, specimen);
 }
@@ -159,7 +163,7 @@ std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness
 
 SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
                        const std::optional<MovingBody>& moving) {
-  SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}};
+  SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}, {}, {}};
   if (moving) add_symmetry(*body.model, moving->symmetry);
   add_sets(*body.model, sets);
   if (const auto* plane = std::get_if<specimen::Specimen>(&specimen)) body.notches = plane->region.notches();

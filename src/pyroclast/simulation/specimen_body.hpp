@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +47,8 @@ using MadeSpecimen = std::variant<specimen::Specimen, solid::SolidSpecimen>;
 
 /// Returns the names of the phases that its blocks can have.
 const std::vector<std::string>& phases(const MadeSpecimen& specimen);
+/// Returns the stone of each block, -1: of none; empty where stones are not known.
+const std::vector<int>& grains(const MadeSpecimen& specimen);
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const MadeSpecimen& specimen);
 
@@ -72,6 +76,15 @@ struct SpecimenNumbers {
 
 SpecimenNumbers numbers_of(const MadeSpecimen& specimen);
 
+/// Words and files by which a run tells of its specimen, where the specimen itself is not there any more.
+struct SpecimenTold {
+  std::string text;                          ///< description for the screen
+  std::vector<std::string> warnings;         ///< see warnings
+  std::vector<int> grain;                    ///< stone of each block, see skeleton; may be empty
+  std::string facts;                         ///< facts for the summary, as JSON
+  std::map<std::string, std::string> files;  ///< files of the folder specimen/, by name
+};
+
 /// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
 /// gridpoints have a set "specimen"; between platens they have the sets of Press.
 struct SpecimenBody {
@@ -79,6 +92,9 @@ struct SpecimenBody {
   SpecimenNumbers numbers;
   std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
   std::optional<Press::Specimen> between_platens;
+  std::shared_ptr<const SpecimenTold> told;  ///< null where the specimen tells of itself, or nothing does
+  /// Function that reads the whole body, where `model` has only some chunks of it, for one of several ranks.
+  std::function<std::unique_ptr<Model>()> read_whole;
 };
 
 /// Component of a position along which the press of a deck stands.

@@ -1,0 +1,135 @@
+"""A body that `specimen` wrote gives a run the bytes of one that makes its body; any other body is refused.
+
+PYROCLAST names the program.
+"""
+
+import json
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import unittest
+
+from in_a_folder import PROGRAM, InAFolder
+from test_ranks import MPI, NEEDS_MPI
+
+ROOT = pathlib.Path(__file__).parents[2]
+CHUNKS = {**os.environ, "PYROCLAST_CHUNK_BLOCKS": "32"}
+PRESS = ["--set", "blocks.count=150", "--set", "stages[1].velocity=8 mm/s", "--set", "stages[1].stop_strain=0.0002"]
+QUIET = ["--no-figures", "-t", "1"]
+
+
+def case(name: str) -> str:
+    return str(ROOT / f"cases/{name}.toml")
+
+
+class Body(InAFolder):
+    def specimen(self, deck: str, *changes, out: str = "body"):
+        self.pyroclast("specimen", deck, *changes, *QUIET, "--out", out, env=CHUNKS)
+
+    def results(self, run: str) -> dict[str, bytes | dict]:
+        """The files of a run by name, but for times and places."""
+        files = {str(file.relative_to(self.folder / run)): file.read_bytes()
+                 for file in (self.folder / run).rglob("*") if file.is_file()}
+        kept = {name: text for name, text in files.items()
+                if not name.startswith("checkpoints") and name not in ("manifest.json", "run.log", "summary.json")}
+        summary = json.loads(files["summary.json"])
+        del summary["wall_time_s"]
+        return {**kept, "summary.json": summary}
+
+    def assert_same(self, one: str, other: str):
+        first, second = self.results(one), self.results(other)
+        self.assertEqual(first.keys(), second.keys())
+        for name, content in first.items():
+            self.assertTrue(content == second[name], name)
+
+    def refused(self, *words, **options) -> str:
+        done = self.pyroclast("run", *words, *QUIET, "--out", "refused", code=1, **options)
+        self.assertFalse((self.folder / "refused/history.csv").exists())
+        self.assertEqual(done.stderr.count("error:"), 1, done.stderr)
+        return done.stderr
+
+    def test_a_run_of_a_body_has_the_bytes_of_one_that_makes_it(self):
+        """In the plane and in space, with platens, bearings, a notch, sets and heat."""
+        for name, *changes in (("starter", *PRESS), ("starter_3d", "--set", "blocks.count=60", *PRESS[2:]),
+                               ("notched_beam", "--set", "blocks.count=200", "--set", "stages[0].duration=20 ms", "--set",
+                                "stages[1].most_steps=100", "--set", "stages[2].duration=20 ms"),
+                               ("thermal_wall", "--set", "blocks.count=100")):
+            with self.subTest(name):
+                self.specimen(case(name), *changes, out=f"body_{name}")
+                self.pyroclast("run", case(name), *changes, *QUIET, "--out", f"made_{name}", env=CHUNKS, code=None)
+                self.pyroclast("run", case(name), *changes, *QUIET, "--body", f"body_{name}", "--out", f"read_{name}",
+                               env=CHUNKS, code=None)
+                self.assert_same(f"made_{name}", f"read_{name}")
+
+    @NEEDS_MPI
+    def test_ranks_read_their_chunks_and_give_the_bytes_of_one_process(self):
+        """A press in the plane and in space, and heat alone, whose nodes ranks share."""
+        for name, *changes in (("starter", *PRESS), ("starter_3d", "--set", "blocks.count=120", *PRESS[2:]),
+                               ("thermal_wall", "--set", "blocks.count=150")):
+            with self.subTest(name):
+                self.specimen(case(name), *changes, out=f"body_{name}")
+                self.pyroclast("run", case(name), *changes, *QUIET, "--out", f"one_{name}", env=CHUNKS, code=None)
+                done = subprocess.run(["mpirun", "-n", "3", PROGRAM, "run", case(name), *changes, *QUIET,
+                                       "--mpi", "--body", f"body_{name}", "--out", f"{name}_3"],
+                                      cwd=self.folder, env={**MPI, **CHUNKS}, capture_output=True, text=True,
+                                      timeout=300, check=False)
+                self.assertIn(done.returncode, (0, 2), done.stdout + done.stderr)
+                self.assert_same(f"one_{name}", f"{name}_3")
+
+    def test_other_stages_and_numbers_of_materials_take_the_same_body(self):
+        self.specimen(case("starter"), *PRESS)
+        deck = [case("starter"), *PRESS, "--set", "stages[1].velocity=9 mm/s", "--set", "contacts.mortar_mortar.f_t=3 MPa"]
+        self.pyroclast("run", *deck, *QUIET, "--body", "body", "--out", "run", env=CHUNKS, code=None)
+        self.assertIn("body", json.loads((self.folder / "run/manifest.json").read_text()))
+
+    def test_a_run_of_a_body_goes_on_with_and_without_it(self):
+        """Both ends have the bytes of a run that was not broken off."""
+        self.specimen(case("starter"), *PRESS)
+        self.pyroclast("run", case("starter"), *PRESS, *QUIET, "--body", "body", "--out", "whole", env=CHUNKS,
+                       code=None)
+        for name in ("with", "without"):
+            shutil.copytree(self.folder / "whole", self.folder / name)
+            (self.folder / name / "summary.json").unlink()
+            if name == "without":
+                shutil.rmtree(self.folder / "body")
+            self.pyroclast("resume", name, "--checkpoint-file", f"{name}/checkpoints/stage_0.state", *QUIET,
+                           env=CHUNKS, code=None)
+            self.assert_same("whole", name)
+
+    def test_a_body_of_other_inputs_is_refused_by_what_differs(self):
+        self.specimen(case("starter"), *PRESS)
+        deck = [case("starter"), *PRESS, "--body", "body"]
+        for change, named in (("specimen.seed=77", "specimen.seed was 1, and is 77 here"),
+                              ("blocks.count=151", "blocks.count was 150, and is 151 here"),
+                              ("platens.thickness=9 mm", "platens.thickness")):
+            self.assertIn(named, self.refused(*deck, "--set", change, env=CHUNKS))
+        self.assertIn("PYROCLAST_CHUNK_BLOCKS) was 32, and is 16 here",
+                      self.refused(*deck, env={**CHUNKS, "PYROCLAST_CHUNK_BLOCKS": "16"}))
+
+    def test_a_body_with_any_byte_changed_or_cut_is_refused(self):
+        """Every flip and every cut is one error that names the file, and the chunk where it is one of an array."""
+        self.specimen(case("starter"), *PRESS)
+        file = self.folder / "body/body.h5"
+        whole = file.read_bytes()
+        chance = random.Random(1)
+        chunks_named = 0
+        for i in range(50):
+            at = chance.randrange(len(whole))
+            file.write_bytes(whole[:at] if i % 5 == 0 else whole[:at] + bytes([whole[at] ^ 1 << i % 8]) + whole[at + 1:])
+            with self.subTest(i=i, at=at):
+                said = self.refused(case("starter"), *PRESS, "--body", "body", env=CHUNKS)
+                self.assertIn("body/body.h5: ", said)
+                chunks_named += "is damaged: chunk " in said
+        self.assertGreater(chunks_named, 10)
+
+    def test_a_folder_without_a_body_is_refused(self):
+        self.assertIn("there is no body", self.refused(case("starter"), *PRESS, "--body", "nowhere"))
+        (self.folder / "other").mkdir()
+        (self.folder / "other/body.h5").write_text("something else\n")
+        self.assertIn("is no body of pyroclast", self.refused(case("starter"), *PRESS, "--body", "other"))
+
+
+if __name__ == "__main__":
+    unittest.main()
