@@ -108,6 +108,31 @@ def _without_reference(deck: pathlib.Path) -> pathlib.Path:
     return made
 
 
+def _rim_heated() -> pathlib.Path:
+    """The solid of the levels, heated by conduction from its rim at 2 K/min, with the heat properties of the slab strip."""
+    text = _without_reference(SOLIDS[HEATED]).read_text()
+    conducts = ('conductivity = { builtin = "en1992_conductivity_lower" }\n'
+                'specific_heat = { builtin = "en1992_specific_heat_u1_5" }\n')
+    fire = ('field = "conduction"\n\n[[heat.boundaries]]\nfaces = "rim"\nkind = "temperature"\n'
+            'temperature = { table = [["0 s", "20 degC"], ["23400 s", "800 degC"]] }\n')  # to 800 degC at 2 K/min
+    for was, now in ((r"(\[materials\.(?:aggregate|mortar)\]\n)", rf"\1{conducts}"),
+                     (r'field = "uniform".*\n', fire),
+                     (r'kind = "heat"\nto = .*\nrate = .*\n', 'kind = "expose"\nduration = "23400 s"\n')):
+        text, found = re.subn(was, now, text)
+        if not found:
+            raise ValueError(f"{SOLIDS[HEATED]} has no {was} any more")
+    made = RUNS / "transient_heating_3d_rim.toml"
+    RUNS.mkdir(parents=True, exist_ok=True)
+    made.write_text(text)
+    return made
+
+
+def rim_heated(specimen: Specimen, level: float) -> Results:
+    """A solid heated from its rim under a share of its strength, which is held."""
+    changes = specimen.settings(3000) + [f"stages[1].level={level:g}", *specimen.of_strength(level)]
+    return _run(_rim_heated(), f"rim-{level:g}-{specimen.name}", specimen, changes)
+
+
 def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual: bool = False) -> Crushed:
     """Crushed at a temperature, or at 20 degC after it, heated under a share of its strength."""
     at = 20.0 if residual else temperature
@@ -162,14 +187,14 @@ def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) 
 class Test:
     """A run, and how its line of the table is known."""
 
-    kind: str  # heated, restrained, cold, hot, residual
+    kind: str  # heated, rim, restrained, cold, hot, residual
     specimen: Specimen
     level: float = 0.0
     to: float = 800.0
 
     @property
     def key(self) -> dict[str, str]:
-        deck = self.specimen.deck(HEATED if self.kind in ("heated", "restrained") else CRUSHED)
+        deck = self.specimen.deck(HEATED if self.kind in ("heated", "rim", "restrained") else CRUSHED)
         own = {"deck": runs.deck_hash(deck), "physics_version": runs.physics_version(),
                "test": self.kind, "concrete": self.specimen.concrete, "blocks": self.specimen.blocks,
                "seed": self.specimen.seed, "level": f"{self.level:g}", "to_degC": f"{self.to:g}"}
@@ -178,7 +203,10 @@ class Test:
     def row(self) -> dict[str, str]:
         """Runs the test; its line of the table."""
         row = self.key
-        if self.kind in ("heated", "restrained"):
+        if self.kind == "rim":
+            run = rim_heated(self.specimen, self.level)
+            row.update(_of_heating(run, self.specimen.in_space))
+        elif self.kind in ("heated", "restrained"):
             run = heated(self.specimen, self.level, self.to, "fixed" if self.kind == "restrained" else "force")
             row.update(_of_heating(run, self.specimen.in_space))
         else:
