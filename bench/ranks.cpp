@@ -144,7 +144,7 @@ OnRanks on_ranks(const Asked& asked, const Simulation& whole, int count) {
   std::vector<std::vector<double>> batches(static_cast<std::size_t>(count));
   RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
     const auto me = static_cast<std::size_t>(ranks->me());
-    all.parts[me] = std::make_unique<OnRank>(asked, whole.specimen(), std::make_shared<CountedRanks>(ranks));
+    all.parts[me] = std::make_unique<OnRank>(asked, *whole.specimen(), std::make_shared<CountedRanks>(ranks));
     OnRank& part = *all.parts[me];
     part.ranks->forget();
     for (int i = 0; i < asked.batches; ++i) batches[me].push_back(part.batch());
