@@ -36,7 +36,7 @@ TEST_P(RanksOfCases, AreAsForetold) {
     std::mutex mutex;
     RanksInThreads::run(count, [&](const std::shared_ptr<Ranks>& ranks) {
       const auto counted = std::make_shared<CountedRanks>(ranks);
-      const auto simulation = make_simulation(setup, whole->specimen(), nullptr, counted);
+      const auto simulation = make_simulation(setup, *whole->specimen(), nullptr, counted);
       const Model& model = simulation->model();
       counted->forget();
       std::map<int, CountedRanks::Sent> by_motion, by_heat;
