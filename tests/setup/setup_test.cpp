@@ -397,7 +397,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   ASSERT_EQ(phases_of(setup.block_materials),
             (std::vector<std::string>{"aggregate", "light", "pore", "steel", "mortar"}));
   const auto simulation = make_simulation(setup);
-  const auto& specimen = std::get<specimen::Specimen>(simulation->specimen());
+  const auto& specimen = std::get<specimen::Specimen>(*simulation->specimen());
   double sum = 0.0;
   for (std::size_t i = 0; i < specimen.phases.size(); ++i) {
     EXPECT_GT(specimen.fraction[i], 0.0) << specimen.phases[i];
@@ -438,7 +438,7 @@ TEST(Phases, StonesThatTouchMayHaveAnInterface) {
   deck = with(deck, "fraction = 0.34", "fraction = 0.45");
   const auto setup = read(deck);
   const auto simulation = make_simulation(setup);
-  const auto& specimen = std::get<specimen::Specimen>(simulation->specimen());
+  const auto& specimen = std::get<specimen::Specimen>(*simulation->specimen());
   const auto& model = simulation->model();
   const auto place = [&](const char* name) {
     return std::ranges::find(model.interface_names, name) - model.interface_names.begin();

@@ -41,9 +41,10 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
                        kPhysicsVersion));
   if (info.inputs != inputs) refuse(fmt::format("belongs to {}", other_inputs));
   if (const int blocks = blocks_of_a_chunk(simulation.model().dimension()); info.blocks_of_a_chunk != blocks)
-    refuse(fmt::format("was written with chunks of {} blocks, and this run has chunks of {}, see "
-                       "PYROCLAST_CHUNK_BLOCKS",
-                       info.blocks_of_a_chunk, blocks));
+    refuse(
+        fmt::format("was written with chunks of {} blocks, and this run has chunks of {}, see "
+                    "PYROCLAST_CHUNK_BLOCKS",
+                    info.blocks_of_a_chunk, blocks));
   if (info.body != body_hash(simulation))
     refuse("belongs to another body: specimen or laws of this program differ from those that the run had");
 }

@@ -92,9 +92,10 @@ struct SpecimenBody {
   SpecimenNumbers numbers;
   std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
   std::optional<Press::Specimen> between_platens;
-  std::shared_ptr<const SpecimenTold> told;  ///< null where the specimen tells of itself, or nothing does
+  /// Null where the specimen tells of itself, or nothing does.
+  std::shared_ptr<const SpecimenTold> told = {};
   /// Function that reads the whole body, where `model` has only some chunks of it, for one of several ranks.
-  std::function<std::unique_ptr<Model>()> read_whole;
+  std::function<std::unique_ptr<Model>()> read_whole = {};
 };
 
 /// Component of a position along which the press of a deck stands.
