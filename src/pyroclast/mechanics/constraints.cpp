@@ -183,6 +183,13 @@ template <int Dim>
 void Constraints<Dim>::visit_state(StateVisitor& visitor) {
   const ChunkList& bundles = body_.layout.chunks.bundles;
   auto& s = body_.arrays;
+  if (visitor.replaces()) {  // the body has forgotten what they were
+    s.constraints.resize(0);
+    s.constraint_packs.resize(0);
+    std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
+    std::ranges::fill(body_.made_constraints, -1);
+    body_.made_ties.clear();
+  }
   using Packs = std::span<const ConstraintPack<Dim>>;
   const auto for_each_made = [&](int chunk, auto f) {
     for (int b = bundles[chunk]; b < bundles[chunk + 1]; ++b)
@@ -214,10 +221,6 @@ void Constraints<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit_by_chunk("ties", ties, bundles);
   if (!visitor.replaces()) return;
 
-  s.constraints.resize(0);
-  s.constraint_packs.resize(0);
-  std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
-  std::ranges::fill(body_.made_constraints, -1);
   visitor.require(works.counts == made.counts, "loading_works", "are not those of the constrained bundles");
   std::vector<Packs> packs_of_chunk;
   packs.for_each(bundles, [&](int /*chunk*/, Packs of) { packs_of_chunk.push_back(of); });
