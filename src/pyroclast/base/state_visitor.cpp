@@ -30,11 +30,8 @@ void StateVisitor::refuse(const std::string& name, const std::string& what) cons
 void StateVisitor::visit_chunks(const std::string& name, const ChunksPiece& piece, Ranks& /*ranks*/) {
   std::byte* data = piece.data;
   if (piece.resize) {
-    const std::size_t chunks = piece.counts.size();
-    const auto in_order = [](std::vector<std::uint64_t>& counts) {
-      return reinterpret_cast<std::byte*>(counts.data());
-    };
-    visit_piece(name + ".counts", {sizeof(std::uint64_t), chunks, in_order(piece.counts), {}});
+    auto* const counts = reinterpret_cast<std::byte*>(piece.counts.data());
+    visit_piece(name + ".counts", {sizeof(std::uint64_t), piece.counts.size(), counts, {}});
     if (replaces()) data = piece.resize();
   }
   visit_piece(name, {piece.item, piece.count(), data, {}});

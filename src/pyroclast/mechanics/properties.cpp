@@ -10,6 +10,7 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/mechanics/reader.hpp"
 #include "pyroclast/model/item_halo.hpp"
 
@@ -258,11 +259,8 @@ void Properties<Dim>::visit_contacts_sets(StateVisitor& visitor) {
     }
     for (const int set : here) number_in_chunk[set] = -1;
   }
-  const auto law_of = [&](int set) {
-    return static_cast<int>(std::ranges::find(body_.laws, &sets.law(set)) - body_.laws.begin());
-  };
   auto laws = ListByChunk<int>::of(chunks, [&](int chunk, std::vector<int>& list) {
-    for (const int set : sets_of_chunk[chunk]) list.push_back(law_of(set));
+    for (const int set : sets_of_chunk[chunk]) list.push_back(place_in(body_.laws, &sets.law(set)));
   });
   auto choices = ListByChunk<int>::of(chunks, [&](int chunk, std::vector<int>& list) {
     for (const int set : sets_of_chunk[chunk])
@@ -335,7 +333,7 @@ void Properties<Dim>::take_sets_from_owners() {
   for (int i = own.first; i < own.last; ++i) {
     const int set = body_.properties.of_contact[body_.layout.contacts_by_chunk[i]];
     auto to = entry(i);
-    *to++ = static_cast<double>(std::ranges::find(body_.laws, &sets.law(set)) - body_.laws.begin());
+    *to++ = place_in(body_.laws, &sets.law(set));
     to = std::ranges::copy(sets.choices(set), to).out;
     std::ranges::copy(sets.numbers(set), to);
   }

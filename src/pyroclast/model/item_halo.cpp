@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "pyroclast/base/place_in.hpp"
+
 namespace pyroclast {
 
 ItemHalo::ItemHalo(Ranks& ranks, const std::vector<int>& foreign, const std::function<int(int)>& in_whole,
@@ -72,10 +74,8 @@ ItemHalo halo_of(Ranks& ranks, const std::vector<int>& in_whole, IsOwn is_own) {
   for (int i = 0; i < static_cast<int>(in_whole.size()); ++i)
     if (!is_own(i)) foreign.push_back(i);
   const auto own = [&](int number) {
-    const auto here = std::ranges::lower_bound(in_whole, number);
-    if (here == in_whole.end() || *here != number) return -1;
-    const auto item = static_cast<int>(here - in_whole.begin());
-    return is_own(item) ? item : -1;
+    const int item = place_in_ascending(in_whole, number);
+    return item >= 0 && is_own(item) ? item : -1;
   };
   return {ranks, foreign, [&](int item) { return in_whole[item]; }, own};
 }

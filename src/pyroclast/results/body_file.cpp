@@ -14,6 +14,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shell_words.hpp"
@@ -95,13 +96,6 @@ std::uint64_t hash_of_rest(const Json& arrays, std::uint64_t size, Read read) {
   return XXH3_64bits(rest.data(), rest.size());
 }
 
-/// Returns the first item of each chunk of blocks.
-std::vector<int> begins_of(const Model& model, const std::vector<int>& of_block) {
-  std::vector<int> begins;
-  for (const int block : model.chunk_blocks) begins.push_back(of_block[block]);
-  return begins;
-}
-
 std::vector<int> counts(const std::vector<int>& begins) {
   std::vector<int> of(begins.size() - 1);
   for (std::size_t i = 0; i < of.size(); ++i) of[i] = begins[i + 1] - begins[i];
@@ -144,8 +138,8 @@ void add_model(ArrayWriter& to, const ModelOf<Dim>& model) {
   };
   std::vector<double> position;
   for (const Vec<Dim>& p : model.position) position.insert(position.end(), p.c.begin(), p.c.end());
-  to.add("gridpoints/position", position, Dim, begins_of(model, model.block_gridpoints));
-  to.add("zones/gridpoints", flat(model.zones, 0), Dim + 1, begins_of(model, model.block_zones));
+  to.add("gridpoints/position", position, Dim, model.gridpoint_chunks().begins());
+  to.add("zones/gridpoints", flat(model.zones, 0), Dim + 1, model.zone_chunks().begins());
 
   // a face stands in the earlier of its two chunks; all of its contacts have one frame
   const std::vector<int> chunk_of = model.gridpoint_chunks().of_items();
@@ -451,10 +445,7 @@ std::unique_ptr<Model> BodyFile::model_of(const std::vector<int>& chunks,
     model->face_contacts.push_back(static_cast<int>(model->contacts.size()));
   }
   fill_sets(table_.at("sets"), rows<int>("sets/gridpoints", chunks), here, model->sets);
-  const auto contact_here = [&](int contact) {
-    const auto found = std::ranges::lower_bound(of.contact, contact);
-    return found != of.contact.end() && *found == contact ? static_cast<int>(found - of.contact.begin()) : -1;
-  };
+  const auto contact_here = [&](int contact) { return place_in_ascending(of.contact, contact); };
   fill_sets(table_.at("contact_sets"), rows<int>("sets/contacts", chunks), contact_here, model->contact_sets);
   if (chunks.size() + 1 < blocks.size() || ranks)
     model->part = std::make_shared<const PartOfBody>(std::move(of));

@@ -125,7 +125,8 @@ Session::Session(DeckOfRun opened, std::unique_ptr<FolderLock> lock, std::filesy
       writer_(folder_, opened_.setup),
       run_(*simulation_, std::move(opened_.setup.stages)) {
   run_.ask([this] {
-    const bool is_due = checkpoints_ && is_first() && (checkpoint_is_due_ || checkpoints_->is_due());
+    const bool is_due =
+        checkpoints_ && opened_.choices.is_first() && (checkpoint_is_due_ || checkpoints_->is_due());
     return Wishes{.stop = stop_asked_(), .save = is_due};
   });
   run_.between_batches([this](Run& run, const Wishes& wishes) {

@@ -123,7 +123,6 @@ class Session {
           std::optional<MadeSpecimen> specimen = std::nullopt);
 
   static std::unique_ptr<FolderLock> lock(const RunOutput& output);
-  bool is_first() const { return simulation_->ranks().is_first(); }
   void make_folder(const RunOutput& output, std::optional<Parent> parent);
   void open(std::int64_t last_checkpoint);
   void visit_state(StateVisitor& visitor);

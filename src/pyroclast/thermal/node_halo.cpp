@@ -1,6 +1,6 @@
 #include "pyroclast/thermal/node_halo.hpp"
 
-#include <algorithm>
+#include "pyroclast/base/place_in.hpp"
 
 namespace pyroclast {
 
@@ -12,9 +12,9 @@ ItemHalo node_halo(const Model& model, const ThermalNodes& nodes, const ChunkLis
   for (int node = 0; node < nodes.count(); ++node)
     if (!own.contain(node)) foreign.push_back(node);
   const auto own_node = [&](int gridpoint) {
-    const auto here = std::ranges::lower_bound(in_whole, gridpoint);
-    if (here == in_whole.end() || *here != gridpoint) return -1;
-    const int node = nodes.of_gridpoint[here - in_whole.begin()];
+    const int here = place_in_ascending(in_whole, gridpoint);
+    if (here < 0) return -1;
+    const int node = nodes.of_gridpoint[here];
     return own.contain(node) ? node : -1;
   };
   return {model.ranks(), foreign, [&](int node) { return in_whole[nodes.gridpoint[node]]; }, own_node};
