@@ -26,6 +26,7 @@ RUNS = ROOT / "runs/hot_concrete"
 HEATED = ROOT / "cases/anderberg_thelandersson.toml"
 CRUSHED = ROOT / "cases/hot_strength.toml"
 SOLIDS = {HEATED: ROOT / "cases/transient_heating_3d.toml", CRUSHED: ROOT / "cases/hot_strength_3d.toml"}
+HEIGHT = 0.3  # m, of the plane's specimens, 1 m thick
 SEEDS = (1, 2, 3)
 LEVELS = (0.0, 0.225, 0.445, 0.675)
 TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
@@ -127,6 +128,56 @@ def _rim_heated() -> pathlib.Path:
     return made
 
 
+def _crosswise() -> pathlib.Path:
+    """The deck of crushing with the load taken away after the heat, and the specimen pushed together by its sides."""
+    text = CRUSHED.read_text()
+    last = text.rindex("[[stages]]", 0, text.index('kind = "compress"'))
+    after = text.index("[coupling]")
+    made = RUNS / "hot_strength_crosswise.toml"
+    RUNS.mkdir(parents=True, exist_ok=True)
+    made.write_text(text[:last] + """[[stages]]
+kind = "load"
+stress = "0 MPa"
+ramp_time = "200 ms"
+unbalanced_ratio = 1e-3
+most_steps = 100000
+
+[[stages]]
+kind = "drive"
+duration = "1.2 s"
+look_interval = "2 ms"
+
+[[stages.until]]
+record = "push"
+share_of_peak = 0.95
+
+[[stages.drives]]
+set = "left"
+hold = ["x"]
+
+[[stages.drives]]
+set = "right"
+velocity = "-1 mm/s"
+direction = "x"
+ramp_time = "20 ms"
+
+[[record]]
+name = "push"
+kind = "force"
+set = "right"
+direction = "-x"
+
+""" + text[after:])
+    return made
+
+
+def crushed_across(specimen: Specimen, temperature: float, level: float) -> Results:
+    """Heated under a share of its strength along y, then crushed along x."""
+    changes = specimen.settings(9000) + [f"stages[1].level={level:g}", f"stages[2].to={temperature:g} degC",
+                                         f"stages[3].to={temperature:g} degC", *specimen.of_strength(level)]
+    return _run(_crosswise(), f"across-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
+
+
 def rim_heated(specimen: Specimen, level: float) -> Results:
     """A solid heated from its rim under a share of its strength, which is held."""
     changes = specimen.settings(3000) + [f"stages[1].level={level:g}", *specimen.of_strength(level)]
@@ -187,7 +238,7 @@ def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) 
 class Test:
     """A run, and how its line of the table is known."""
 
-    kind: str  # heated, rim, restrained, cold, hot, residual
+    kind: str  # heated, rim, restrained, cold, hot, residual, across
     specimen: Specimen
     level: float = 0.0
     to: float = 800.0
@@ -206,6 +257,9 @@ class Test:
         if self.kind == "rim":
             run = rim_heated(self.specimen, self.level)
             row.update(_of_heating(run, self.specimen.in_space))
+        elif self.kind == "across":
+            run = crushed_across(self.specimen, self.to, self.level)
+            row.update(f_c_MPa=run.summary["stages"][-1]["results"]["peak_push_N"] / HEIGHT / 1e6)
         elif self.kind in ("heated", "restrained"):
             run = heated(self.specimen, self.level, self.to, "fixed" if self.kind == "restrained" else "force")
             row.update(_of_heating(run, self.specimen.in_space))

@@ -298,6 +298,22 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   }
 }
 
+// Promise: a law in a header is compiled for the dimension of the deck that names it.
+TEST_F(LawInAHeader, ABodyInSpaceHasItsLawFromAHeaderToo) {
+  fs::copy(fs::path(HEADERS) / "renamed.hpp", folder_ / "mine.hpp");
+  sources_.compiler.instructions = best_instruction_set();
+  std::string text = with(deck(kSettle), "height = \"120 mm\"", "height = \"120 mm\"\ndepth = \"60 mm\"");
+  text = with(text, "[contacts.mortar_mortar]\n",
+              "[contacts.mortar_mortar]\nlaw = \"mine.hpp\"\nu_mark = \"1 um\"\n");
+  pyroclast::Setup setup = read_setup(Deck::parse(text, "deck.toml"), folder_, {}, sources_);
+  auto simulation = make_simulation(setup);
+  EXPECT_EQ(simulation->model().dimension(), 3);
+  pyroclast::Run run(*simulation, std::move(setup.stages));
+  run.run();
+  EXPECT_EQ(run.outcome(), Outcome::completed);
+  EXPECT_STREQ(simulation->materials().contacts[2].law->name, "renamed");
+}
+
 TEST_F(LawInAHeader, WhatThePollThrowsEndsTheCompilerAndLeavesNothingInTheCache) {
   write("mine.hpp", small() + "// another text\n" + "namespace small { inline int more() { return 1; } }\n");
   LawCompiler compiler = sources_.compiler;

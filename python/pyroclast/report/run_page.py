@@ -13,6 +13,7 @@ from ..draw.progress import energies_out
 from ..draw.properties import panels, read_properties
 from ..errors import Error
 from ..stored.heated import Heated
+from ..stored.lost_strength import lost_strength
 from ..stored.results import Results, SpecimenFolder
 from .bodies import fitted
 from .course import course_of, rows_of_frames
@@ -75,7 +76,9 @@ def run_page(run: Results, reload_every: float | None = None) -> str:
                 stages=_stages(run), has_body=body is not None,
                 is_solid=bool(body and body["solid"]), steps=_steps(run, body), specimen=_specimen(run),
                 gradation=_gradation(run), deck=run.deck_text, changes=_changes(run), made=_made(run),
-                can_crack=bool(run.moves and run.facts.crack_modes), has_properties=bool(data["properties"]))
+                can_crack=bool(run.moves and run.facts.crack_modes),
+                lost=[(one.interface, one.direction, f"{one.share:.3f}") for one in lost_strength(run)],
+                has_properties=bool(data["properties"]))
 
 
 def _cards(run: Results, data: dict[str, Any]) -> list[Card]:

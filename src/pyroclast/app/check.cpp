@@ -13,10 +13,12 @@
 #include "pyroclast/app/specimen_scatter.hpp"
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
+#include "pyroclast/material/first_guess.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
+#include "pyroclast/stages/load.hpp"
 
 namespace pyroclast::app {
 
@@ -24,6 +26,8 @@ namespace {
 
 /// Share by which E of contacts may differ from that of blocks without a word.
 constexpr double kLikeModulus = 0.1;
+/// Share by which a strength may differ from that of specimens with such mortar without a word.
+constexpr double kLikeStrength = 0.2;
 
 void print_strength(const Setup& setup) {
   const auto is_compress = [](const auto& stage) { return stage->kind() == std::string_view("compress"); };
@@ -55,6 +59,31 @@ void print_stated_stiffness(const Setup& setup) {
         "contacts        {}: K_n is stated, E = K_n t_b {:.3g} GPa; the softest blocks have {:.3g} GPa{}\n",
         interface.name, 1e-9 * stated, 1e-9 * young,
         is_like ? "" : ": leave K_n and K_s out, and they follow E of the blocks");
+  }
+}
+
+/// Warns of loads that are shares of a strength which mortar like the deck's does not give.
+void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
+  if (!setup.moving) return;
+  const std::string& matrix = setup.moving->contacts.matrix;
+  const auto& materials = simulation.materials();
+  const auto joint = std::ranges::find(materials.interfaces, matrix + "_" + matrix);
+  const auto mortar = std::ranges::find(materials.block_materials, matrix, &BlockMaterial::name);
+  if (joint == materials.interfaces.end() || mortar == materials.block_materials.end()) return;
+  const FirstGuess& known = first_guess(simulation.model().dimension());
+  const auto factor = known.factor_of(materials.contacts[joint - materials.interfaces.begin()]);
+  for (const auto& stage : setup.stages) {
+    const auto* load = dynamic_cast<const Load*>(stage.get());
+    if (!factor || !load || !load->keys().level || *load->keys().level == 0.0) continue;
+    const double stated = load->keys().strength;
+    const double like =
+        known.strength_with(mortar->young(kReferenceTemperature), setup.specimen.block_size(), *factor);
+    if (std::abs(stated / like - 1.0) > kLikeStrength)
+      fmt::print("{}", describe_warnings(
+                           {fmt::format("a load is {:g} of f_c = {:.3g} MPa, but specimens with such mortar "
+                                        "bear some {:.2g} MPa: crush this "
+                                        "one at 20 degC and take its f_c, f_c = {{ run = \"folder\" }}",
+                                        *load->keys().level, 1e-6 * stated, 1e-6 * like)}));
   }
 }
 
@@ -214,6 +243,7 @@ int check(const RunOptions& options) {
     fmt::print("                {}\n", simulation->coupling_of_heat());
 
   print_strength(setup);
+  warn_of_strengths(setup, *simulation);
   const std::size_t stages = setup.stages.size();
   if (setup.has_fields) rehearse_mesh(model);
   const bool has_fields = setup.has_fields;

@@ -464,9 +464,7 @@ Found guess(const Asked& a, const ConcreteOptions& o, int blocks) {
         o.modulus, a.fraction, a.rock->name, a.rock->modulus.value, 1e-9 * least, 1e-9 * most,
         1e-9 / (of_rock + slope / least), 1e-9 / (of_rock + slope / most)));
   found.mortar_modulus = rounded(slope / wanted, 3);
-  const double strength = known.strength *
-                          std::pow(found.mortar_modulus / known.mortar_modulus, known.of_stiffness) *
-                          std::pow(a.block_size(blocks) / known.block_size, known.of_block_size);
+  const double strength = known.strength_with(found.mortar_modulus, a.block_size(blocks), 1.0);
   found.factor = rounded(std::pow(a.strength / strength, 1.0 / known.of_factor), 3);
   MortarContacts& c = found.contacts;
   for (double* number : {&c.f_t, &c.f_cm, &c.c_o, &c.c_res, &c.G_f1, &c.G_f2}) *number *= found.factor;

@@ -36,6 +36,10 @@ const char* name_of(Role role) {
       return "energy";
     case Role::second_slope:
       return "second slope";
+    case Role::cold_strength:
+      return "strength at 20 °C";
+    case Role::hidden_cracks:
+      return "cracks below the mesh";
     case Role::plain:
       break;
   }
@@ -52,6 +56,8 @@ const char* name_of(Remembers what) {
       return "damage in tension and shear";
     case Remembers::closure:
       return "closure";
+    case Remembers::lost_strength:
+    case Remembers::parameter:
     case Remembers::other:
       break;
   }

@@ -4,6 +4,7 @@
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/laws/frictional.hpp"
 #include "pyroclast/laws/mixed_mode.hpp"
+#include "pyroclast/laws/remembers.hpp"
 
 namespace pyroclast {
 
@@ -16,6 +17,7 @@ struct LawList {
 using BuiltInLaws = LawList<Cohesive,    //
                             Elastic,     //
                             Frictional,  //
-                            MixedMode>;
+                            MixedMode,   //
+                            CohesiveWithMemory, MixedModeWithMemory>;
 
 }  // namespace pyroclast

@@ -168,6 +168,21 @@ struct Cohesive {
     return {c.normal_stiffness, c.shear_stiffness};
   }
 
+  /// Returns the constants of a point that has a share of its strengths left; energies and stiffnesses stay.
+  template <class Real, class Number>
+  static Constants<Real> weakened(const Constants<Number>& c, const Real& left) {
+    auto w = same_constants<Constants<Real>, Real>(c);
+    w.tensile_strength *= left;
+    w.elastic_opening *= left;
+    w.softening_range = (c.softening_range + c.elastic_opening) / left - w.elastic_opening;
+    w.over_softening_range = 1.0 / w.softening_range;
+    w.compressive_limit *= left;
+    w.closure_at_limit *= left;
+    w.cohesion *= left;
+    w.residual_cohesion *= left;
+    return w;
+  }
+
   /// Internal variables of a contact point.
   template <int Dim, class Real>
   struct Internals {

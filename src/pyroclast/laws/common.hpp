@@ -58,6 +58,15 @@ enum class Compression : std::uint8_t {
   reversible     ///< unloading retraces the bilinear curve
 };
 
+/// Returns the same constants as numbers of another kind.
+template <class To, class Real, class From>
+To same_constants(const From& from) {
+  To to;
+  To::each([](const auto&, Real& mine, const auto& theirs) { mine = Real(theirs); }, to, from);
+  To::each_choice([](const auto&, auto& mine, const auto& theirs) { mine = theirs; }, to, from);
+  return to;
+}
+
 /// Computes compression with unloading along K_n, which leaves a closure; the yield stress is f_cm + H u_p.
 /// \return the opening beyond the closure left behind, m
 template <int Dim, class Real, class Constants, class Sum>

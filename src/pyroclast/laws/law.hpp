@@ -45,12 +45,15 @@ enum class Role : std::uint8_t {
   shear_stiffness,   ///< G / t_b where a deck says nothing, Eq. (17)
   strength,
   energy,
-  second_slope  ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
+  second_slope,   ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
+  cold_strength,  ///< strength at 20 °C; without a statement the contact's first strength there
+  hidden_cracks   ///< share of strengths lost to cracks below the mesh; curves of strengths include it
 };
 
 /// Tells whether the property is the same at any temperature but where a deck states a curve for it.
 constexpr bool is_apart_from_temperature(Role role) {
-  return role == Role::plain || role == Role::second_slope;
+  return role == Role::plain || role == Role::second_slope || role == Role::cold_strength ||
+         role == Role::hidden_cracks;
 }
 
 struct PropertyInfo {
@@ -81,7 +84,9 @@ enum class Remembers : std::uint8_t {
   tension_damage,  ///< 0 intact, 1 broken; never decreases
   shear_damage,    ///< 0 intact, 1 broken; never decreases
   mixed_damage,    ///< one damage of tension and shear together
-  closure          ///< length, m, that added to the opening gives the opening of the crack
+  closure,         ///< length, m, that added to the opening gives the opening of the crack
+  lost_strength,   ///< share of the strengths lost to cracks below the mesh; never decreases
+  parameter        ///< extreme of a parameter so far: a new point has that of its temperature
 };
 
 struct InternalInfo {

@@ -33,6 +33,19 @@ struct MixedMode {
   };
   using Compression = pyroclast::Compression;
 
+  /// Returns the area under S(D), D from 0 to 1.
+  static constexpr double area_of(Softening softening) {
+    switch (softening) {
+      case Softening::bilinear:
+        return 5.0 / 18.0;
+      case Softening::exponential:
+        return 1.0 / kDecay - kTail / (1.0 - kTail);
+      case Softening::linear:
+        break;
+    }
+    return 0.5;
+  }
+
   /// Parameters at one temperature.
   template <class Real>
   struct Properties {
@@ -80,18 +93,6 @@ struct MixedMode {
       f(info::compression, p.compression...);
     }
 
-    /// Returns the area under S(D), D from 0 to 1.
-    double softening_area() const {
-      switch (softening) {
-        case Softening::bilinear:
-          return 5.0 / 18.0;
-        case Softening::exponential:
-          return 1.0 / kDecay - kTail / (1.0 - kTail);
-        case Softening::linear:
-          break;
-      }
-      return 0.5;
-    }
     /// Returns u_0n = f_t / K_n, the opening at which softening begins in tension, m.
     Real first_opening() const { return tensile_strength / normal_stiffness; }
     /// Returns u_0s = c_o / K_s, the tangential jump at which softening begins in shear without pressure, m.
@@ -105,7 +106,7 @@ struct MixedMode {
     /// Returns the jump at which softening ends: the area under the whole curve, the elastic branch included,
     /// is the fracture energy.
     Real end(Real first, Real strength, Real energy) const {
-      return first + (energy / strength - 0.5 * first) / softening_area();
+      return first + (energy / strength - 0.5 * first) / area_of(softening);
     }
   };
 
@@ -209,6 +210,27 @@ struct MixedMode {
   template <class Real>
   static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
     return {c.normal_stiffness, c.shear_stiffness};
+  }
+
+  /// Returns the constants of a point that has a share of its strengths left; energies and stiffnesses stay.
+  template <class Real, class Number>
+  static Constants<Real> weakened(const Constants<Number>& c, const Real& left) {
+    auto w = same_constants<Constants<Real>, Real>(c);
+    w.compressive_limit *= left;
+    w.closure_at_limit *= left;
+    const Real over_left = 1.0 / left, over_square = over_left * over_left;
+    const auto soften = [&](Real& over_first, Real& range, Real& first_over_last, Real& first_energy,
+                            Real& energy) {
+      over_first *= over_left;
+      range = range * over_square + (over_square - 1.0) * (0.5 / area_of(c.softening));
+      first_over_last = 1.0 / (1.0 + range);
+      first_energy *= left * left;
+      energy = first_energy * range;
+    };
+    soften(w.over_first_opening, w.tension_range, w.first_over_last_opening, w.first_tension_energy,
+           w.tension_energy);
+    soften(w.over_first_slip, w.shear_range, w.first_over_last_slip, w.first_shear_energy, w.shear_energy);
+    return w;
   }
 
   /// Internal variables of a contact point.

@@ -138,6 +138,21 @@ ContactMaterial ContactMaterial::times(Role role, double factor) const {
   return scaled;
 }
 
+ContactMaterial ContactMaterial::without_hidden_cracks() const {
+  ContactMaterial whole = *this;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (law->properties[i].role != Role::hidden_cracks) continue;
+    const Curve& cracks = numbers[i];
+    const auto raise = [cracks](double temperature) { return 1.0 / (1.0 - cracks(temperature)); };
+    const Curve factor = cracks.is_constant()
+                             ? Curve::constant(raise(kReferenceTemperature))
+                             : Curve::function("1 / (1 - cracks)", raise, cracks.range(), cracks.axis());
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (law->properties[k].role == Role::strength) whole.numbers[k] = whole.numbers[k] * factor;
+  }
+  return whole;
+}
+
 void ContactMaterial::scale_stiffnesses(double factor, std::span<double> among) const {
   for (std::size_t i = 0; i < among.size(); ++i) {
     const Role role = law->properties[i].role;
@@ -245,7 +260,7 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
   for (int i = 0; i < table.count(); ++i) {
     const auto [a, b] = table.pair_of(i);
     if (const InterfaceParameters* stated = find(p.interfaces, table.names()[i])) {
-      concrete.contacts.push_back(stated->contact);
+      concrete.contacts.push_back(stated->contact.without_hidden_cracks());
       const Stiffness k = stiffness.of(*stated);
       k.put_into(concrete.contacts.back());
       if (block_materials[a].name == p.matrix && a == b) of_matrix = k;

@@ -97,6 +97,11 @@ struct ContactMaterial {
   /// Returns the same contact with every property of a role multiplied.
   ContactMaterial times(Role role, double factor) const;
 
+  /// Returns the contact with the strengths that chemistry alone leaves. Stated curves of strengths are of
+  /// contacts without load, so they include the cracks below the mesh A of a law that knows them: each is
+  /// divided by 1 - A. Other laws stay as they are.
+  ContactMaterial without_hidden_cracks() const;
+
   /// Returns the parameters at a temperature, °C. Throws Error when a curve is not defined there.
   ContactProperties at(double temperature) const { return at(temperature, temperature); }
   /// \param property_temperature  temperature on whose values strengths, energies and stiffnesses are based,

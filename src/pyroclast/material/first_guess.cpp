@@ -1,10 +1,14 @@
 #include "pyroclast/material/first_guess.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace pyroclast {
 
 namespace {
+
+constexpr double kSameMix = 1.2;  // greatest ratio between factors of one mix
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -38,6 +42,24 @@ constexpr FirstGuess kSpace{
     .of_block_size = -0.3};
 
 }  // namespace
+
+double FirstGuess::strength_with(double modulus, double size, double factor) const {
+  return strength * std::pow(modulus / mortar_modulus, of_stiffness) *
+         std::pow(size / block_size, of_block_size) * std::pow(factor, of_factor);
+}
+
+std::optional<double> FirstGuess::factor_of(const ContactMaterial& mortar) const {
+  if (mortar.law != &table_of<Cohesive>() && mortar.law != &table_of<CohesiveWithMemory>())
+    return std::nullopt;
+  const auto over = [&](const char* key, double of_guess) {
+    return mortar[key](kReferenceTemperature) / of_guess;
+  };
+  const auto [least, most] =
+      std::minmax({over("f_t", contacts.f_t), over("f_cm", contacts.f_cm), over("c_o", contacts.c_o)});
+  const double friction = over("phi", contacts.phi);
+  if (most > kSameMix * least || friction > kSameMix || friction * kSameMix < 1.0) return std::nullopt;
+  return std::sqrt(least * most);
+}
 
 const FirstGuess& first_guess(int dimension) {
   return dimension == 2 ? kPlane : kSpace;

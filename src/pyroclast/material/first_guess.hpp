@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
+
+#include "pyroclast/material/concrete.hpp"
 
 namespace pyroclast {
 
@@ -22,6 +25,14 @@ struct FirstGuess {
   double of_factor;              ///< ... with one factor on all strengths and fracture energies
   double block_size,
       of_block_size;  ///< size of blocks, m, with which f_c was found, and the exponent of f_c with it
+
+  /// Returns f_c, Pa, to some 10 %.
+  /// \param modulus  E of the mortar, Pa
+  /// \param factor   factor on the strengths and fracture energies of `contacts`
+  double strength_with(double modulus, double size, double factor) const;
+  /// Returns the factor of a mortar's strengths at 20 °C over those of `contacts`; none where they are of
+  /// another mix or law.
+  std::optional<double> factor_of(const ContactMaterial& mortar) const;
 };
 
 /// Returns what is known of bodies in the plane or in space, whose stones may part where they touch.

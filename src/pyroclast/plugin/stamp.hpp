@@ -111,12 +111,12 @@ inline std::uint64_t layout_hash() {
            offsetof(Range, upper_inclusive));
   hash.add(sizeof(PropertyInfo), offsetof(PropertyInfo, key), offsetof(PropertyInfo, meaning),
            offsetof(PropertyInfo, unit), offsetof(PropertyInfo, range), offsetof(PropertyInfo, role),
-           static_cast<int>(Role::second_slope));
+           static_cast<int>(Role::hidden_cracks));
   hash.add(sizeof(ChoiceInfo), offsetof(ChoiceInfo, key), offsetof(ChoiceInfo, meaning),
            offsetof(ChoiceInfo, options), sizeof(OptionInfo), ChoiceInfo::kMostOptions);
   hash.add(sizeof(InternalInfo), offsetof(InternalInfo, name), offsetof(InternalInfo, meaning),
            offsetof(InternalInfo, unit), offsetof(InternalInfo, what), offsetof(InternalInfo, when),
-           offsetof(InternalInfo, in_files), static_cast<int>(Remembers::closure));
+           offsetof(InternalInfo, in_files), static_cast<int>(Remembers::parameter));
   hash.add(sizeof(LossInfo), offsetof(LossInfo, name), offsetof(LossInfo, meaning), offsetof(LossInfo, unit));
   hash.add(sizeof(Objection), offsetof(Objection, key), offsetof(Objection, wanted),
            offsetof(Objection, bound));

@@ -42,7 +42,7 @@ void add_material(const BlockMaterial& material, bool moves, std::vector<ReadCur
 void add_contact(const ContactMaterial& contact, const std::string& name, std::vector<ReadCurve>& list) {
   for (std::size_t i = 0; i < contact.numbers.size(); ++i) {
     const PropertyInfo& info = contact.law->properties[i];
-    if (is_apart_from_temperature(info.role)) continue;
+    if (is_apart_from_temperature(info.role) && info.role != Role::hidden_cracks) continue;
     list.push_back({fmt::format("contacts.{}.{}", name, info.key), info.unit.si, contact.numbers[i]});
   }
 }

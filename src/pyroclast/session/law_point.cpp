@@ -60,7 +60,9 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
   std::vector<bool> given(law.properties.size());
   for (const std::string& change : values) set_value(material, law, change, given);
   for (std::size_t i = 0; i < given.size(); ++i)
-    if (!given[i])
+    if (!given[i] && law.properties[i].role == Role::cold_strength)
+      material.numbers[i] = material.of(Role::strength);
+    else if (!given[i])
       throw Error(fmt::format("the contact law \"{}\" needs {}: {}; say for example --set {}='{}'", law.name,
                               law.properties[i].key, law.properties[i].meaning, law.properties[i].key,
                               law.properties[i].unit.example));
@@ -72,7 +74,7 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
     throw Error(
         fmt::format("--set {}: {} of the contact law \"{}\" must be {}", *change, e.key, law.name, e.wanted));
   }
-  return material;
+  return material.without_hidden_cracks();
 }
 
 LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling, double temperature, double hottest)

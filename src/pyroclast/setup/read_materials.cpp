@@ -44,6 +44,17 @@ void require_at_reference(const Section& s, std::string_view key, const Curve& c
           fmt::format("is {:.6g} at {} degC, but must be {} there", value, kReferenceTemperature, expected));
 }
 
+/// Objects to a curve that falls anywhere in the run's temperatures.
+/// \param why  reason why it must not
+void require_no_fall(const Section& s, std::string_view key, const Curve& curve, std::string_view why,
+                     const CurveReader& curves) {
+  const auto [lower, upper] = curves.needed();
+  if (!s.ok() || !curve.holds(curves.needed())) return;
+  if (const auto fall = curve.first_fall(lower, upper))
+    s.error(key, fmt::format("falls from {:.6g} at {:.6g} degC to {:.6g} at {:.6g} degC: {}",
+                             curve(fall->lower), fall->lower, curve(fall->upper), fall->upper, why));
+}
+
 Interval strain_range(const Interval& needed) {
   return {std::min(needed.lower, kStandardRange.lower), std::max(needed.upper, kStandardRange.upper)};
 }
@@ -177,11 +188,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
   const char* const key = s->has("k2") ? "k2" : "strain";
   if (s->ok()) {
     require_at_reference(*s, key, m.strain, 0.0, kNoStrain);
-    const auto [lower, upper] = curves.needed();
-    if (const auto fall = m.strain.first_fall(lower, upper))
-      s->error(key, fmt::format("falls from {:.6g} at {:.6g} degC to {:.6g} at {:.6g} degC: creep never goes "
-                                "back, so B may stay or rise, but not fall",
-                                m.strain(fall->lower), fall->lower, m.strain(fall->upper), fall->upper));
+    require_no_fall(*s, key, m.strain, "creep never goes back, so B may stay or rise, but not fall", curves);
   }
   m.level = s->choice<CreepLevel>(
       "of",
@@ -256,6 +263,10 @@ Curve read_property(const Section& s, const PropertyInfo& info, const std::optio
                     bool& ratio_has_effect, CurveReader& curves) {
   const Curve curve = curves.read(s, info.key, info.unit, info.range, Meaning(info.meaning));
   const bool scales = info.role == Role::strength || info.role == Role::energy;
+  if (info.role == Role::hidden_cracks) {
+    require_at_reference(s, info.key, curve, 0.0, kNoStrain);
+    require_no_fall(s, info.key, curve, "these cracks only grow as the contact gets hotter", curves);
+  }
   if (!ratio || !scales || !curve.is_constant()) return curve;
   ratio_has_effect = true;
   return (curve * *ratio).named(s.path() + "." + info.key);
@@ -296,6 +307,14 @@ bool is_stiffness(const PropertyInfo& info) {
   return info.role == Role::normal_stiffness || info.role == Role::shear_stiffness;
 }
 
+/// Returns a strength at 20 °C that an interface does not state: the contact's first strength.
+Curve cold_strength(const Section& s, const PropertyInfo& info, const ContactMaterial& m) {
+  const Curve& strength = m.of(Role::strength);
+  if (strength.holds(kReferenceTemperature)) return Curve::constant(strength(kReferenceTemperature));
+  s.error(info.key, "must be stated, as the contact has no strength at 20 °C that it could take");
+  return strength;
+}
+
 /// Reads numbers and choices of a law. Those that an interface does not state are taken from `like`, where it
 /// has one.
 /// \param shared  table whose choices hold where the interface states none and has no `like`
@@ -303,12 +322,16 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
                              OnCooling on_cooling, const std::optional<ContactMaterial>& like,
                              CurveReader& curves) {
   const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
-  bool ratio_has_effect = false;
+  bool ratio_has_effect = false, new_strength = false;
   ContactMaterial m = like.value_or(ContactMaterial(law));
   for (std::size_t i = 0; i < law.properties.size(); ++i) {
     const PropertyInfo& info = law.properties[i];
-    if (is_stiffness(info) || (like && !s.has(info.key))) continue;
-    m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
+    const bool states = s.has(info.key);
+    if (info.role == Role::strength) new_strength = new_strength || states;
+    if (info.role == Role::cold_strength && !states && (!like || new_strength))
+      m.numbers[i] = cold_strength(s, info, m);
+    else if (!is_stiffness(info) && (!like || states))
+      m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
   }
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
@@ -455,7 +478,9 @@ class InterfaceReader {
     }
     if (s.has("law"))
       s.error("law", fmt::format("has no meaning beside \"like\": the law is that of {}", *p.like));
-    return other->contact.times(Role::strength, strength).times(Role::energy, energy ? strength : 1.0);
+    return other->contact.times(Role::strength, strength)
+        .times(Role::cold_strength, strength)
+        .times(Role::energy, energy ? strength : 1.0);
   }
 
   const LawTable& read_law(const Section& s) {

@@ -403,11 +403,12 @@ void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
 }  // namespace
 
 Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds,
-                 const LawSources& laws) {
+                 LawSources laws) {
   const Section root = deck.root();
   Setup setup;
   setup.title = root.text("title", "name of the run, for figures and summary");
   const DeckSpace space = read_space(root);
+  laws.compiler.dimension = space.dimension();
   deck.finish_early();  // without a space, every place and every block would be a second error
   const std::vector<RecordParameters> records = read_records(root, space);
   auto read = read_stages(root, kinds, records, space, folder);

@@ -59,7 +59,7 @@ struct Setup {
 /// \param kinds  kinds of stages that the deck may ask for
 /// \param laws   sources of contact laws that are not part of the program
 Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {},
-                 const LawSources& laws = LawSources::of_environment());
+                 LawSources laws = LawSources::of_environment());
 
 /// Throws CodeNotAllowed where the deck names code that may not run.
 void require_code(const Setup& setup);

@@ -23,6 +23,7 @@ class Load : public Stage {
 
   explicit Load(const Keys& keys) : keys_(keys) {}
 
+  const Keys& keys() const { return keys_; }
   const char* kind() const override { return "load"; }
   StageNeeds needs() const override { return {.press = true}; }
   double held_stress() const override { return keys_.stress; }
