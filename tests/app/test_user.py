@@ -680,6 +680,43 @@ def changes(*more: str) -> list[str]:
     return [word for change in (*SMALL, *more) for word in ("--set", change)]
 
 
+class StrengthThatRemembers(UserTest):
+    """cases/stressed_strength.toml: its law is seen in properties, fields and report."""
+
+    CASE = str(CASES / "stressed_strength.toml")
+    HOT = ("stages[2].to=200 degC", "stages[3].to=200 degC", "coupling.exchange_increment=20 K",
+           "stages[4].velocity=4 mm/s", "stages[4].stop_strain=1e-4")
+
+    def test_properties_show_the_cracks_and_the_strength_without_them(self):
+        done = self.pyroclast("plot-properties", self.CASE, "-o", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "out" / "properties.csv", newline="") as file:
+            at = {row["property"]: float(row["value"]) for row in csv.DictReader(file) if row["temperature_degC"] == "250"}
+        self.assertAlmostEqual(at["contacts.mortar_mortar.cracks"], 0.205, places=9)
+        without_load = 2.5e6 * (1.0 - 0.01784 * 2.3**2)
+        self.assertAlmostEqual(at["contacts.mortar_mortar.f_t"] * (1.0 - 0.205), without_load, delta=1.0)
+
+    def test_the_page_tells_what_was_lost_by_the_direction_of_faces(self):
+        words = changes(*self.HOT, "stages[1].level=0.4")
+        done = self.pyroclast("run", self.CASE, *words, "-o", "out", "--no-figures", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.pyroclast("report", "out", "-o", "page.html").returncode, 0)
+        page = (self.folder / "page.html").read_text()
+        self.assertIn("Strength lost to cracks below the mesh", page)
+        lost = dict(re.findall(r"mortar_mortar</t[dh]>\s*<td[^>]*>([a-z ]+)</td>\s*<td[^>]*>([0-9.]+)</td>", page))
+        along, leaning, across = (float(lost[faces]) for faces in ("along y", "leaning", "across y"))
+        self.assertGreater(along, leaning)
+        self.assertGreater(leaning, across)
+        self.assertGreater(along, 2.0 * across)
+        self.assertLess(along, 0.41 / 3)  # A at 200 degC
+
+    def test_check_tells_of_a_strength_that_such_mortar_does_not_give(self):
+        told = "crush this one at 20 degC and take its f_c"
+        self.assertNotIn(told, self.pyroclast("check", self.CASE).stdout)
+        self.assertIn(told, self.pyroclast("check", self.CASE, "--set", "stages[1].f_c=45 MPa").stdout)
+
+
+
 class Heating(UserTest):
     def run_case(self, name: str, *arguments: str) -> dict:
         done = self.pyroclast("run", CASES / f"{name}.toml", *arguments, "--out", name)

@@ -29,10 +29,10 @@ class Compressed:
 
     @property
     def results(self) -> dict[str, Any]:
-        """Results of the last compression that has a modulus: E_GPa, f_c_MPa, strain_at_peak, strain_ic, quasi_static;
-        empty without one.
+        """Results of the last compression that has a modulus, else of the last that has a strength: E_GPa, f_c_MPa,
+        strain_at_peak, strain_ic, quasi_static; empty without one.
         """
-        tests = results_with(self.run, "E_GPa")
+        tests = results_with(self.run, "E_GPa") or results_with(self.run, "f_c_MPa")
         return tests[-1] if tests else {}
 
     @property
