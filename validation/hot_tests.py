@@ -387,6 +387,7 @@ def print_critical_temperatures(rows: list[dict[str, str]], common: dict) -> Non
 
 
 def print_strengths(rows: list[dict[str, str]], common: dict, temperatures: tuple[int, ...]) -> None:
+    """Strengths and moduli over those of the cold specimen, which all concretes of one body share."""
     print("Strength and modulus over those at 20 °C of the same specimen\n")
     lines = []
     for name in ("f_c_MPa", "E_GPa", "strain_at_peak"):
@@ -394,7 +395,7 @@ def print_strengths(rows: list[dict[str, str]], common: dict, temperatures: tupl
             line = [name, kind, level]
             for to in temperatures:
                 hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
-                cold = [of(rows, name, test="cold", seed=s, **common) for s in SEEDS]
+                cold = [of(rows, name, test="cold", seed=s, **common | {"concrete": "as it stands"}) for s in SEEDS]
                 ratios = [h[0] / (1.0 if name == "strain_at_peak" else c[0])
                           for h, c in zip(hot, cold) if len(h) and len(c)]
                 line.append(mean_and_range(np.array(ratios), 4 if name == "strain_at_peak" else 2))
