@@ -85,6 +85,16 @@ TEST(RemembersInARun, AroundTheLawOfOneDamageToo) {
   EXPECT_LT(r.energy_error_over_turnover(), 1e-6);
 }
 
+// Promise: a solid remembers likewise.
+TEST(RemembersInARun, InSpaceToo) {
+  const Finished r(with(remembering(load("stress = \"1.5 MPa\"") + heat("220 degC")), "height = \"120 mm\"",
+                        "height = \"120 mm\"\ndepth = \"60 mm\""));
+  ASSERT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(mean_lost(*r.simulation, false), (1.0 - 1.5 / 2.5) * kCracks, 0.15 * kCracks);
+  EXPECT_GT(mean_lost(*r.simulation, true), 0.9 * kCracks);
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-6);
+}
+
 // Promise: p_close is f_t at 20 °C, of the weaker interface too, unless a deck states another.
 TEST(RemembersInADeck, ClosesAtTheTensileStrengthUnlessStated) {
   const auto closing = [](const std::string& text) {
