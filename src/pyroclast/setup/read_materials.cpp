@@ -307,14 +307,6 @@ bool is_stiffness(const PropertyInfo& info) {
   return info.role == Role::normal_stiffness || info.role == Role::shear_stiffness;
 }
 
-/// Returns a strength at 20 °C that an interface does not state: the contact's first strength.
-Curve cold_strength(const Section& s, const PropertyInfo& info, const ContactMaterial& m) {
-  const Curve& strength = m.of(Role::strength);
-  if (strength.holds(kReferenceTemperature)) return Curve::constant(strength(kReferenceTemperature));
-  s.error(info.key, "must be stated, as the contact has no strength at 20 °C that it could take");
-  return strength;
-}
-
 /// Reads numbers and choices of a law. Those that an interface does not state are taken from `like`, where it
 /// has one.
 /// \param shared  table whose choices hold where the interface states none and has no `like`
@@ -326,12 +318,16 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
   ContactMaterial m = like.value_or(ContactMaterial(law));
   for (std::size_t i = 0; i < law.properties.size(); ++i) {
     const PropertyInfo& info = law.properties[i];
-    const bool states = s.has(info.key);
-    if (info.role == Role::strength) new_strength = new_strength || states;
-    if (info.role == Role::cold_strength && !states && (!like || new_strength))
-      m.numbers[i] = cold_strength(s, info, m);
-    else if (!is_stiffness(info) && (!like || states))
+    if (is_stiffness(info)) continue;
+    const bool may_lack = like || info.role == Role::cold_strength;
+    if (!may_lack || s.has(info.key)) {
       m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
+      new_strength = new_strength || info.role == Role::strength;
+    } else if (info.role == Role::cold_strength && new_strength) {
+      const Curve& strength = m.of(Role::strength);  // the contact's first one
+      m.numbers[i] =
+          Curve::constant(strength.holds(kReferenceTemperature) ? strength(kReferenceTemperature) : 0.0);
+    }
   }
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
