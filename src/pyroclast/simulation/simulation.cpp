@@ -112,12 +112,10 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
       told_(std::move(body.told)),
-      whole_(required(std::move(body.model))),
-      model_(part_of_rank(whole_, ranks, heat, block_materials)),
+      model_(part_of_rank(required(std::move(body.model)), ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
-  if (model_->part && !whole_ && ranks->is_first()) whole_ = body.read_whole();
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!moving) {
     materials_.block_materials = block_materials;
@@ -147,12 +145,13 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 }
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {
-  if (!whole() || !(specimen_ || told_)) return {};
+  if (!specimen_ && !told_) return {};
+  std::string line;
+  if (moves())
+    line = skeleton(*model_, specimen_ ? grains(*specimen_) : told_->grain, materials_.contacts);
+  if (!ranks().is_first()) return {};
   auto lines = specimen_ ? warnings(*specimen_) : told_->warnings;
-  if (!moves()) return lines;
-  const std::vector<int>& grain = specimen_ ? grains(*specimen_) : told_->grain;
-  if (auto line = skeleton(*whole(), grain, materials_.contacts); !line.empty())
-    lines.push_back(std::move(line));
+  if (!line.empty()) lines.push_back(std::move(line));
   return lines;
 }
 
