@@ -395,14 +395,16 @@ std::unique_ptr<Model> BodyFile::model_of(const std::vector<int>& chunks,
     model->block_gridpoints.push_back(model->block_gridpoints.back() + count);
   for (const int count : rows<int>("blocks/zones", chunks))
     model->block_zones.push_back(model->block_zones.back() + count);
-  model->position.resize(of.gridpoint.size());
-  const auto position = rows<double>("gridpoints/position", chunks);
-  for (std::size_t g = 0; g < model->position.size(); ++g)
-    std::copy_n(&position[g * Dim], Dim, model->position[g].c.begin());
-  model->zones.resize(of.zone.size());
-  const auto corners = rows<int>("zones/gridpoints", chunks);
-  for (std::size_t z = 0; z < model->zones.size(); ++z)
-    std::transform(&corners[z * (Dim + 1)], &corners[z * (Dim + 1)] + Dim + 1, model->zones[z].begin(), here);
+  model->position.reserve(of.gridpoint.size());
+  model->zones.reserve(of.zone.size());
+  for (const int c : chunks) {
+    const auto position = rows<double>("gridpoints/position", {c});
+    for (auto p = position.begin(); p != position.end(); p += Dim)
+      std::copy_n(p, Dim, model->position.emplace_back().c.begin());
+    const auto corners = rows<int>("zones/gridpoints", {c});
+    for (auto corner = corners.begin(); corner != corners.end(); corner += Dim + 1)
+      std::transform(corner, corner + Dim + 1, model->zones.emplace_back().begin(), here);
+  }
 
   const auto numbers = rows<int>("faces/numbers", chunks), ends = rows<int>("contacts/gridpoints", chunks);
   const auto frames = rows<double>("faces/frame", chunks), areas = rows<double>("contacts/area", chunks);
@@ -414,6 +416,9 @@ std::unique_ptr<Model> BodyFile::model_of(const std::vector<int>& chunks,
     if (here(ends[2 * first]) >= 0 && here(ends[2 * first + 1]) >= 0)
       faces.push_back({numbers[4 * row], row, first});
   std::ranges::sort(faces, {}, &Read::number);
+  std::size_t contacts = 0;
+  for (const Read& face : faces) contacts += numbers[4 * face.row + 2];
+  model->contacts.reserve(contacts);
   for (const Read& face : faces) {
     const int* const number = &numbers[4 * face.row];
     const double* frame = &frames[(1 + Dim * Dim) * face.row];

@@ -9,6 +9,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
 
@@ -248,44 +249,43 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
                         int axis) {
   const auto volumes = model.zone_volumes();
   const auto blocks = zone_blocks(model);
-  struct ShareOfItem {
-    int number;  // of the zone or contact in the whole
-    double volume, compliance;
-  };
-  std::vector<ShareOfItem> of_zones, of_contacts;
-  for (auto [z, last] = model.zone_chunks().own(); z < last; ++z)
-    if (!model.is_of_bearing(blocks[z])) {
-      const BlockMaterial& material = materials.block_materials[model.block_material[blocks[z]]];
-      of_zones.push_back({z, volumes[z], volumes[z] / material.young(temperature)});
-    }
-  const ContactsByChunk by_chunk = contacts_by_chunk(model);
-  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i) {
-    const int number = by_chunk.contacts[i];
-    const Joint& c = model.joint(number);
-    if (model.is_of_bearing(c)) continue;
-    const ContactMaterial& contact = materials.contacts[c.interface];
-    auto k = contact.at(temperature).stiffness();
-    const double factor = contact.stiffness_between(c.block_size);
-    k.normal *= factor;
-    k.shear *= factor;
-    const Vec<3> n = model.normal(number);
-    const double normal = n[axis] * n[axis];  // traction over stress, along the normal
-    double tangential = 0.0;                  // and along the face, squared
-    for (int other = 0; other < 3; ++other)
-      if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
-    of_contacts.push_back({model.part ? model.part->contact[number] : number, 0.0,
-                           c.area * (normal * normal / k.normal + tangential / k.shear)});
-  }
-  of_zones = model.ranks().collect(of_zones);
-  of_contacts = model.ranks().collect(of_contacts);
-  std::ranges::sort(of_contacts, {}, &ShareOfItem::number);
   double volume = 0.0, compliance = 0.0;
-  for (const auto* shares : {&of_zones, &of_contacts})
-    for (const ShareOfItem& share : *shares) {
-      volume += share.volume;
-      compliance += share.compliance;
-    }
-  return volume / compliance;
+  constexpr int kShares = 2;  // volume, compliance
+  in_slices<double>(
+      Item::zone, model, kShares,
+      [&](int zone, double* share) {
+        if (model.is_of_bearing(blocks[zone])) return;
+        const BlockMaterial& material = materials.block_materials[model.block_material[blocks[zone]]];
+        share[0] = volumes[zone];
+        share[1] = volumes[zone] / material.young(temperature);
+      },
+      [&](std::int64_t, const std::vector<double>& shares) {
+        for (std::size_t i = 0; i < shares.size(); i += kShares) {
+          volume += shares[i];
+          compliance += shares[i + 1];
+        }
+      });
+  in_slices<double>(
+      Item::contact, model, 1,
+      [&](int number, double* share) {
+        const Joint& c = model.joint(number);
+        if (model.is_of_bearing(c)) return;
+        const ContactMaterial& contact = materials.contacts[c.interface];
+        auto k = contact.at(temperature).stiffness();
+        const double factor = contact.stiffness_between(c.block_size);
+        k.normal *= factor;
+        k.shear *= factor;
+        const Vec<3> n = model.normal(number);
+        const double normal = n[axis] * n[axis];  // traction over stress, along the normal
+        double tangential = 0.0;                  // and along the face, squared
+        for (int other = 0; other < 3; ++other)
+          if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
+        *share = c.area * (normal * normal / k.normal + tangential / k.shear);
+      },
+      [&](std::int64_t, const std::vector<double>& shares) {
+        for (const double share : shares) compliance += share;
+      });
+  return model.ranks().of(0, volume / compliance);
 }
 
 double wave_time(const Simulation& simulation) {

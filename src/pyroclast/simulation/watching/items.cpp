@@ -69,7 +69,7 @@ int count_of(Item item, const Model& model) {
 template <class T>
 void in_slices(Item item, const Model& model, int columns, const std::function<void(int item, T* row)>& read,
                const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take) {
-  constexpr int kNumbers = 1 << 18;  // of a slice
+  constexpr int kNumbers = 1 << 16;  // of a slice
   const int of_contact = std::max(1, items_of_contact(item, model.dimension()));
   const int count = count_of(item, model) / of_contact;
   const int width = of_contact * columns, length = std::max(1, kNumbers / width);
