@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include <malloc.h>
 #include <sys/resource.h>
 
 namespace pyroclast {
@@ -25,12 +24,6 @@ double available_memory() {
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     available = std::min(available, static_cast<double>(limit.rlim_cur));
   return available;
-}
-
-void give_back_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
 }
 
 }  // namespace pyroclast

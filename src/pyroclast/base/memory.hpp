@@ -6,7 +6,4 @@ namespace pyroclast {
 /// limit if smaller.
 double available_memory();
 
-/// Gives freed memory back to the system. Without it much stays with the process until it is used again.
-void give_back_memory();
-
 }  // namespace pyroclast

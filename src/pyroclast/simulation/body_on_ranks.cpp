@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pyroclast/base/memory.hpp"
 #include "pyroclast/model/part.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
@@ -59,10 +58,7 @@ std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model> whole, const std::sha
                                     const HeatConditions& heat,
                                     const std::vector<BlockMaterial>& block_materials) {
   if (!ranks || ranks->count() == 1) return whole;
-  auto part = part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
-  whole.reset();
-  give_back_memory();
-  return part;
+  return part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
 }
 
 int HeldByRank::neighbours() const {
