@@ -12,6 +12,7 @@ import subprocess
 import unittest
 
 from in_a_folder import PROGRAM, InAFolder
+from test_checkpoint_values import TRAILER, xxh3
 from test_ranks import MPI, NEEDS_MPI
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -123,6 +124,34 @@ class Body(InAFolder):
                 self.assertIn("body/body.h5: ", said)
                 chunks_named += "is damaged: chunk " in said
         self.assertGreater(chunks_named, 10)
+
+    def put_into_table(self, body: str, entry: str, other: str):
+        """Replaces a text of the table of a body, whose hash is then made anew."""
+        file = self.folder / body / "body.h5"
+        content = file.read_bytes()
+        begin, size, _, end = TRAILER.unpack(content[-TRAILER.size:])
+        table = content[begin:begin + size].replace(entry.encode(), other.encode())
+        self.assertNotEqual(table, content[begin:begin + size])
+        file.write_bytes(content[:begin] + table + TRAILER.pack(begin, len(table), xxh3()(table), end))
+
+    def test_a_body_of_another_format_is_refused_by_it(self):
+        self.specimen(case("starter"), *PRESS)
+        self.put_into_table("body", '"format":1,', '"format":0,')
+        self.assertIn("has format 0, and this program reads format 1; make it anew: pyroclast specimen",
+                      self.refused(case("starter"), *PRESS, "--body", "body", env=CHUNKS))
+
+    @NEEDS_MPI
+    def test_ranks_that_read_other_bodies_are_refused(self):
+        self.specimen(case("starter"), *PRESS)
+        shutil.copytree(self.folder / "body", self.folder / "other")
+        self.put_into_table("other", '"format":1,', '"format":1,"more":0,')
+        run = [PROGRAM, "run", case("starter"), *PRESS, *QUIET, "--mpi", "--out", "refused", "--body"]
+        done = subprocess.run(["mpirun", "-n", "1", *run, "body", ":", "-n", "1", *run, "other"], cwd=self.folder,
+                              env={**MPI, **CHUNKS}, capture_output=True, text=True, timeout=300, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(done.stderr.count("error:"), 1, done.stderr)
+        self.assertIn("rank 1 reads another body than rank 0: all ranks need the same", done.stderr)
+        self.assertFalse((self.folder / "refused/history.csv").exists())
 
     def test_a_folder_without_a_body_is_refused(self):
         self.assertIn("there is no body", self.refused(case("starter"), *PRESS, "--body", "nowhere"))

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
@@ -18,6 +19,7 @@
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/setup/hdf5_reader.hpp"
 #include "results/folder.hpp"
 #include "stages/small_runs.hpp"
 
@@ -83,6 +85,39 @@ TEST_F(Results, AnHdf5FileAppearsOnlyOnceItIsClosed) {
   file.group("/g");
   file.close();
   EXPECT_TRUE(fs::exists(path));
+}
+
+TEST_F(Results, RowsOfADatasetMayComeInAnyOrder) {
+  const fs::path path = folder_ / "a.h5";
+  Hdf5File file(path);
+  file.room<double>("/x", 4, 2);
+  file.room<std::int64_t>("/none", 0);
+  file.rows("/x", 2, std::vector{5.0, 6.0, 7.0, 8.0});
+  file.rows("/x", 0, std::vector{1.0, 2.0, 3.0, 4.0});
+  file.close();
+  const Hdf5Reader reader(path);
+  EXPECT_EQ(reader.numbers("/x"), (std::vector{1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0}));
+  EXPECT_TRUE(reader.integers("/none").empty());
+}
+
+TEST_F(Results, AFullDiskIsAnErrorOfAnHdf5FileAndLeavesNothing) {
+  const fs::path path = folder_ / "a.h5";
+  for (const rlim_t room : {0, 100, 20000}) {  // the last one is enough for all but the rows of the dataset
+    const std::string said = message([&] {
+      const FullDisk full(room);
+      Hdf5File file(path);
+      file.group("/g");
+      if (room == 20000) file.dataset("/g/x", std::vector<double>(3000, 1.5));
+      file.attribute("/g", "about", std::string("x"));
+      file.close();
+    });
+    EXPECT_NE(said.find("a.h5: cannot be written (File too large)"), std::string::npos) << said;
+    EXPECT_TRUE(fs::is_empty(folder_)) << room;
+  }
+  Hdf5File file(path);
+  file.dataset("/x", std::vector{1.0});
+  file.close();
+  EXPECT_TRUE(Hdf5File::is_whole(path));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "counted_ranks.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 #include "ranks_in_threads.hpp"
 #include "small_chunks.hpp"
 #include "stages/small_runs.hpp"
@@ -86,6 +87,51 @@ TEST(HeldByRanks, AreRefusedWhereChunksAreTooFew) {
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "5 ranks cannot share a body of 4 chunks: take 4 ranks at most, or more blocks");
+  }
+}
+
+/// Returns the numbers of items in the order in which slices have them.
+std::vector<double> in_order_of_slices(Item item, const Model& model) {
+  constexpr int kColumns = 20000;  // so that a slice has few items
+  const int ends = item == Item::contact_end ? ends_of_contact(model.dimension()) : 1;
+  std::vector<double> all;
+  in_slices<double>(
+      item, model, kColumns,
+      [&](int i, double* row) {
+        int number = i / ends;
+        if (model.part)
+          number = item == Item::gridpoint ? model.part->gridpoint[number]
+                   : item == Item::zone    ? model.part->zone[number]
+                                           : model.part->contact[number];
+        row[0] = number * ends + i % ends;
+        row[kColumns - 1] = -row[0];
+      },
+      [&](std::int64_t first, const std::vector<double>& rows) {
+        EXPECT_EQ(first, std::ssize(all));
+        for (std::size_t row = 0; row < rows.size(); row += kColumns) {
+          all.push_back(rows[row]);
+          EXPECT_EQ(rows[row + kColumns - 1], -all.back());
+        }
+      });
+  return all;
+}
+
+TEST(Slices, HaveTheOrderOfTheWholeOnAnyRanks) {
+  const SmallChunks chunks(8);
+  auto setup = read(shipped_case("starter"));
+  setup.specimen.blocks.count = 100;
+  const auto whole = make_simulation(setup);
+  for (const Item item : {Item::gridpoint, Item::zone, Item::contact, Item::contact_end}) {
+    SCOPED_TRACE(name_of(item));
+    std::vector<double> ascending;
+    for (int i = 0; i < count_of(item, whole->model()); ++i) ascending.push_back(i);
+    EXPECT_GT(ascending.size(), 100U);
+    EXPECT_EQ(in_order_of_slices(item, whole->model()), ascending);
+    RanksInThreads::run(3, [&](const std::shared_ptr<Ranks>& ranks) {
+      const auto simulation = make_simulation(setup, *whole->specimen(), nullptr, ranks);
+      EXPECT_EQ(in_order_of_slices(item, simulation->model()),
+                ranks->is_first() ? ascending : std::vector<double>());
+    });
   }
 }
 

@@ -10,8 +10,10 @@
 
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/part.hpp"
 #include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
+#include "ranks_in_threads.hpp"
 #include "solid/bodies.hpp"
 
 namespace pyroclast {
@@ -137,6 +139,15 @@ TEST(Skeleton, OfBallsRunsThroughASolid) {
   EXPECT_GT(found.stones, std::ssize(solid.balls) / 2);
   EXPECT_NE(skeleton(joined, solid.grain, contacts_of(joined)).find("of their volume is one cluster of"),
             std::string::npos);
+  auto in_chunks = joined;
+  in_chunks.cut_into_chunks(100);
+  RanksInThreads::run(3, [&](const std::shared_ptr<Ranks>& ranks) {
+    const auto part = part_of(in_chunks, ranks);
+    const Skeleton on_ranks = largest_skeleton(*part, solid.grain, contacts_of(*part));
+    EXPECT_EQ(on_ranks.stones, ranks->is_first() ? found.stones : 0);
+    EXPECT_EQ(on_ranks.volume, ranks->is_first() ? found.volume : 0.0);
+    EXPECT_EQ(on_ranks.of_largest, ranks->is_first() ? found.of_largest : 0.0);
+  });
   const auto parted = make_solid_model(solid, apart());
   EXPECT_EQ(largest_skeleton(parted, solid.grain, contacts_of(parted)).stones, 1);
   EXPECT_EQ(skeleton(parted, solid.grain, contacts_of(parted)), "");

@@ -117,11 +117,11 @@ TEST(Solid, CracksOfAnAreaAreTold) {
   EXPECT_FALSE(solid.run.history().has("tension_mortar_mortar_length_m"));
   const auto fields = fields_of(solid.simulation);
   const auto displacement = std::ranges::find(fields, "displacement", &Field::name);
-  const auto values = values_of<double>({*displacement}, solid.simulation).front();
+  const auto values = values_of({*displacement}, solid.simulation).front();
   EXPECT_EQ(values.size(), 3U * solid.simulation.model().gridpoint_count());
   const auto stress =
       std::ranges::find_if(fields, [](const Field& f) { return f.name == "stress" && f.item == Item::zone; });
-  const auto tensors = values_of<double>({*stress}, solid.simulation).front();
+  const auto tensors = values_of({*stress}, solid.simulation).front();
   EXPECT_NEAR(tensors[6 * 12 + 1], -1e6 * solid.run.history().last("stress_MPa").value(), 2e4);  // of zone 12
 }
 

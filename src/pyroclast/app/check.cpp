@@ -14,7 +14,6 @@
 #include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/material/first_guess.hpp"
-#include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
@@ -245,7 +244,6 @@ int check(const RunOptions& options) {
   print_strength(setup);
   warn_of_strengths(setup, *simulation);
   const std::size_t stages = setup.stages.size();
-  if (setup.has_fields) rehearse_mesh(model);
   const bool has_fields = setup.has_fields;
   const Rehearsal cost = rehearse(std::move(setup), *simulation);
   const Forecast& expected = cost.forecast;

@@ -20,6 +20,7 @@
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/foretold_heat.hpp"
 #include "pyroclast/session/rehearsal.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast::app {
 
@@ -170,9 +171,8 @@ std::string describe_start(Session& session) {
                      describe_own_laws() +
                      (simulation.told() ? simulation.told()->text : describe(*simulation.specimen())) +
                      describe_warnings(simulation.warnings_of_specimen());
-  if (const Model* const whole = simulation.whole())
-    text +=
-        fmt::format("model           {} zones, {} contacts\n", whole->zone_count(), whole->contact_count());
+  text += fmt::format("model           {} zones, {} contacts\n", simulation.model().whole_zone_count(),
+                      count_of(Item::contact, simulation.model()));
   if (const auto* conduction = simulation.field().conduction())
     text += describe(*conduction, simulation.model(), opened.setup.temperatures);
   if (may_leave_range(opened.setup, simulation))

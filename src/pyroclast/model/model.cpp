@@ -158,9 +158,23 @@ int Model::block_of(int gridpoint) const {
   return static_cast<int>(after - block_gridpoints.begin()) - 1;
 }
 
+/// Computes the gradients of a zone and returns its volume, m³. Throws Error where it has none.
+template <int Dim>
+double geometry_of(const ModelOf<Dim>& model, int zone, std::array<Vec<Dim>, Dim>& gradient) {
+  std::array<Vec<Dim>, Dim + 1> x;
+  for (int i = 0; i <= Dim; ++i) x[i] = model.position[model.zones[zone][i]];
+  const double volume = shape_gradients<Dim>(x, gradient) * model.thickness;
+  if (!(volume > 0.0))
+    throw Error(fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", zone, volume));
+  return volume;
+}
+
 template <int Dim>
 std::vector<double> ModelOf<Dim>::zone_volumes() const {
-  return zone_geometry(*this).volume;
+  std::vector<double> volumes(zones.size());
+  std::array<Vec<Dim>, Dim> unused;
+  for (std::size_t z = 0; z < zones.size(); ++z) volumes[z] = geometry_of<Dim>(*this, static_cast<int>(z), unused);
+  return volumes;
 }
 
 template <int Dim>
@@ -168,14 +182,8 @@ ZoneGeometry<Dim> zone_geometry(const ModelOf<Dim>& model) {
   ZoneGeometry<Dim> geometry;
   geometry.gradient.resize(model.zones.size());
   geometry.volume.resize(model.zones.size());
-  for (std::size_t z = 0; z < model.zones.size(); ++z) {
-    std::array<Vec<Dim>, Dim + 1> x;
-    for (int i = 0; i <= Dim; ++i) x[i] = model.position[model.zones[z][i]];
-    geometry.volume[z] = shape_gradients<Dim>(x, geometry.gradient[z]) * model.thickness;
-    if (!(geometry.volume[z] > 0.0))
-      throw Error(
-          fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", z, geometry.volume[z]));
-  }
+  for (std::size_t z = 0; z < model.zones.size(); ++z)
+    geometry.volume[z] = geometry_of<Dim>(model, static_cast<int>(z), geometry.gradient[z]);
   return geometry;
 }
 

@@ -129,11 +129,18 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
   }
   part.chunk_blocks.push_back(part.block_count());
 
+  const auto has_face = [&](int face) {
+    const Contact<Dim>& first = whole.contacts[whole.face_contacts[face]];
+    return here[first.a] >= 0 && here[first.b] >= 0 &&
+           (!nodes.empty() || is_own(first.a) || is_own(first.b));
+  };
+  std::size_t contacts = 0;
+  for (int f = 0; f < whole.face_count(); ++f)
+    if (has_face(f)) contacts += whole.face_contacts[f + 1] - whole.face_contacts[f];
+  part.contacts.reserve(contacts);
   std::vector<int> contact_here(whole.contacts.size(), -1);
   for (int f = 0; f < whole.face_count(); ++f) {
-    const Contact<Dim>& first = whole.contacts[whole.face_contacts[f]];
-    if (here[first.a] < 0 || here[first.b] < 0) continue;
-    if (nodes.empty() && !is_own(first.a) && !is_own(first.b)) continue;
+    if (!has_face(f)) continue;
     const int face = part.face_count();
     for (int c = whole.face_contacts[f]; c < whole.face_contacts[f + 1]; ++c) {
       Contact<Dim> contact = whole.contacts[c];

@@ -110,7 +110,7 @@ py::dict fields(const Simulation& simulation, Item item, const std::vector<std::
   std::erase_if(chosen, [&](const Field& field) {
     return field.item != item || (!names.empty() && std::ranges::find(names, field.name) == names.end());
   });
-  const auto values = values_of<double>(chosen, simulation);
+  const auto values = values_of(chosen, simulation);
   py::dict all;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const py::ssize_t components = components_of(chosen[i].kind, simulation.model().dimension());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <fstream>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -19,9 +18,9 @@
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/model/part.hpp"
+#include "pyroclast/results/file.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
 #include "pyroclast/results/specimen_files.hpp"
-#include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast {
 
@@ -61,7 +60,7 @@ void add_values(const Json& json, const std::string& path, BodyInputs& inputs) {
 
 /// Writer of the arrays of a body, and of their part of the table.
 struct ArrayWriter {
-  Hdf5File file{fs::path()};
+  Hdf5File& file;
   Json arrays = Json::object();
 
   /// \param begins  first row of each chunk, and the number of rows
@@ -79,18 +78,19 @@ struct ArrayWriter {
 };
 
 /// Returns the hash of all bytes but those of arrays: of what HDF5 itself wrote.
-/// \param read  function that reads so many bytes from a place on
-template <class Read>
-std::uint64_t hash_of_rest(const Json& arrays, std::uint64_t size, Read read) {
+/// \param size  end of what HDF5 wrote
+std::uint64_t hash_of_rest(const Json& arrays, std::uint64_t size, const File& file) {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> places{{size, 0}};
   for (const auto& [name, array] : arrays.items())
     if (const std::uint64_t rows = array.at("begins").back(); rows > 0)
-      places.emplace_back(array.at("place"), rows * array.at("row").template get<std::uint64_t>());
+      places.emplace_back(array.at("place"), rows * array.at("row").get<std::uint64_t>());
   std::ranges::sort(places);
   std::string rest;
   std::uint64_t at = 0;
   for (const auto& [place, length] : places) {
-    rest += read(at, place - at);
+    const std::size_t before = rest.size();
+    rest.resize(before + place - at);
+    file.read(at, rest.data() + before, place - at);
     at = place + length;
   }
   return XXH3_64bits(rest.data(), rest.size());
@@ -255,7 +255,8 @@ SpecimenTold told_of(const MadeSpecimen& made, const specimen::SpecimenParameter
 
 void write_body(const fs::path& folder, const BodyInputs& inputs, const SpecimenBody& body) {
   const Model& model = *body.model;
-  ArrayWriter arrays;
+  Hdf5File file(folder / kBodyFile);
+  ArrayWriter arrays{file};
   with_dimension(model, [&](const auto& of_dimension) { add_model(arrays, of_dimension); });
   const SpecimenTold& told = *body.told;
   const std::string text = nlohmann::ordered_json{
@@ -267,7 +268,6 @@ void write_body(const fs::path& folder, const BodyInputs& inputs, const Specimen
   arrays.add("specimen/told", std::vector<std::uint8_t>(text.begin(), text.end()), 0,
              {0, static_cast<int>(text.size())});
   arrays.add("specimen/grain", told.grain, 0, {0, static_cast<int>(told.grain.size())});
-  std::string image = arrays.file.image();
   const SpecimenNumbers& n = body.numbers;
   Json table{{"format", kBodyFormat},
              {"inputs", inputs},
@@ -281,18 +281,17 @@ void write_body(const fs::path& folder, const BodyInputs& inputs, const Specimen
              {"contact_sets", keys_of(model.contact_sets)},
              {"neighbours", neighbours_of_chunks(model)},
              {"numbers", {n.fraction, n.mean_size, n.block_size, n.size, n.dimension}},
-             {"rest", hash_of_rest(arrays.arrays, image.size(),
-                                   [&](std::uint64_t from, std::uint64_t count) {
-                                     return image.substr(from, count);
-                                   })},
              {"arrays", std::move(arrays.arrays)}};
   if (const auto& press = body.between_platens)
     table["press"] = {press->axis, press->height, press->area, press->widths, press->sides};
-  const std::string bytes = table.dump();
-  const BodyTrailer trailer{image.size(), bytes.size(), XXH3_64bits(bytes.data(), bytes.size()), kBodyEnd};
-  image += bytes;
-  image.append(reinterpret_cast<const char*>(&trailer), sizeof(trailer));
-  write_text_file(folder / kBodyFile, image);
+  file.append([&](const File& written) {
+    const std::uint64_t begin = written.size();
+    table["rest"] = hash_of_rest(table["arrays"], begin, written);
+    std::string bytes = table.dump();
+    const BodyTrailer trailer{begin, bytes.size(), XXH3_64bits(bytes.data(), bytes.size()), kBodyEnd};
+    return bytes.append(reinterpret_cast<const char*>(&trailer), sizeof(trailer));
+  });
+  file.close();
 }
 
 BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
@@ -300,21 +299,19 @@ BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
     throw Error(fmt::format("{}: {}; make it anew: pyroclast specimen DECK -o {}", path_.string(), what,
                             shell_path(folder)));
   };
-  std::ifstream file(path_, std::ios::binary);
-  if (!fs::is_regular_file(path_) || !file) fail("there is no body, or it cannot be read");
-  const std::uint64_t size = fs::file_size(path_);
+  if (!fs::is_regular_file(path_)) fail("there is no body");
+  const File file = File::to_read(path_);
+  const std::uint64_t size = file.size();
   std::string begin(kHdf5Begin.size(), '\0');
-  if (!file.read(begin.data(), static_cast<std::streamsize>(begin.size())) || begin != kHdf5Begin)
-    fail("is no body of pyroclast");
+  if (!file.read(0, begin.data(), begin.size()) || begin != kHdf5Begin) fail("is no body of pyroclast");
   BodyTrailer trailer;
-  if (size < sizeof(trailer) || !file.seekg(static_cast<std::streamoff>(size - sizeof(trailer))) ||
-      !file.read(reinterpret_cast<char*>(&trailer), sizeof(trailer)) || trailer.end != kBodyEnd ||
+  if (size < sizeof(trailer) || !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)) ||
+      trailer.end != kBodyEnd ||
       trailer.table_bytes > size || trailer.table_begin > size ||
       trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
     fail("is cut short, or damaged at its end");
   std::string bytes(trailer.table_bytes, '\0');
-  file.seekg(static_cast<std::streamoff>(trailer.table_begin));
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ||
+  if (!file.read(trailer.table_begin, bytes.data(), bytes.size()) ||
       XXH3_64bits(bytes.data(), bytes.size()) != trailer.table_hash)
     fail("is damaged: its table has another hash");
   table_ = Json::parse(bytes, nullptr, false);
@@ -322,13 +319,7 @@ BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
     fail(fmt::format("has format {}, and this program reads format {}",
                      table_.is_object() ? table_.value("format", 0) : 0, kBodyFormat));
   hash_ = fmt::format("{:016x}", trailer.table_hash);
-  const auto read = [&](std::uint64_t from, std::uint64_t count) {
-    std::string part(count, '\0');
-    file.seekg(static_cast<std::streamoff>(from));
-    file.read(part.data(), static_cast<std::streamsize>(count));
-    return part;
-  };
-  if (hash_of_rest(table_.at("arrays"), trailer.table_begin, read) != table_.at("rest").get<std::uint64_t>())
+  if (hash_of_rest(table_.at("arrays"), trailer.table_begin, file) != table_.at("rest").get<std::uint64_t>())
     fail("is damaged: what HDF5 keeps of its arrays differs from the bytes that were written");
 }
 
@@ -353,15 +344,13 @@ template <class T>
 std::vector<T> BodyFile::rows(const std::string& name, const std::vector<int>& chunks) const {
   const Json& array = table_.at("arrays").at(name);
   const std::uint64_t place = array.at("place"), row = array.at("row");
-  std::ifstream file(path_, std::ios::binary);
+  const File file = File::to_read(path_);
   std::vector<T> values;
   for (const int chunk : chunks) {
     const std::uint64_t begin = array.at("begins").at(chunk), end = array.at("begins").at(chunk + 1);
     const std::size_t before = values.size(), bytes = (end - begin) * row;
     values.resize(before + bytes / sizeof(T));
-    file.seekg(static_cast<std::streamoff>(place + begin * row));
-    file.read(reinterpret_cast<char*>(values.data() + before), static_cast<std::streamsize>(bytes));
-    if (!file ||
+    if (!file.read(place + begin * row, values.data() + before, bytes) ||
         XXH3_64bits(values.data() + before, bytes) != array.at("hashes").at(chunk).get<std::uint64_t>())
       throw Error(
           fmt::format("{}: is damaged: chunk {} of \"{}\" differs from the bytes that were written; make it "
@@ -406,14 +395,16 @@ std::unique_ptr<Model> BodyFile::model_of(const std::vector<int>& chunks,
     model->block_gridpoints.push_back(model->block_gridpoints.back() + count);
   for (const int count : rows<int>("blocks/zones", chunks))
     model->block_zones.push_back(model->block_zones.back() + count);
-  model->position.resize(of.gridpoint.size());
-  const auto position = rows<double>("gridpoints/position", chunks);
-  for (std::size_t g = 0; g < model->position.size(); ++g)
-    std::copy_n(&position[g * Dim], Dim, model->position[g].c.begin());
-  model->zones.resize(of.zone.size());
-  const auto corners = rows<int>("zones/gridpoints", chunks);
-  for (std::size_t z = 0; z < model->zones.size(); ++z)
-    std::transform(&corners[z * (Dim + 1)], &corners[z * (Dim + 1)] + Dim + 1, model->zones[z].begin(), here);
+  model->position.reserve(of.gridpoint.size());
+  model->zones.reserve(of.zone.size());
+  for (const int c : chunks) {
+    const auto position = rows<double>("gridpoints/position", {c});
+    for (auto p = position.begin(); p != position.end(); p += Dim)
+      std::copy_n(p, Dim, model->position.emplace_back().c.begin());
+    const auto corners = rows<int>("zones/gridpoints", {c});
+    for (auto corner = corners.begin(); corner != corners.end(); corner += Dim + 1)
+      std::transform(corner, corner + Dim + 1, model->zones.emplace_back().begin(), here);
+  }
 
   const auto numbers = rows<int>("faces/numbers", chunks), ends = rows<int>("contacts/gridpoints", chunks);
   const auto frames = rows<double>("faces/frame", chunks), areas = rows<double>("contacts/area", chunks);
@@ -425,6 +416,9 @@ std::unique_ptr<Model> BodyFile::model_of(const std::vector<int>& chunks,
     if (here(ends[2 * first]) >= 0 && here(ends[2 * first + 1]) >= 0)
       faces.push_back({numbers[4 * row], row, first});
   std::ranges::sort(faces, {}, &Read::number);
+  std::size_t contacts = 0;
+  for (const Read& face : faces) contacts += numbers[4 * face.row + 2];
+  model->contacts.reserve(contacts);
   for (const Read& face : faces) {
     const int* const number = &numbers[4 * face.row];
     const double* frame = &frames[(1 + Dim * Dim) * face.row];
@@ -478,7 +472,6 @@ SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks) const {
         for (const int other : table_.at("neighbours").at(c)) needed.insert(other);
       }
     body.model = model({needed.begin(), needed.end()}, ranks);
-    body.read_whole = [this, all] { return model(all, nullptr); };
   }
   const Json& numbers = table_.at("numbers");
   body.numbers = {numbers.at(0), numbers.at(1), numbers.at(2), numbers.at(3), numbers.at(4)};
@@ -493,8 +486,8 @@ SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks) const {
     json.at("warnings").get_to(told.warnings);
     json.at("facts").get_to(told.facts);
     json.at("files").get_to(told.files);
-    told.grain = rows<int>("specimen/grain", {0});
   }
+  told.grain = rows<int>("specimen/grain", {0});
   body.told = std::make_shared<const SpecimenTold>(std::move(told));
   return body;
 }

@@ -39,8 +39,7 @@ class BodyFile {
   const std::string& hash() const { return hash_; }
   /// Throws Error, naming what differs, where the body is not of these inputs.
   void require(const BodyInputs& inputs) const;
-  /// Reads the body: all of it, for one of several ranks its own chunks and their neighbours alone. The
-  /// rank's body can read the whole, where this object is still there.
+  /// Reads the body: all of it, for one of several ranks its own chunks and their neighbours alone.
   SpecimenBody read(const std::shared_ptr<Ranks>& ranks) const;
 
  private:

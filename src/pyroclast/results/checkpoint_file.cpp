@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <cstring>
 #include <exception>
 #include <limits>
 #include <new>
@@ -13,13 +11,12 @@
 #include <span>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/results/file.hpp"
 #include "pyroclast/results/publish.hpp"
 #include "pyroclast/version.hpp"
 
@@ -63,71 +60,6 @@ void read_entry(const Json& json, Whole& value) {
     throw Json::out_of_range::create(401, "a number of the table is too large", nullptr);
   value = static_cast<Whole>(number);
 }
-
-/// File by its descriptor.
-class File {
- public:
-  static File to_read(const std::filesystem::path& path) {
-    return {path, open(path.c_str(), O_RDONLY | O_CLOEXEC), "cannot be read"};
-  }
-  static File to_write(const std::filesystem::path& path) {
-    return {path, open_aside(path), "cannot be written"};
-  }
-  /// Opens a file that the first rank has made.
-  static File of_other(const std::filesystem::path& path) {
-    return {
-        path, open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC),
-        "cannot be opened by this rank, though the first one has made it: all ranks need one file system"};
-  }
-  ~File() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  File(File&& other) noexcept : path_(other.path_), descriptor_(std::exchange(other.descriptor_, -1)) {}
-  File& operator=(File&&) = delete;
-
-  void write(std::uint64_t from, const void* data, std::uint64_t bytes) {
-    for (std::span rest(static_cast<const char*>(data), bytes); !rest.empty();) {
-      const ssize_t done =
-          pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(from + bytes - rest.size()));
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) fail("cannot be written");
-      rest = rest.subspan(static_cast<std::size_t>(done));
-    }
-  }
-  /// Waits until all is on disk.
-  void sync() {
-    if (fsync(descriptor_) != 0) fail("cannot be written");
-  }
-  /// Reads bytes from a place on; returns false where the file ends before.
-  bool read(std::uint64_t from, void* data, std::uint64_t bytes) const {
-    for (std::span rest(static_cast<char*>(data), bytes); !rest.empty();) {
-      const ssize_t done =
-          pread(descriptor_, rest.data(), rest.size(), static_cast<off_t>(from + bytes - rest.size()));
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) fail("cannot be read");
-      if (done == 0) return false;
-      rest = rest.subspan(static_cast<std::size_t>(done));
-    }
-    return true;
-  }
-  std::uint64_t size() const {
-    const off_t end = lseek(descriptor_, 0, SEEK_END);
-    if (end < 0) fail("cannot be read");
-    return static_cast<std::uint64_t>(end);
-  }
-
- private:
-  File(const std::filesystem::path& path, int descriptor, const char* why)
-      : path_(path), descriptor_(descriptor) {
-    if (descriptor_ < 0) fail(why);
-  }
-  [[noreturn]] void fail(const char* what) const {
-    throw Error(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
-  }
-
-  const std::filesystem::path& path_;
-  int descriptor_;
-};
 
 class CheckpointWriter : public StateVisitor {
  public:
@@ -331,7 +263,7 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, const Checkpoi
       failure = std::current_exception();
     }
   };
-  if (ranks.is_first()) attempt([&] { file.emplace(File::to_write(partial)); });
+  if (ranks.is_first()) attempt([&] { file.emplace(File::to_write(partial, path)); });
   ranks.any(true);  // now the file is there
   if (!ranks.is_first()) attempt([&] { file.emplace(File::of_other(partial)); });
   CheckpointWriter writer([&](std::uint64_t from, const void* data,

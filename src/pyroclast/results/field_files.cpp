@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -28,38 +27,25 @@ std::string path_of(const FieldInfo& field) {
                      product_of(field.unit));
 }
 
-/// Returns vectors of the plane as vectors of space.
-std::vector<float> vectors_in_space(const std::vector<float>& plane) {
-  std::vector<float> space;
-  space.reserve(plane.size() / 2 * 3);
-  for (std::size_t i = 0; i < plane.size(); i += 2) space.insert(space.end(), {plane[i], plane[i + 1], 0.0F});
-  return space;
-}
-
-void write_field(Hdf5File& file, const FieldInfo& field, const std::vector<float>& values, int dimension) {
-  const int components = components_of(field.kind, dimension);
-  if (components == 1)
-    file.dataset(path_of(field), values);
-  else if (components == 2)
-    file.dataset(path_of(field), vectors_in_space(values), 3);
-  else
-    file.dataset(path_of(field), values, components);
-}
-
-/// Writes the fields of some items, the fields of one item together.
-void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer_list<Item> items) {
+/// Writes the fields of an item.
+void write_fields(Hdf5File& file, const Simulation& simulation, Item item) {
   auto fields = fields_of(simulation);
-  std::erase_if(fields, [&](const Field& field) {
-    return !field.in_files || std::ranges::find(items, field.item) == items.end();
+  std::erase_if(fields, [&](const Field& field) { return !field.in_files || field.item != item; });
+  const int dimension = simulation.model().dimension(), count = count_of(item, simulation.model());
+  const auto components = [&](const Field& field) { return components_of(field.kind, dimension); };
+  // vectors of the plane are written as vectors of space
+  const auto padding = [&](const Field& field) { return components(field) == 2 ? 1 : 0; };
+  for (const Field& field : fields)
+    file.room<float>(path_of(field), count, components(field) == 1 ? 0 : components(field) + padding(field));
+  const int width = width_of(fields, simulation);
+  values_in_slices<float>(fields, simulation, [&](std::int64_t first, const std::vector<float>& rows) {
+    int column = 0;
+    for (const Field& field : fields) {
+      file.rows(path_of(field), first,
+                columns_of<float>(rows, width, column, components(field), padding(field)));
+      column += components(field);
+    }
   });
-  for (auto first = fields.begin(); first != fields.end();) {
-    const auto last =
-        std::find_if(first, fields.end(), [&](const Field& f) { return f.item != first->item; });
-    const auto values = values_of<float>({first, last}, simulation);
-    for (auto field = first; field != last; ++field)
-      write_field(file, *field, values[field - first], simulation.model().dimension());
-    first = last;
-  }
 }
 
 /// Columns of the history that frames.csv has, where the history has them.
@@ -120,7 +106,7 @@ FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& si
   if (simulation.moves())
     contacts_.emplace(folder, MeshPart::contacts, simulation.model().dimension(),
                       frame_times(history, frames));
-  if (!folder.empty()) write_mesh(folder, *simulation.whole());
+  write_mesh(folder, simulation.model());
 }
 
 std::vector<std::string> FieldFiles::lost() const {
@@ -135,11 +121,11 @@ void FieldFiles::write(const Simulation& simulation, const History& history, Fra
   with_this.rows.push_back(row);
   const auto times = frame_times(history, with_this);
   blocks_.write(times, [&](Hdf5File& file) {
-    write_fields(file, simulation, {Item::gridpoint, Item::zone});
+    for (const Item item : {Item::gridpoint, Item::zone}) write_fields(file, simulation, item);
   });
   if (contacts_)
     contacts_->write(times, [&](Hdf5File& file) {
-      write_fields(file, simulation, {Item::contact_end, Item::contact});
+      for (const Item item : {Item::contact_end, Item::contact}) write_fields(file, simulation, item);
     });
   frames_.line(frame_line(history, columns_, frames.rows.size(), row));
   frames.rows.push_back(row);

@@ -1,6 +1,6 @@
 #include "pyroclast/results/frame_series.hpp"
 
-#include <iterator>
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +11,7 @@
 
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/hdf5_reader.hpp"
-#include "pyroclast/simulation/watching/fields.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
 
@@ -43,21 +43,38 @@ std::pair<std::string, std::string> names_of(MeshPart part) {
   return {"interface_names", "/contacts/interface_names"};
 }
 
-void write_grid(Hdf5File& file, const std::string& group, const std::vector<double>& points,
-                const std::vector<std::int64_t>& connectivity, int corners, std::uint8_t type) {
-  const auto cells = static_cast<std::int64_t>(connectivity.size()) / corners;
-  std::vector<std::int64_t> offsets;
-  for (std::int64_t i = 0; i <= cells; ++i) offsets.push_back(i * corners);
+/// Writes a dataset of one number a row, which follows from the number of the row.
+template <class Number, class Of>
+void write_sequence(Hdf5File& file, const std::string& name, std::int64_t rows, Of of) {
+  constexpr std::int64_t kRows = 1 << 18;  // at a time
+  file.room<Number>(name, rows);
+  for (std::int64_t first = 0; first < rows; first += kRows) {
+    std::vector<Number> numbers;
+    for (std::int64_t row = first; row < std::min(rows, first + kRows); ++row) numbers.push_back(of(row));
+    file.rows(name, first, numbers);
+  }
+}
+
+/// Makes room for a grid, and writes what follows from the numbers of its points and cells.
+void begin_grid(Hdf5File& file, const std::string& group, std::int64_t points, std::int64_t cells,
+                int corners, std::uint8_t type) {
   file.group(group);
-  file.dataset(group + "/Points", points, 3);
-  file.dataset(group + "/Connectivity", connectivity);
-  file.dataset(group + "/Offsets", offsets);
-  file.dataset(group + "/Types", std::vector<std::uint8_t>(static_cast<std::size_t>(cells), type));
-  file.dataset(group + "/NumberOfPoints",
-               std::vector<std::int64_t>{static_cast<std::int64_t>(points.size()) / 3});
-  file.dataset(group + "/NumberOfCells", std::vector<std::int64_t>{cells});
-  file.dataset(group + "/NumberOfConnectivityIds",
-               std::vector<std::int64_t>{static_cast<std::int64_t>(connectivity.size())});
+  file.room<double>(group + "/Points", points, 3);
+  write_sequence<std::int64_t>(file, group + "/Offsets", cells + 1,
+                               [&](std::int64_t cell) { return cell * corners; });
+  write_sequence<std::uint8_t>(file, group + "/Types", cells, [&](std::int64_t) { return type; });
+  file.dataset(group + "/NumberOfPoints", std::vector{points});
+  file.dataset(group + "/NumberOfCells", std::vector{cells});
+  file.dataset(group + "/NumberOfConnectivityIds", std::vector{cells * corners});
+}
+
+/// Writes the points of a grid.
+/// \param place  returns the place of an item, m
+template <class Place>
+void write_points(Hdf5File& file, const std::string& group, Item item, const Model& model, Place place) {
+  in_slices<double>(
+      item, model, 3, [&](int i, double* row) { std::ranges::copy(place(i).c, row); },
+      [&](std::int64_t first, const std::vector<double>& rows) { file.rows(group + "/Points", first, rows); });
 }
 
 void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
@@ -79,67 +96,70 @@ void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
                        fmt::format("/{}/{}", grid, field.name));
 }
 
-void append(std::vector<double>& values, const Vec<3>& v) {
-  values.insert(values.end(), v.c.begin(), v.c.end());
-}
-
 void write_blocks(Hdf5File& file, const Model& model) {
-  std::vector<double> points;
-  for (int g = 0; g < model.gridpoint_count(); ++g) append(points, model.place(g));
-  std::vector<std::int64_t> connectivity;
-  std::vector<std::int32_t> block;
-  std::vector<std::uint8_t> material, bearing;
-  for (int z = 0; z < model.zone_count(); ++z) {
-    const auto zone = model.gridpoints_of_zone(z);
-    connectivity.insert(connectivity.end(), zone.begin(), zone.end());
-  }
-  for (int b : zone_blocks(model)) {
-    block.push_back(b);
-    material.push_back(static_cast<std::uint8_t>(model.block_material[b]));
-    bearing.push_back(model.is_of_bearing(b) ? 1 : 0);
-  }
-  write_grid(file, "/blocks", points, connectivity, model.dimension() + 1,
+  const int corners = model.dimension() + 1, zones = count_of(Item::zone, model);
+  begin_grid(file, "/blocks", count_of(Item::gridpoint, model), zones, corners,
              model.dimension() == 2 ? kVtkTriangle : kVtkTetrahedron);
-  file.dataset("/blocks/block", block);
-  file.dataset("/blocks/material", material);
-  file.dataset("/blocks/bearing", bearing);
+  write_points(file, "/blocks", Item::gridpoint, model, [&](int gridpoint) { return model.place(gridpoint); });
+  file.room<std::int64_t>("/blocks/Connectivity", std::int64_t{zones} * corners);
+  file.room<std::int32_t>("/blocks/block", zones);
+  file.room<std::uint8_t>("/blocks/material", zones);
+  file.room<std::uint8_t>("/blocks/bearing", zones);
   file.dataset(names_of(MeshPart::blocks).second, model.material_names);
+  const std::vector<int> block_of = zone_blocks(model);
+  const int width = corners + 3;
+  in_slices<double>(
+      Item::zone, model, width,
+      [&](int zone, double* row) {
+        for (const int g : model.gridpoints_of_zone(zone)) *row++ = model.part ? model.part->gridpoint[g] : g;
+        const int block = block_of[zone];
+        *row++ = model.part ? model.part->block[block] : block;
+        *row++ = model.block_material[block];
+        *row++ = model.is_of_bearing(block) ? 1 : 0;
+      },
+      [&](std::int64_t first, const std::vector<double>& rows) {
+        file.rows("/blocks/Connectivity", first * corners, columns_of<std::int64_t>(rows, width, 0, corners));
+        file.rows("/blocks/block", first, columns_of<std::int32_t>(rows, width, corners));
+        file.rows("/blocks/material", first, columns_of<std::uint8_t>(rows, width, corners + 1));
+        file.rows("/blocks/bearing", first, columns_of<std::uint8_t>(rows, width, corners + 2));
+      });
 }
 
 void write_contacts(Hdf5File& file, const Model& model) {
-  std::vector<double> points;
-  std::vector<std::int64_t> connectivity;
-  std::vector<std::uint8_t> interface, bearing;
-  std::vector<double> extent;
-  const int ends = ends_of_contact(model.dimension());
-  for (int i = 0; i < model.contact_count(); ++i) {
-    const Joint& c = model.joint(i);
-    for (int end = 0; end < ends; ++end) {
-      append(points, at_end(model, i, end, [&](int contact) { return model.place(model.joint(contact).a); }));
-      connectivity.push_back(static_cast<std::int64_t>(ends) * i + end);
-    }
-    interface.push_back(static_cast<std::uint8_t>(c.interface));
-    bearing.push_back(model.is_of_bearing(c) ? 1 : 0);
-    extent.push_back(model.extent(i));
-  }
-  write_grid(file, "/contacts", points, connectivity, ends, model.dimension() == 2 ? kVtkLine : kVtkQuad);
-  file.dataset("/contacts/interface", interface);
+  const bool is_plane = model.dimension() == 2;
+  const int ends = ends_of_contact(model.dimension()), contacts = count_of(Item::contact, model);
+  const std::int64_t points = std::int64_t{ends} * contacts;
+  begin_grid(file, "/contacts", points, contacts, ends, is_plane ? kVtkLine : kVtkQuad);
+  write_points(file, "/contacts", Item::contact_end, model, [&](int end) {
+    return at_end(model, end / ends, end % ends,
+                  [&](int contact) { return model.place(model.joint(contact).a); });
+  });
+  write_sequence<std::int64_t>(file, "/contacts/Connectivity", points, [](std::int64_t end) { return end; });
+  const char* const extent = is_plane ? "/contacts/length" : "/contacts/area";
+  file.room<std::uint8_t>("/contacts/interface", contacts);
   file.dataset(names_of(MeshPart::contacts).second, model.interface_names);
-  file.dataset("/contacts/bearing", bearing);
-  file.dataset(model.dimension() == 2 ? "/contacts/length" : "/contacts/area", extent);
+  file.room<std::uint8_t>("/contacts/bearing", contacts);
+  file.room<double>(extent, contacts);
+  constexpr int kWidth = 3;
+  in_slices<double>(
+      Item::contact, model, kWidth,
+      [&](int contact, double* row) {
+        const Joint& c = model.joint(contact);
+        *row++ = c.interface;
+        *row++ = model.is_of_bearing(c) ? 1 : 0;
+        *row++ = model.extent(contact);
+      },
+      [&](std::int64_t first, const std::vector<double>& rows) {
+        file.rows("/contacts/interface", first, columns_of<std::uint8_t>(rows, kWidth, 0));
+        file.rows("/contacts/bearing", first, columns_of<std::uint8_t>(rows, kWidth, 1));
+        file.rows(extent, first, columns_of<double>(rows, kWidth, 2));
+      });
 }
 
 }  // namespace
 
 void write_mesh(const std::filesystem::path& folder, const Model& model) {
-  Hdf5File file(folder / kMeshFile);
-  write_blocks(file, model);
-  write_contacts(file, model);
-  file.close();
-}
-
-void rehearse_mesh(const Model& model) {
-  Hdf5File file("");
+  Hdf5File file(file_in(folder, kMeshFile));
   write_blocks(file, model);
   write_contacts(file, model);
   file.close();

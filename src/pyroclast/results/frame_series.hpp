@@ -15,10 +15,24 @@ namespace pyroclast {
 enum class MeshPart : std::uint8_t { blocks, contacts };
 
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles or tetrahedra
-/// with block and material, contact points as cells, see ends_of_contact, with interface and length or area.
+/// with block and material, contact points as cells, see ends_of_contact, with interface and length or area. A
+/// collective. \param folder  empty on ranks but the first
 void write_mesh(const std::filesystem::path& folder, const Model& model);
-/// Takes the memory that writing the mesh takes, and writes nothing: a run needs most memory there.
-void rehearse_mesh(const Model& model);
+
+/// Returns some columns of rows, row by row.
+/// \param width    numbers of a row
+/// \param padding  zeros behind these columns
+template <class To, class From>
+std::vector<To> columns_of(const std::vector<From>& rows, int width, int first, int count = 1,
+                           int padding = 0) {
+  std::vector<To> columns;
+  columns.reserve(rows.size() / static_cast<std::size_t>(width) * static_cast<std::size_t>(count + padding));
+  for (auto row = rows.begin(); row != rows.end(); row += width) {
+    for (int column = first; column < first + count; ++column) columns.push_back(static_cast<To>(row[column]));
+    columns.insert(columns.end(), static_cast<std::size_t>(padding), To{});
+  }
+  return columns;
+}
 
 /// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read. Each frame k is a file
 /// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it; `blocks.hdf.series` or

@@ -49,7 +49,7 @@ void require_one_name(const std::filesystem::path& path, const struct stat& ther
 int open_aside(const std::filesystem::path& partial) {
   constexpr mode_t kMode = 0666;  // as far as the user's mask allows
   unlink(partial.c_str());
-  return open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
+  return open(partial.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
 }
 
 bool write_all(int descriptor, const void* data, std::size_t bytes) {

@@ -39,16 +39,18 @@ std::filesystem::path written_folder(const std::filesystem::path& folder, const 
   return choices.is_first() ? folder : std::filesystem::path();
 }
 
-/// Returns the inputs. Throws Error where ranks run different programs, decks or files that a deck names.
+/// Returns the inputs. Throws Error where ranks run different programs, decks, files that a deck names or
+/// bodies.
 Inputs same_on_all_ranks(const DeckOfRun& opened, Inputs inputs) {
   const auto& ranks = opened.choices.ranks;
   if (!ranks) return inputs;
   struct Identity {
-    std::array<char, 80> program{}, inputs{};
+    std::array<char, 80> program{}, inputs{}, body{};
   };
   Identity own;
   fmt::format_to_n(own.program.data(), own.program.size() - 1, "{} {}", kVersion, kCommit);
   inputs.hash().copy(own.inputs.data(), own.inputs.size() - 1);
+  if (opened.body) opened.body->hash().copy(own.body.data(), own.body.size() - 1);
   const auto all = ranks->collect(std::vector{own});
   for (std::size_t rank = 1; rank < all.size(); ++rank) {
     if (all[rank].program != all[0].program)
@@ -58,6 +60,8 @@ Inputs same_on_all_ranks(const DeckOfRun& opened, Inputs inputs) {
       throw Error(fmt::format(
           "rank {} reads another deck than rank 0, or other files that a deck names: all ranks need the same",
           rank));
+    if (all[rank].body != all[0].body)
+      throw Error(fmt::format("rank {} reads another body than rank 0: all ranks need the same", rank));
   }
   return inputs;
 }

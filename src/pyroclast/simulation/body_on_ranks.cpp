@@ -54,13 +54,11 @@ double message_bytes(const std::map<int, int>& messages, int numbers_of_an_item)
 
 }  // namespace
 
-std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model>& whole, const std::shared_ptr<Ranks>& ranks,
+std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model> whole, const std::shared_ptr<Ranks>& ranks,
                                     const HeatConditions& heat,
                                     const std::vector<BlockMaterial>& block_materials) {
-  if (!ranks || ranks->count() == 1) return std::move(whole);
-  auto part = part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
-  if (whole->part || !ranks->is_first()) whole.reset();
-  return part;
+  if (!ranks || ranks->count() == 1) return whole;
+  return part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
 }
 
 int HeldByRank::neighbours() const {

@@ -13,9 +13,8 @@ namespace pyroclast {
 class Simulation;
 
 /// Returns the part of a body that this rank holds; the whole body where there is one rank.
-/// \param whole  whole body, left on the first of several ranks alone; or, left on none, the chunks that this
-///               rank needs of it, see part_of
-std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model>& whole, const std::shared_ptr<Ranks>& ranks,
+/// \param whole  whole body, or the chunks that this rank needs of it, see part_of
+std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model> whole, const std::shared_ptr<Ranks>& ranks,
                                     const HeatConditions& heat,
                                     const std::vector<BlockMaterial>& block_materials);
 

@@ -9,6 +9,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
 
@@ -112,12 +113,10 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
       told_(std::move(body.told)),
-      whole_(required(std::move(body.model))),
-      model_(part_of_rank(whole_, ranks, heat, block_materials)),
+      model_(part_of_rank(required(std::move(body.model)), ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
-  if (model_->part && !whole_ && ranks->is_first()) whole_ = body.read_whole();
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!moving) {
     materials_.block_materials = block_materials;
@@ -147,12 +146,13 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 }
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {
-  if (!whole() || !(specimen_ || told_)) return {};
+  if (!specimen_ && !told_) return {};
+  std::string line;
+  if (moves())
+    line = skeleton(*model_, specimen_ ? grains(*specimen_) : told_->grain, materials_.contacts);
+  if (!ranks().is_first()) return {};
   auto lines = specimen_ ? warnings(*specimen_) : told_->warnings;
-  if (!moves()) return lines;
-  const std::vector<int>& grain = specimen_ ? grains(*specimen_) : told_->grain;
-  if (auto line = skeleton(*whole(), grain, materials_.contacts); !line.empty())
-    lines.push_back(std::move(line));
+  if (!line.empty()) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -249,44 +249,43 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
                         int axis) {
   const auto volumes = model.zone_volumes();
   const auto blocks = zone_blocks(model);
-  struct ShareOfItem {
-    int number;  // of the zone or contact in the whole
-    double volume, compliance;
-  };
-  std::vector<ShareOfItem> of_zones, of_contacts;
-  for (auto [z, last] = model.zone_chunks().own(); z < last; ++z)
-    if (!model.is_of_bearing(blocks[z])) {
-      const BlockMaterial& material = materials.block_materials[model.block_material[blocks[z]]];
-      of_zones.push_back({z, volumes[z], volumes[z] / material.young(temperature)});
-    }
-  const ContactsByChunk by_chunk = contacts_by_chunk(model);
-  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i) {
-    const int number = by_chunk.contacts[i];
-    const Joint& c = model.joint(number);
-    if (model.is_of_bearing(c)) continue;
-    const ContactMaterial& contact = materials.contacts[c.interface];
-    auto k = contact.at(temperature).stiffness();
-    const double factor = contact.stiffness_between(c.block_size);
-    k.normal *= factor;
-    k.shear *= factor;
-    const Vec<3> n = model.normal(number);
-    const double normal = n[axis] * n[axis];  // traction over stress, along the normal
-    double tangential = 0.0;                  // and along the face, squared
-    for (int other = 0; other < 3; ++other)
-      if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
-    of_contacts.push_back({model.part ? model.part->contact[number] : number, 0.0,
-                           c.area * (normal * normal / k.normal + tangential / k.shear)});
-  }
-  of_zones = model.ranks().collect(of_zones);
-  of_contacts = model.ranks().collect(of_contacts);
-  std::ranges::sort(of_contacts, {}, &ShareOfItem::number);
   double volume = 0.0, compliance = 0.0;
-  for (const auto* shares : {&of_zones, &of_contacts})
-    for (const ShareOfItem& share : *shares) {
-      volume += share.volume;
-      compliance += share.compliance;
-    }
-  return volume / compliance;
+  constexpr int kShares = 2;  // volume, compliance
+  in_slices<double>(
+      Item::zone, model, kShares,
+      [&](int zone, double* share) {
+        if (model.is_of_bearing(blocks[zone])) return;
+        const BlockMaterial& material = materials.block_materials[model.block_material[blocks[zone]]];
+        share[0] = volumes[zone];
+        share[1] = volumes[zone] / material.young(temperature);
+      },
+      [&](std::int64_t, const std::vector<double>& shares) {
+        for (std::size_t i = 0; i < shares.size(); i += kShares) {
+          volume += shares[i];
+          compliance += shares[i + 1];
+        }
+      });
+  in_slices<double>(
+      Item::contact, model, 1,
+      [&](int number, double* share) {
+        const Joint& c = model.joint(number);
+        if (model.is_of_bearing(c)) return;
+        const ContactMaterial& contact = materials.contacts[c.interface];
+        auto k = contact.at(temperature).stiffness();
+        const double factor = contact.stiffness_between(c.block_size);
+        k.normal *= factor;
+        k.shear *= factor;
+        const Vec<3> n = model.normal(number);
+        const double normal = n[axis] * n[axis];  // traction over stress, along the normal
+        double tangential = 0.0;                  // and along the face, squared
+        for (int other = 0; other < 3; ++other)
+          if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
+        *share = c.area * (normal * normal / k.normal + tangential / k.shear);
+      },
+      [&](std::int64_t, const std::vector<double>& shares) {
+        for (const double share : shares) compliance += share;
+      });
+  return model.ranks().of(0, volume / compliance);
 }
 
 double wave_time(const Simulation& simulation) {

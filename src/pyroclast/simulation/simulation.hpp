@@ -67,8 +67,8 @@ class Simulation {
   const std::optional<MadeSpecimen>& specimen() const { return specimen_; }
   /// Returns what is told of the specimen of a body that was read; else null.
   const SpecimenTold* told() const { return told_.get(); }
-  /// Returns what a user should know of the specimen and of stones that hold together, one line each; nothing
-  /// where another rank is the first.
+  /// Returns what a user should know of the specimen and of stones that hold together, one line each: a
+  /// collective. Nothing where another rank is the first.
   std::vector<std::string> warnings_of_specimen() const;
   const SpecimenNumbers& numbers() const { return numbers_; }
   double body_size() const { return numbers_.size; }
@@ -77,9 +77,6 @@ class Simulation {
     return side * (model_->dimension() == 2 ? model_->thickness : side);
   }
   const Model& model() const { return *model_; }
-  /// Returns the body of which `model()` may be a part, for files and words about it; null where another rank
-  /// is the first of several.
-  const Model* whole() const { return model_->part ? whole_.get() : model_.get(); }
   Ranks& ranks() const { return model_->ranks(); }
   const ConcreteMaterials& materials() const { return materials_; }
   /// Sets other properties from now on, at the present temperatures, as an exchange of temperatures does, see
@@ -146,7 +143,6 @@ class Simulation {
   std::shared_ptr<Team> team_;
   std::optional<MadeSpecimen> specimen_;
   std::shared_ptr<const SpecimenTold> told_;
-  std::unique_ptr<Model> whole_;  ///< whole body on the first of several ranks, else null
   std::unique_ptr<Model> model_;
   SpecimenNumbers numbers_;
   ConcreteMaterials materials_;

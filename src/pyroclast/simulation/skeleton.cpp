@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/skeleton.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -22,43 +23,78 @@ constexpr double kClearlyLarge = 0.25;
 /// Least volume of a skeleton, in volumes of the largest stone.
 constexpr double kFewStones = 2.0;
 
-/// Returns the stone of each block of a model, -1: of none.
-std::vector<int> stones_of_blocks(const Model& model, std::span<const int> grain) {
-  std::vector<int> of_block(model.block_count(), -1);
-  std::size_t cell = 0;
-  for (int block = 0; block < model.block_count(); ++block)
-    if (!model.is_of_bearing(block)) of_block[block] = grain[cell++];
-  return of_block;
+/// Returns the place of each block among those of the specimen, which stand together; below 0 or beyond them
+/// for bearings. A collective.
+std::vector<int> cells_of_blocks(const Model& model) {
+  std::vector<int> cell;
+  double first = std::numeric_limits<double>::infinity();
+  for (int block = 0; block < model.block_count(); ++block) {
+    cell.push_back(model.part ? model.part->block[block] : block);
+    if (!model.is_of_bearing(block)) first = std::min(first, static_cast<double>(cell.back()));
+  }
+  const auto first_of_all = static_cast<int>(model.ranks().least(first));
+  for (int& place : cell) place -= first_of_all;
+  return cell;
 }
+
+/// Clusters of cells that are joined one by one.
+class Clusters {
+ public:
+  explicit Clusters(std::size_t cells) : root_(cells) { std::iota(root_.begin(), root_.end(), 0); }
+  /// Returns the first cell of the cluster of a cell.
+  int of(int cell) {
+    while (root_[cell] != cell) cell = root_[cell] = root_[root_[cell]];
+    return cell;
+  }
+  /// Returns false where both cells are in one cluster already.
+  bool join(int a, int b) {
+    const auto [first, second] = std::minmax({of(a), of(b)});
+    root_[second] = first;
+    return first != second;
+  }
+
+ private:
+  std::vector<int> root_;
+};
 
 }  // namespace
 
 Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
                           const std::vector<ContactMaterial>& contacts) {
-  const std::vector<int> stone = stones_of_blocks(model, grain);
-  std::vector<int> root(stone.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int block) {
-    while (root[block] != block) block = root[block] = root[root[block]];
-    return block;
+  const std::vector<int> cell = cells_of_blocks(model);
+  const auto is_of_stone = [&](int block) { return !model.is_of_bearing(block) && grain[cell[block]] >= 0; };
+  Clusters clusters(grain.size());
+  struct Joined {
+    int a, b;
   };
+  std::vector<Joined> joined;  // as few as make the clusters
   for (int face = 0; face < model.face_count(); ++face) {
     const Joint& joint = model.joint(model.face_contacts[face]);
     const int a = model.block_of(joint.a), b = model.block_of(joint.b);
-    if (stone[a] < 0 || stone[b] < 0 || contacts[joint.interface].law != &table_of<Elastic>()) continue;
-    root[find(a)] = find(b);
+    if (!is_of_stone(a) || !is_of_stone(b) || contacts[joint.interface].law != &table_of<Elastic>()) continue;
+    if (clusters.join(cell[a], cell[b])) joined.push_back({cell[a], cell[b]});
   }
+  struct StonyCell {
+    int cell;
+    double volume;
+  };
+  std::vector<StonyCell> cells;
   const std::vector<double> volumes = model.zone_volumes();
-  std::map<int, double> of_stone, of_cluster;  // by stone, and by the root of the cluster
-  double whole = 0.0;
-  for (int block = 0; block < model.block_count(); ++block) {
-    if (stone[block] < 0) continue;
+  for (auto [block, last] = model.chunks().own(); block < last; ++block) {
+    if (!is_of_stone(block)) continue;
     double volume = 0.0;
     for (int zone = model.block_zones[block]; zone < model.block_zones[block + 1]; ++zone)
       volume += volumes[zone];
-    whole += volume;
-    of_stone[stone[block]] += volume;
-    of_cluster[find(block)] += volume;
+    cells.push_back({cell[block], volume});
+  }
+  for (const Joined& pair : model.ranks().collect_at_first(joined)) clusters.join(pair.a, pair.b);
+  cells = model.ranks().collect_at_first(cells);
+  std::map<int, double> of_stone, of_cluster;  // by stone, and by the first cell of the cluster
+  double whole = 0.0;
+  for (const StonyCell& stony : cells) {
+    whole += stony.volume;
+    of_stone[grain[stony.cell]] += stony.volume;
+    of_cluster[clusters.of(stony.cell)] += stony.volume;
   }
   if (whole == 0.0) return {};
   const auto largest_of = [](const std::map<int, double>& volumes_of) {
@@ -66,8 +102,8 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
   };
   const auto [largest, volume] = largest_of(of_cluster);
   std::set<int> stones;
-  for (int block = 0; block < model.block_count(); ++block)
-    if (stone[block] >= 0 && find(block) == largest) stones.insert(stone[block]);
+  for (const StonyCell& stony : cells)
+    if (clusters.of(stony.cell) == largest) stones.insert(grain[stony.cell]);
   return {static_cast<int>(stones.size()), volume, volume / whole, volume / largest_of(of_stone).second};
 }
 

@@ -18,14 +18,15 @@ struct Skeleton {
   double of_largest = 0.0;  ///< its volume over that of the largest stone
 };
 
-/// Returns the largest skeleton.
+/// Returns the largest skeleton: a collective. Ranks but the first get none.
 /// \param grain     stone of each block of the specimen, in their order; -1: none
 /// \param contacts  materials of the interfaces of the model
 Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
                           const std::vector<ContactMaterial>& contacts);
 
 /// Returns a line that says where stones form a skeleton: one of a quarter of the stones' volume or more that
-/// is twice as large as the largest stone. Empty where there is none, or where stones are not known.
+/// is twice as large as the largest stone. Empty where there is none, or where stones are not known. A
+/// collective; empty on ranks but the first.
 /// \param grain  as above, or empty
 std::string skeleton(const Model& model, std::span<const int> grain,
                      const std::vector<ContactMaterial>& contacts);

@@ -163,7 +163,7 @@ std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness
 
 SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std::vector<SetParameters>& sets,
                        const std::optional<MovingBody>& moving) {
-  SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}, {}, {}};
+  SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}, {}};
   if (moving) add_symmetry(*body.model, moving->symmetry);
   add_sets(*body.model, sets);
   if (const auto* plane = std::get_if<specimen::Specimen>(&specimen)) body.notches = plane->region.notches();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -94,8 +93,6 @@ struct SpecimenBody {
   std::optional<Press::Specimen> between_platens;
   /// Null where the specimen tells of itself, or nothing does.
   std::shared_ptr<const SpecimenTold> told = {};
-  /// Function that reads the whole body, where `model` has only some chunks of it, for one of several ranks.
-  std::function<std::unique_ptr<Model>()> read_whole = {};
 };
 
 /// Component of a position along which the press of a deck stands.

@@ -287,6 +287,8 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
   const auto faces = outline(model, zone_geometry(model), takes_part);
   const Box<Dim> specimen = bounding_box(faces, model);
+  const ChunkList chunks = model.zone_chunks().of_some(static_cast<int>(faces.size()),
+                                                       [&](int face) { return faces[face].zone; });
   struct DrivenFaces {
     double drive;
     std::vector<int> faces;
@@ -299,11 +301,12 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   BoxSide side;
   for (int axis = 0; axis < Dim; ++axis)
     for (const bool is_upper : {false, true})
-      for (const auto& [drive, chosen] : boundaries) {
-        double area = 0.0;
-        for (const int face : chosen)
-          if ((is_upper ? 1.0 : -1.0) * faces[face].normal[axis] > kFaces) area += faces[face].area;
-        const std::pair acts{drive, area};
+      for (const DrivenFaces& driven : boundaries) {
+        const double area = chunked_sum(chunks.of_some(driven.faces), [&](int i) {
+          const auto& face = faces[driven.faces[i]];
+          return (is_upper ? 1.0 : -1.0) * face.normal[axis] > kFaces ? face.area : 0.0;
+        });
+        const std::pair acts{driven.drive, area};
         if (area == 0.0 || acts.first < most.first) continue;
         // areas of equal sides differ by rounding
         if (acts.first == most.first && !(area > most.second * (1.0 + kSameArea))) continue;

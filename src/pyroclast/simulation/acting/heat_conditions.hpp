@@ -98,7 +98,7 @@ struct BoxSide {
 /// Returns the side of the specimen on which boundaries act most within `duration` s: that with the largest
 /// difference to the initial temperature, where several have it the one with the largest faces. A flux into
 /// the specimen counts above all temperatures. Sides are compared in the order left, right, bottom, top,
-/// front, back.
+/// front, back. A collective.
 BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& block_materials,
                          const HeatConditions& heat, double duration);
 

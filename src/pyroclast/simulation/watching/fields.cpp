@@ -37,7 +37,6 @@ bool parts_heat(const S& s) {
 }
 
 constexpr int kMostComponents = 6;  // components of a tensor
-constexpr std::array<std::string_view, 4> kItemNames{"gridpoint", "zone", "contact", "contact_end"};
 
 void put(double* to, const Vec<3>& v) {
   std::ranges::copy(v.c, to);
@@ -264,68 +263,7 @@ std::vector<const LawTable*> laws_in_order(const Motion& motion) {
   return laws;
 }
 
-/// Returns how many items belong to a contact; 0 for items of blocks.
-int items_of_contact(Item item, int dimension) {
-  return item == Item::contact ? 1 : item == Item::contact_end ? ends_of_contact(dimension) : 0;
-}
-
-/// Returns the items of a part of a body whose values this rank tells, in the order of the whole where the
-/// values of all ranks follow each other; contacts chunk by chunk.
-std::vector<int> own_items(Item item, const Model& model) {
-  std::vector<int> items;
-  const int of_contact = items_of_contact(item, model.dimension());
-  if (of_contact == 0) {
-    const ChunkList chunks = item == Item::gridpoint ? model.gridpoint_chunks() : model.zone_chunks();
-    for (auto [i, last] = chunks.own(); i < last; ++i) items.push_back(i);
-    return items;
-  }
-  const ContactsByChunk by_chunk = contacts_by_chunk(model);
-  for (auto [i, last] = by_chunk.chunks.own(); i < last; ++i)
-    for (int end = 0; end < of_contact; ++end) items.push_back(of_contact * by_chunk.contacts[i] + end);
-  return items;
-}
-
-/// Puts values of items, `components` each, in the order of their numbers in the whole.
-template <class T>
-std::vector<T> in_order(const std::vector<T>& values, int components, const std::vector<int>& numbers) {
-  std::vector<T> sorted(values.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i) * components, components,
-                sorted.begin() + static_cast<std::ptrdiff_t>(numbers[i]) * components);
-  return sorted;
-}
-
-/// Returns on the first rank the values of all ranks, in the order of the whole body.
-template <class T>
-std::vector<std::vector<T>> of_all_ranks(const std::vector<Field>& fields, const std::vector<int>& items,
-                                         std::vector<std::vector<T>> values, const Model& model) {
-  const int of_contact = items_of_contact(fields.front().item, model.dimension());
-  std::vector<int> numbers;
-  if (of_contact > 0) {
-    for (const int i : items)
-      numbers.push_back(model.part->contact[i / of_contact] * of_contact + i % of_contact);
-    numbers = model.ranks().collect_at_first(numbers);
-  }
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    values[f] = model.ranks().collect_at_first(values[f]);
-    if (of_contact > 0)
-      values[f] = in_order(values[f], components_of(fields[f].kind, model.dimension()), numbers);
-  }
-  return values;
-}
-
 }  // namespace
-
-const char* name_of(Item item) {
-  return kItemNames[static_cast<std::size_t>(item)].data();
-}
-
-Item item_of(std::string_view name) {
-  const auto found = std::ranges::find(kItemNames, name);
-  if (found == kItemNames.end())
-    throw Error(fmt::format("item \"{}\": must be one of {}", name, fmt::join(kItemNames, ", ")));
-  return static_cast<Item>(found - kItemNames.begin());
-}
 
 std::string product_of(const Unit& unit) {
   std::string product;
@@ -344,19 +282,6 @@ std::string product_of(const Unit& unit) {
 
 std::string name_with_unit(const FieldInfo& field) {
   return column_with_unit(field.name, field.unit).name;
-}
-
-int count_of(Item item, const Model& model) {
-  switch (item) {
-    case Item::gridpoint:
-      return model.gridpoint_count();
-    case Item::zone:
-      return model.zone_count();
-    case Item::contact:
-    case Item::contact_end:
-      break;
-  }
-  return items_of_contact(item, model.dimension()) * model.contact_count();
 }
 
 int components_of(ValueKind kind, int dimension) {
@@ -405,30 +330,45 @@ std::vector<FieldInfo> possible_fields() {
   return all;
 }
 
-template <class T>
-std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Simulation& simulation) {
-  std::vector<std::vector<T>> values(fields.size());
-  if (fields.empty()) return values;
-  const Model& model = simulation.model();
-  std::vector<int> items;  // those of a part
-  if (model.part) items = own_items(fields.front().item, model);
-  const auto count = model.part ? static_cast<int>(items.size()) : count_of(fields.front().item, model);
-  const auto components = [&](std::size_t f) { return components_of(fields[f].kind, model.dimension()); };
-  for (std::size_t f = 0; f < fields.size(); ++f)
-    values[f].reserve(static_cast<std::size_t>(count) * components(f));
-  FieldReader reader(simulation);
-  std::array<double, kMostComponents> value;
-  for (int n = 0; n < count; ++n) {
-    const int i = model.part ? items[n] : n;
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      fields[f].read(reader, i, value.data());
-      for (int c = 0; c < components(f); ++c) values[f].push_back(static_cast<T>(value[c]));
-    }
-  }
-  return model.part ? of_all_ranks(fields, items, std::move(values), model) : values;
+int width_of(const std::vector<Field>& fields, const Simulation& simulation) {
+  int width = 0;
+  for (const Field& field : fields) width += components_of(field.kind, simulation.model().dimension());
+  return width;
 }
 
-template std::vector<std::vector<float>> values_of(const std::vector<Field>&, const Simulation&);
-template std::vector<std::vector<double>> values_of(const std::vector<Field>&, const Simulation&);
+template <class T>
+void values_in_slices(const std::vector<Field>& fields, const Simulation& simulation,
+                      const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take) {
+  if (fields.empty()) return;
+  FieldReader reader(simulation);
+  std::array<double, kMostComponents> value;
+  const int dimension = simulation.model().dimension();
+  in_slices<T>(
+      fields.front().item, simulation.model(), width_of(fields, simulation),
+      [&](int item, T* row) {
+        for (const Field& field : fields) {
+          field.read(reader, item, value.data());
+          const int components = components_of(field.kind, dimension);
+          for (int c = 0; c < components; ++c) *row++ = static_cast<T>(value[c]);
+        }
+      },
+      take);
+}
+
+template void values_in_slices(const std::vector<Field>&, const Simulation&,
+                               const std::function<void(std::int64_t, const std::vector<float>&)>&);
+
+std::vector<std::vector<double>> values_of(const std::vector<Field>& fields, const Simulation& simulation) {
+  std::vector<std::vector<double>> values(fields.size());
+  values_in_slices<double>(fields, simulation, [&](std::int64_t, const std::vector<double>& rows) {
+    for (auto next = rows.begin(); next != rows.end();)
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        const auto end = next + components_of(fields[f].kind, simulation.model().dimension());
+        values[f].insert(values[f].end(), next, end);
+        next = end;
+      }
+  });
+  return values;
+}
 
 }  // namespace pyroclast

@@ -1,52 +1,15 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
-
-/// Kind of items of which a field has one value each.
-enum class Item : std::uint8_t {
-  gridpoint,
-  zone,
-  contact,  ///< contact point
-  /// Corners of the cell by which files show a contact point, see ends_of_contact.
-  contact_end
-};
-
-/// Returns the number of corners of the cell by which files show a contact point. In the plane it is a line
-/// from the point to the middle of its edge. In space it is a quadrangle: the point, the middle of the edge
-/// to the next corner of its face, the middle of the face, the middle of the edge before. \param dimension
-/// dimension of the body, 2 or 3
-constexpr int ends_of_contact(int dimension) {
-  return dimension == 2 ? 2 : 4;
-}
-
-/// Returns a vector at an end of a contact's cell, from its values at the contact points of a face.
-template <class Value>
-Vec<3> at_end(const Model& model, int contact, int end, Value value) {
-  if (end == 0) return value(contact);
-  const auto after = std::ranges::upper_bound(model.face_contacts, contact);
-  const int first = *(after - 1), count = *after - first;
-  const auto next_to = [&](int step) { return first + (contact - first + step + count) % count; };
-  if (end != 2) return 0.5 * (value(contact) + value(next_to(end == 1 ? 1 : -1)));
-  Vec<3> sum{};
-  for (int i = 0; i < count; ++i) sum += value(first + i);
-  return sum * (1.0 / count);
-}
-
-/// Returns the name of an item, such as "gridpoint".
-const char* name_of(Item item);
-/// Returns the item of a name. Throws Error for another name.
-Item item_of(std::string_view name);
-int count_of(Item item, const Model& model);
 
 /// Kind of a field's values.
 enum class ValueKind : std::uint8_t {
@@ -104,10 +67,16 @@ std::vector<Field> fields_of(const Simulation& simulation);
 /// Returns all fields that simulations of the laws in this program may have.
 std::vector<FieldInfo> possible_fields();
 
-/// Returns the values of fields of one item, of each field item by item and component by component: a
-/// collective. Where several ranks hold the body the first gets the values of the whole, others get none.
+/// Returns the numbers that all components of fields take.
+int width_of(const std::vector<Field>& fields, const Simulation& simulation);
+/// Hands out the values of fields of one item slice by slice, see in_slices: a collective. A row has the
+/// components of one field after the other.
 /// \tparam T  float, as in files, or double
 template <class T>
-std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Simulation& simulation);
+void values_in_slices(const std::vector<Field>& fields, const Simulation& simulation,
+                      const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take);
+/// Returns the values of fields of one item, of each field item by item and component by component: a
+/// collective. Where several ranks hold the body the first gets the values of the whole, others get none.
+std::vector<std::vector<double>> values_of(const std::vector<Field>& fields, const Simulation& simulation);
 
 }  // namespace pyroclast

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "pyroclast/simulation/acting/heat_conditions.hpp"
 
@@ -18,20 +19,23 @@ struct PlaceBox {
   Vec<3> low, high;
 };
 
-/// Returns the box around the specimen, m.
+/// Returns the box around the specimen, m: a collective.
 PlaceBox box_of(const Model& model) {
-  PlaceBox box;
-  bool is_first = true;
-  for (int b = 0; b < model.block_count(); ++b) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  PlaceBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  for (auto [b, last] = model.chunks().own(); b < last; ++b) {
     if (model.is_of_bearing(b)) continue;
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) {
       const Vec<3> at = model.place(g);
       for (int d = 0; d < 3; ++d) {
-        box.low[d] = is_first ? at[d] : std::min(box.low[d], at[d]);
-        box.high[d] = is_first ? at[d] : std::max(box.high[d], at[d]);
+        box.low[d] = std::min(box.low[d], at[d]);
+        box.high[d] = std::max(box.high[d], at[d]);
       }
-      is_first = false;
     }
+  }
+  for (int d = 0; d < 3; ++d) {
+    box.low[d] = model.ranks().least(box.low[d]);
+    box.high[d] = model.ranks().largest(box.high[d]);
   }
   return box;
 }
@@ -40,16 +44,9 @@ PlaceBox box_of(const Model& model) {
 
 HeatedLine::HeatedLine(const Simulation& simulation, double duration) {
   const Model& model = simulation.model();
-  struct Heated {
-    BoxSide side;
-    PlaceBox box;
-  };
-  std::vector<Heated> found;
-  if (const Model* const whole = simulation.whole())
-    found.push_back(
-        {most_heated_side(*whole, simulation.materials().block_materials, simulation.heat(), duration),
-         box_of(*whole)});
-  const auto [side, box] = simulation.ranks().collect(found).front();
+  const BoxSide side =
+      most_heated_side(model, simulation.materials().block_materials, simulation.heat(), duration);
+  const PlaceBox box = box_of(model);
   face_ = kSides[side.axis][side.is_upper ? 1 : 0];
   const double length = box.high[side.axis] - box.low[side.axis];
   std::vector<Vec<3>> points(kPoints, 0.5 * (box.low + box.high));
