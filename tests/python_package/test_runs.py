@@ -32,6 +32,63 @@ def history(folder: pathlib.Path) -> bytes:
     return (folder / "history.csv").read_bytes()
 
 
+class BodyOfAFolder(Case):
+    """A body that the program made before, in the place of one that the run makes."""
+
+    def made(self, of: pyroclast.Deck) -> pathlib.Path:
+        folder = self.folder()
+        of.save(folder / "deck.toml")
+        subprocess.run([PROGRAM, "specimen", "deck.toml", "--out", "body", "--no-figures"], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL)
+        return folder / "body"
+
+    def test_gives_the_bytes_of_a_run_that_makes_its_body(self):
+        """In the plane and in space, and of blocks that a script states."""
+        solid = deck("starter_3d", blocks__count=60)
+        solid["stages[1].stop_strain"] = 1e-4
+        stated = deck()
+        stated["specimen"] = deck().make_specimen()
+        for name, of in (("plane", deck(output__fields=True)), ("solid", solid), ("stated", stated)):
+            with self.subTest(name):
+                folder, body = self.folder(), self.made(of)
+                pyroclast.Run(of, out=folder / "made", threads=1).finish()
+                pyroclast.Run(of, out=folder / "read", threads=1, body=body).finish()
+                files = {path.relative_to(folder / "made") for path in (folder / "made").rglob("*") if path.is_file()}
+                self.assertIn(pathlib.Path("history.csv"), files)
+                for file in files:
+                    if file.parts[0] not in ("checkpoints", "manifest.json", "summary.json", "deck.toml", "inputs"):
+                        self.assertEqual((folder / "made" / file).read_bytes(), (folder / "read" / file).read_bytes(), file)
+                self.assertEqual(json.loads((folder / "read/manifest.json").read_text())["body"]["folder"], str(body))
+
+    def test_is_read_again_by_copies_and_resumed_runs(self):
+        folder, body = self.folder(), self.made(deck())
+        whole = pyroclast.Run(deck(), out=folder / "whole", threads=1).finish()
+        run = pyroclast.Run(deck(), out=folder / "run", threads=1, body=body)
+        run.until(strain=1e-4)
+        copied = run.copy()
+        run.checkpoint()
+        del run
+        for other in (copied, pyroclast.Run.resume(folder / "run", threads=1)):
+            other.finish()
+            np.testing.assert_array_equal(other.history["stress"], whole.history["stress"])
+
+    def test_is_refused_where_it_is_of_other_inputs_or_not_there(self):
+        body = self.made(deck())
+        for call, named in ((lambda: pyroclast.Run(deck(), seed=2, body=body), "specimen.seed was 1, and is 2 here"),
+                            (lambda: pyroclast.Run(deck(blocks__count=130), body=str(body)),
+                             "blocks.count was 120, and is 130 here"),
+                            (lambda: pyroclast.Run(deck(), body=body / "none"), "none/body.h5: there is no body")):
+            with self.assertRaises(pyroclast.Error) as caught:
+                call()
+            self.assertIn(named, str(caught.exception))
+            self.assertNotIn("--", str(caught.exception))
+
+    def test_does_not_hold_the_specimen(self):
+        run = pyroclast.Run(deck(), threads=1, body=self.made(deck()))
+        with self.assertRaisesRegex(pyroclast.Error, "does not hold its specimen; Deck.make_specimen makes it"):
+            _ = run.specimen
+
+
 class Results(Case):
     def test_a_run_writes_what_the_program_writes(self):
         folder = self.folder()

@@ -235,7 +235,7 @@ class Run:
 
     def __init__(self, deck: Deck | str | Path, *, seed: int | None = None, out: str | Path | None = None,
                  overwrite: bool = False, threads: int = 0, instructions: str = "",
-                 checkpoint: float | str | Quantity | None = None):
+                 checkpoint: float | str | Quantity | None = None, body: str | Path | None = None):
         """Makes the specimen and all that the run needs; nothing moves yet.
 
         deck: or its file.
@@ -246,14 +246,18 @@ class Run:
             beside other work, take fewer. Results do not depend on them.
         instructions: "portable", "avx2" or "avx512"; empty: the best that there is.
         checkpoint: wall time between two checkpoints ("5 min"; a number: s) instead of the deck's.
+        body: folder into which `pyroclast specimen` wrote the body; None: the body is made here. The results are the
+            same to the bit.
 
-        Raises DeckError for what is wrong with the deck, Error for what cannot be made.
+        Raises DeckError for what is wrong with the deck; Error for what cannot be made, and for a body that is damaged
+        or not the deck's.
         """
         of = as_deck(deck)
         tables = functions.Scratch()
         core = _core.Session.begin(
             of._resolved(tables), seed, threads, instructions,
-            None if checkpoint is None else in_si(checkpoint, "s"), None if out is None else str(out), overwrite)
+            None if checkpoint is None else in_si(checkpoint, "s"), None if out is None else str(out), overwrite,
+            str(body or ""))
         self._hold(core, of._stages, of._laws, [tables])
 
     def _hold(self, core: _core.Session, classes: Sequence[type[Stage]], laws: Sequence[str],
@@ -677,7 +681,7 @@ class Run:
 
     @property
     def specimen(self) -> Specimen | SolidSpecimen:
-        """Specimen of the run, without bearings."""
+        """Specimen of the run, without bearings. Raises Error where the run took its body from a folder."""
         return wrapped(self._core.specimen)
 
     @property

@@ -190,7 +190,7 @@ class Points:
         outputs = [o for o in outputs if not o.is_function]
         if not outputs or self._study.runner.kind != "pyroclast":
             return []
-        run = _core.Session.begin(self._deck_text(self.middle), None, 1, "", None, None, False)
+        run = _core.Session.begin(self._deck_text(self.middle), None, 1, "", None, None, False, "")
         offer = Offer(run.summary_numbers(), [name for name, _ in run.columns])
         run.close()
         return [f"{self._study.place(f'outputs.{o.name}')}: {o.name} = {o.what!r}: {why}" for o in outputs

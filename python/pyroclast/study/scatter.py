@@ -80,7 +80,7 @@ def deck_text(deck: Path, changes: Sequence[str]) -> _core.DeckText:
 
 def result_names(deck: _core.DeckText) -> list[str]:
     """Returns names of the results of the test that a run of a deck may have."""
-    session = _core.Session.begin(deck, None, 1, "", None, None, False)
+    session = _core.Session.begin(deck, None, 1, "", None, None, False, "")
     names = session.test_results()
     session.close()
     return names

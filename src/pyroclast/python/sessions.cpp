@@ -193,15 +193,16 @@ void bind_stepping(py::class_<Held>& bound) {
           "begin",
           [](const DeckText& deck, std::optional<std::uint64_t> seed, int threads,
              const std::string& instructions, std::optional<double> checkpoint,
-             const std::optional<std::string>& out, bool overwrite) {
+             const std::optional<std::string>& out, bool overwrite, const std::string& body) {
             auto chosen = choices(seed, threads, instructions, checkpoint, deck.laws, deck.stages);
             chosen.laws = law_sources(deck);
+            chosen.body = body;
             return held([&] {
               return Session::begin({parse(deck), deck.folder, chosen}, output(out, overwrite));
             });
           },
           arg("deck"), arg("seed"), arg("threads"), arg("instructions"), arg("checkpoint"), arg("out"),
-          arg("overwrite"))
+          arg("overwrite"), arg("body"))
       .def_static(
           "resume",
           [](const std::string& folder, const std::string& checkpoint, int threads,
@@ -392,7 +393,9 @@ void bind_arrays(py::class_<Held>& bound) {
                              [](const Held& h) {
                                const auto& specimen = h.get().simulation().specimen();
                                if (!specimen)
-                                 throw Error("the body of this run was read, and its specimen is not there");
+                                 throw Error(
+                                     "the body of this run was read from body.h5, which does not hold its "
+                                     "specimen; Deck.make_specimen makes it");
                                return *specimen;
                              })
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });

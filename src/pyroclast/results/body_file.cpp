@@ -335,8 +335,8 @@ void BodyFile::require(const BodyInputs& inputs) const {
   for (const std::string& key : keys)
     if (stated(own, key) != stated(inputs, key))
       throw Error(
-          fmt::format("{}: is the body of another deck: {} was {}, and is {} here; make it anew, or leave "
-                      "--body out",
+          fmt::format("{}: is the body of another deck: {} was {}, and is {} here; make it anew, or run "
+                      "without it",
                       path_.string(), key, stated(own, key), stated(inputs, key)));
 }
 
@@ -354,7 +354,7 @@ std::vector<T> BodyFile::rows(const std::string& name, const std::vector<int>& c
         XXH3_64bits(values.data() + before, bytes) != array.at("hashes").at(chunk).get<std::uint64_t>())
       throw Error(
           fmt::format("{}: is damaged: chunk {} of \"{}\" differs from the bytes that were written; make it "
-                      "anew, or leave --body out",
+                      "anew, or run without it",
                       path_.string(), chunk, name));
   }
   return values;
