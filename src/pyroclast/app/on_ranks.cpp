@@ -28,8 +28,8 @@ namespace {
 /// Time that the first copy has to tell an error that all have, and to end them.
 constexpr std::chrono::seconds kFirstSpeaks{2};
 
-/// Lets the system have large arrays back once they are freed. By default the C library soon keeps them, and a
-/// rank, which holds much at the start that it frees then, takes a tenth more memory.
+/// Lets the system have large arrays back once they are freed. By default the C library soon keeps them, and
+/// a rank, which holds much at the start that it frees then, takes a tenth more memory.
 void give_back_large_arrays() {
 #ifdef __GLIBC__
   constexpr int kLarge = 1 << 20;  // bytes

@@ -173,7 +173,8 @@ template <int Dim>
 std::vector<double> ModelOf<Dim>::zone_volumes() const {
   std::vector<double> volumes(zones.size());
   std::array<Vec<Dim>, Dim> unused;
-  for (std::size_t z = 0; z < zones.size(); ++z) volumes[z] = geometry_of<Dim>(*this, static_cast<int>(z), unused);
+  for (std::size_t z = 0; z < zones.size(); ++z)
+    volumes[z] = geometry_of<Dim>(*this, static_cast<int>(z), unused);
   return volumes;
 }
 

@@ -131,8 +131,7 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
 
   const auto has_face = [&](int face) {
     const Contact<Dim>& first = whole.contacts[whole.face_contacts[face]];
-    return here[first.a] >= 0 && here[first.b] >= 0 &&
-           (!nodes.empty() || is_own(first.a) || is_own(first.b));
+    return here[first.a] >= 0 && here[first.b] >= 0 && (!nodes.empty() || is_own(first.a) || is_own(first.b));
   };
   std::size_t contacts = 0;
   for (int f = 0; f < whole.face_count(); ++f)

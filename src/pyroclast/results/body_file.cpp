@@ -306,8 +306,7 @@ BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
   if (!file.read(0, begin.data(), begin.size()) || begin != kHdf5Begin) fail("is no body of pyroclast");
   BodyTrailer trailer;
   if (size < sizeof(trailer) || !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)) ||
-      trailer.end != kBodyEnd ||
-      trailer.table_bytes > size || trailer.table_begin > size ||
+      trailer.end != kBodyEnd || trailer.table_bytes > size || trailer.table_begin > size ||
       trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
     fail("is cut short, or damaged at its end");
   std::string bytes(trailer.table_bytes, '\0');

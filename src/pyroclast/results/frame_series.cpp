@@ -74,7 +74,9 @@ template <class Place>
 void write_points(Hdf5File& file, const std::string& group, Item item, const Model& model, Place place) {
   in_slices<double>(
       item, model, 3, [&](int i, double* row) { std::ranges::copy(place(i).c, row); },
-      [&](std::int64_t first, const std::vector<double>& rows) { file.rows(group + "/Points", first, rows); });
+      [&](std::int64_t first, const std::vector<double>& rows) {
+        file.rows(group + "/Points", first, rows);
+      });
 }
 
 void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
@@ -100,7 +102,8 @@ void write_blocks(Hdf5File& file, const Model& model) {
   const int corners = model.dimension() + 1, zones = count_of(Item::zone, model);
   begin_grid(file, "/blocks", count_of(Item::gridpoint, model), zones, corners,
              model.dimension() == 2 ? kVtkTriangle : kVtkTetrahedron);
-  write_points(file, "/blocks", Item::gridpoint, model, [&](int gridpoint) { return model.place(gridpoint); });
+  write_points(file, "/blocks", Item::gridpoint, model,
+               [&](int gridpoint) { return model.place(gridpoint); });
   file.room<std::int64_t>("/blocks/Connectivity", std::int64_t{zones} * corners);
   file.room<std::int32_t>("/blocks/block", zones);
   file.room<std::uint8_t>("/blocks/material", zones);

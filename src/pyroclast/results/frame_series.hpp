@@ -15,8 +15,8 @@ namespace pyroclast {
 enum class MeshPart : std::uint8_t { blocks, contacts };
 
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles or tetrahedra
-/// with block and material, contact points as cells, see ends_of_contact, with interface and length or area. A
-/// collective. \param folder  empty on ranks but the first
+/// with block and material, contact points as cells, see ends_of_contact, with interface and length or area.
+/// A collective. \param folder  empty on ranks but the first
 void write_mesh(const std::filesystem::path& folder, const Model& model);
 
 /// Returns some columns of rows, row by row.
@@ -28,7 +28,8 @@ std::vector<To> columns_of(const std::vector<From>& rows, int width, int first, 
   std::vector<To> columns;
   columns.reserve(rows.size() / static_cast<std::size_t>(width) * static_cast<std::size_t>(count + padding));
   for (auto row = rows.begin(); row != rows.end(); row += width) {
-    for (int column = first; column < first + count; ++column) columns.push_back(static_cast<To>(row[column]));
+    for (int column = first; column < first + count; ++column)
+      columns.push_back(static_cast<To>(row[column]));
     columns.insert(columns.end(), static_cast<std::size_t>(padding), To{});
   }
   return columns;

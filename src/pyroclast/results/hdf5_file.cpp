@@ -90,7 +90,9 @@ struct Hdf5Driver : H5FD_t {
   }
 
  private:
-  static Hdf5Driver& of(H5FD_t* file) { return *static_cast<Hdf5Driver*>(file); }
+  static Hdf5Driver& of(H5FD_t* file) {
+    return *static_cast<Hdf5Driver*>(file);
+  }
   static H5FD_t* open(const char* /*name*/, unsigned /*flags*/, hid_t access, haddr_t /*most*/) {
     auto made = std::make_unique<Hdf5Driver>();
     made->file = *static_cast<Hdf5File* const*>(H5Pget_driver_info(access));

@@ -14,8 +14,8 @@ void require_no_link(const std::filesystem::path& path);
 /// Throws Error where an opened file has another name. \param there  result of fstat
 void require_one_name(const std::filesystem::path& path, const struct stat& there);
 
-/// Opens a new file to write and read; a file that had its name is removed, and no link is followed. Returns the
-/// descriptor, or -1 with errno.
+/// Opens a new file to write and read; a file that had its name is removed, and no link is followed. Returns
+/// the descriptor, or -1 with errno.
 int open_aside(const std::filesystem::path& partial);
 /// Writes all bytes; returns false, with errno, where that fails.
 bool write_all(int descriptor, const void* data, std::size_t bytes);

@@ -287,8 +287,8 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
   const auto faces = outline(model, zone_geometry(model), takes_part);
   const Box<Dim> specimen = bounding_box(faces, model);
-  const ChunkList chunks = model.zone_chunks().of_some(static_cast<int>(faces.size()),
-                                                       [&](int face) { return faces[face].zone; });
+  const ChunkList chunks =
+      model.zone_chunks().of_some(static_cast<int>(faces.size()), [&](int face) { return faces[face].zone; });
   struct DrivenFaces {
     double drive;
     std::vector<int> faces;

@@ -61,8 +61,7 @@ int count_of(Item item, const Model& model) {
     case Item::contact_end:
       break;
   }
-  const int contacts =
-      model.part ? contacts_by_chunk(model).chunks.whole_count() : model.contact_count();
+  const int contacts = model.part ? contacts_by_chunk(model).chunks.whole_count() : model.contact_count();
   return items_of_contact(item, model.dimension()) * contacts;
 }
 
