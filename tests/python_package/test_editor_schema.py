@@ -201,6 +201,7 @@ READERS_ALONE = re.compile(r"""
     | missing_key:\ without\ concrete\.thermal_strain$          # expansion is the other
     | missing_key:\ without\ stages\[\]\.drives\[\]\.\w+$
     | wrong_type:\ (hold|release)\ =                            # components, which a body in the plane has fewer of
+    | wrong_type:\ between_stones\ =                            # names, which must be of phases of the deck
     | other_unit:\ (above|below)\ =                              # the kind is that of a record
     | out_of_range:\ .*\d[eE][-+]?\d                             # a number with an exponent
     """, re.VERBOSE)
