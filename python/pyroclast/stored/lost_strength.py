@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import Error
-from .mesh import ContactMesh
 from .results import Results
 
 FIELD = "lost_strength [1]"
@@ -32,7 +31,7 @@ def lost_strength(run: Results) -> list[LostStrength]:
     except Error:
         return []
     contacts = run.mesh.contacts
-    angle = np.degrees(np.arcsin(np.minimum(_levelness(contacts), 1.0)))
+    angle = contacts.angle
     means = []
     for kind, interface in enumerate(contacts.interfaces):
         if not lost[contacts.interface == kind].any():
@@ -43,13 +42,3 @@ def lost_strength(run: Results) -> list[LostStrength]:
                 share = np.average(lost[there], weights=contacts.extent[there])
                 means.append(LostStrength(interface, direction, float(share)))
     return means
-
-
-def _levelness(contacts: ContactMesh) -> np.ndarray:
-    """Returns |n_y| (C,) of the unit normals of the faces: 0 where a face stands along y."""
-    corners = contacts.points[contacts.cells]
-    if corners.shape[1] == 2:
-        normal = (corners[:, 1] - corners[:, 0])[:, ::-1]
-    else:
-        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    return np.abs(normal[:, 1]) / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)

@@ -72,6 +72,17 @@ class ContactMesh:
     interfaces: tuple[str, ...]  #: names, and last those of bearings
     extent: np.ndarray  #: (C,) tributary length, m, in space area, m²
 
+    @cached_property
+    def angle(self) -> np.ndarray:
+        """Angle (C,) between each contact's face and y, the direction of a load by platens: 0 to 90 degrees."""
+        corners = self.points[self.cells]
+        if corners.shape[1] == 2:
+            normal = (corners[:, 1] - corners[:, 0])[:, ::-1]  # but for signs
+        else:
+            normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        size = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+        return np.degrees(np.arcsin(np.minimum(np.abs(normal[:, 1]) / size, 1.0)))
+
 
 @dataclass(frozen=True)
 class Mesh:

@@ -80,8 +80,8 @@ void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
     if (std::abs(stated / like - 1.0) > kLikeStrength)
       fmt::print("{}", describe_warnings(
                            {fmt::format("a load is {:g} of f_c = {:.3g} MPa, but specimens with such mortar "
-                                        "bear some {:.2g} MPa: crush this "
-                                        "one at 20 degC and take its f_c, f_c = {{ run = \"folder\" }}",
+                                        "bear some {:.2g} MPa: crush this one at 20 degC and take its f_c, "
+                                        "f_c = {{ run = \"folder\" }}",
                                         *load->keys().level, 1e-6 * stated, 1e-6 * like)}));
   }
 }

@@ -12,7 +12,8 @@ namespace pyroclast {
 /// side across.
 class HeatedLine {
  public:
-  /// Makes the line: a collective. \param duration  time for which boundaries act, s
+  /// Makes the line: a collective.
+  /// \param duration  time for which boundaries act, s
   HeatedLine(const Simulation& simulation, double duration);
 
   /// Returns the name of the side at which the line begins: "left".

@@ -22,8 +22,8 @@ enum class Item : std::uint8_t {
 
 /// Returns the number of corners of the cell by which files show a contact point. In the plane it is a line
 /// from the point to the middle of its edge. In space it is a quadrangle: the point, the middle of the edge
-/// to the next corner of its face, the middle of the face, the middle of the edge before. \param dimension
-/// dimension of the body, 2 or 3
+/// to the next corner of its face, the middle of the face, the middle of the edge before.
+/// \param dimension  dimension of the body, 2 or 3
 constexpr int ends_of_contact(int dimension) {
   return dimension == 2 ? 2 : 4;
 }
@@ -50,9 +50,11 @@ int count_of(Item item, const Model& model);
 
 /// Reads rows of numbers, one of each item, and hands them out in the order of the whole body, slice by
 /// slice: a collective. A slice takes half a megabyte, however large the body is. Where several ranks hold
-/// the body, each reads the items in its own chunks, and the first alone is handed the slices. \tparam T
-/// float or double \param columns  numbers of a row \param read     writes the row of an item of this rank,
-/// over zeros \param take     called with the number of the first item of a slice, and its rows
+/// the body, each reads the items in its own chunks, and the first alone is handed the slices.
+/// \tparam T       float or double
+/// \param columns  numbers of a row
+/// \param read     writes the row of an item of this rank, over zeros
+/// \param take     called with the number of the first item of a slice, and its rows
 template <class T>
 void in_slices(Item item, const Model& model, int columns, const std::function<void(int item, T* row)>& read,
                const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take);
