@@ -91,16 +91,21 @@ class Cases(unittest.TestCase):
         self.assert_between(0.5 * expected, less, expected)
         self.assert_between(0.9 * free, strain("stages[1].level=0"), 1.1 * free)
 
-    def test_a_fixed_second_slope_is_beta_that_goes_with_the_block_size(self):
+    def test_what_goes_with_the_block_size_is_a_stated_number_at_any_one(self):
         def stress(*changes: str) -> float:
-            yields = ("specimen.width=60 mm", "specimen.height=60 mm", "aggregates.d_max=16 mm",
-                      'aggregates.sieves=["8 mm","12.5 mm"]', "blocks.count=100",  # of 6 mm, twice t_b_block_size
-                      "contacts.mortar_mortar.f_cm=4 MPa", "stages[1].stop_strain=6e-4")
-            return finished("compression", *yields, *changes).column("stress_MPa")[-1]
+            small = ("specimen.width=60 mm", "specimen.height=60 mm", "aggregates.d_max=16 mm",
+                     'aggregates.sieves=["8 mm","12.5 mm"]', "blocks.count=100")  # of 6 mm, twice t_b_block_size
+            return finished("compression", *small, *changes).column("stress_MPa")[-1]
 
-        fixed = stress("contacts.second_slope=fixed")
-        self.assertAlmostEqual(fixed / stress("contacts.mortar_mortar.beta=0.1"), 1.0, delta=1e-6)
-        self.assert_between(1.02, fixed / stress(), 2.0)
+        yields = ("contacts.mortar_mortar.f_cm=4 MPa", "stages[1].stop_strain=6e-4")
+        slides = ("contacts.mortar_mortar.f_cm=100 MPa", "contacts.mortar_mortar.phi=10 deg",
+                  "contacts.mortar_mortar.phi_res=10 deg", "stages[1].stop_strain=1.5e-3")
+        for key, value, twice, where in (("second_slope", "fixed", "beta=0.1", yields),
+                                         ("mode_2_energy", "block size", "G_f2=480 N/m", slides)):
+            with self.subTest(key):
+                with_size = stress(*where, f"contacts.{key}={value}")
+                self.assertAlmostEqual(with_size / stress(*where, f"contacts.mortar_mortar.{twice}"), 1.0, delta=1e-6)
+                self.assert_between(1.02, with_size / stress(*where), 2.0)
 
     def test_hot_concrete_is_weaker_by_its_curves(self):
         as_it_stands = finished("hot_strength")

@@ -505,38 +505,46 @@ TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
   EXPECT_EQ(make_concrete(setup.block_materials, fixed, 0.006).contacts[mortar_mortar]["K_n"](20.0), 18400e9);
 }
 
-// The second slope is beta K_n. It goes with the inverse of the block size, or is the same at any.
-TEST(SecondSlope, IsTheSameAtAnyBlockSizeWhereADeckKeepsIt) {
-  const auto slope = [](const pyroclast::Setup& setup, double size, double between) {
+// The second slope is beta K_n. It goes with the inverse of the block size, or is the same at any; G_f2 is the
+// same at any, or goes with the block size.
+TEST(WithBlockSize, AreTheSlopeAndTheEnergyThatADeckNames) {
+  const auto mortar = [](const std::string& deck, double size, double between) {
+    const auto setup = read(deck);
     const auto concrete = make_concrete(setup.block_materials, setup.moving->contacts, size, size);
     const ContactMaterial& contact = concrete.contacts[mortar_mortar];
     std::vector<double> numbers(contact.numbers.size());
     contact.write_at(20.0, 20.0, numbers);
-    contact.scale_stiffnesses(contact.stiffness_between(between), numbers);
-    const ContactProperties scaled(*contact.law, numbers, contact.choices);
-    return scaled.as<Cohesive>().hardening * scaled.as<Cohesive>().normal_stiffness;
+    contact.scale_to_size(contact.stiffness_between(between), numbers);
+    return ContactProperties(*contact.law, numbers, contact.choices).as<Cohesive>();
   };
-  const auto with_stiffness = read(paper_deck());
-  const std::string fixed_slope = "second_slope = \"fixed\"\n";
-  const auto fixed = read(with(paper_deck(), "t_b_block_size", fixed_slope + "t_b_block_size"));
-  const double of_paper = 0.05 * 18400e9;
-  for (const double size : {0.0015, 0.003, 0.012}) {
-    EXPECT_NEAR(slope(with_stiffness, size, size) / of_paper, 0.003 / size, 1e-12);
-    EXPECT_NEAR(slope(fixed, size, size) / of_paper, 1.0, 1e-12);
-    EXPECT_NEAR(slope(fixed, size, 0.5 * size) / of_paper, 1.0, 1e-12);  // between blocks finer than the mean
-  }
+  const auto slope = [](const Cohesive::Properties<double>& p) { return p.hardening * p.normal_stiffness; };
+  const std::string as_stated = paper_deck();
+  const std::string fixed = with(as_stated, "t_b_block_size", "second_slope = \"fixed\"\nt_b_block_size");
+  const std::string by_size =
+      with(as_stated, "t_b_block_size", "mode_2_energy = \"block size\"\nt_b_block_size");
+  const double of_paper = 0.05 * 18400e9, energy = 240.0;
+  for (const double size : {0.0015, 0.003, 0.012})
+    for (const double between : {size, 0.5 * size}) {  // also between blocks finer than the mean
+      EXPECT_NEAR(slope(mortar(as_stated, size, between)) / of_paper, 0.003 / between, 1e-11);
+      EXPECT_NEAR(slope(mortar(fixed, size, between)) / of_paper, 1.0, 1e-12);
+      EXPECT_NEAR(mortar(as_stated, size, between).mode_2_energy, energy, 1e-12 * energy);
+      EXPECT_NEAR(mortar(by_size, size, between).mode_2_energy / energy, between / 0.003, 1e-11);
+      EXPECT_EQ(mortar(by_size, size, between).mode_1_energy, mortar(as_stated, size, between).mode_1_energy);
+    }
 }
 
-TEST(SecondSlope, IsRefusedWhereNothingHasOne) {
-  std::string deck = with(paper_deck(), "t_b_block_size", "second_slope = \"fixed\"\nt_b_block_size");
+TEST(WithBlockSize, IsRefusedWhereNothingHasOne) {
+  std::string deck = with(paper_deck(), "t_b_block_size",
+                          "second_slope = \"fixed\"\nmode_2_energy = \"block size\"\nt_b_block_size");
   for (const char* line :
        {"f_t = \"2.5 MPa\"", "G_f1 = \"60 N/m\"", "f_cm = \"31 MPa\"", "beta = 0.05", "c_o = \"3.8 MPa\"",
         "c_res = \"0.038 MPa\"", "phi = \"34 deg\"", "phi_res = \"34 deg\"", "G_f2 = \"240 N/m\""})
     deck = with(deck, line, "");
   deck = with(deck, "compression = \"irreversible\"", "");
   deck = with(deck, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"elastic\"");
-  EXPECT_NE(message(deck).find("second_slope = \"fixed\": has no meaning here"), std::string::npos)
-      << message(deck);
+  for (const char* key : {"second_slope = \"fixed\"", "mode_2_energy = \"block size\""})
+    EXPECT_NE(message(deck).find(std::string(key) + ": has no meaning here"), std::string::npos)
+        << message(deck);
 }
 
 }  // namespace

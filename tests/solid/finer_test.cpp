@@ -174,10 +174,10 @@ TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
   auto p = finer_near(on_side(body, "left"), body, 1, 0.0);
   p.aggregates = {.phase = "aggregate",
                   .fraction = 0.1,
-                  .d_min = 0.0099,
-                  .d_max = 0.0101,
+                  .d_min = 0.0169,
+                  .d_max = 0.0171,
                   .fuller_exponent = 0.5,
-                  .sieves = {0.0099, 0.0101},
+                  .sieves = {0.0169, 0.0171},
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
   p.superposition = specimen::Superposition::fit;
@@ -185,7 +185,7 @@ TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
   const auto far = std::ranges::count_if(s.balls, [](const Ball& ball) { return ball.centre[0] > 0.02; });
   EXPECT_GE(s.small_stones, far);
   EXPECT_LT(s.small_stones, std::ssize(s.balls));
-  EXPECT_NE(warnings(s).front().find("smaller than 2 blocks there"), std::string::npos);
+  EXPECT_NE(warnings(s).front().find("smaller than 3 blocks there"), std::string::npos);
 }
 
 }  // namespace

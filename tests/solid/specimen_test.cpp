@@ -83,7 +83,7 @@ TEST(SolidSpecimen, EachStoneHasABlockAndCoarseBlocksAreTold) {
   for (const SizeClass& c : fit.classes) EXPECT_EQ(c.without_a_block, 0);
   const auto told = warnings(fit);
   ASSERT_EQ(told.size(), 1U);
-  expect_in("smaller than 2 blocks of 12.6 mm", told[0]);
+  expect_in("smaller than 3 blocks of 12.6 mm", told[0]);
   p.superposition = specimen::Superposition::area;
   p.covered_fraction = 0.7;
   const SolidSpecimen by_area = make_specimen(p, body);

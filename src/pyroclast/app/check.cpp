@@ -61,6 +61,19 @@ void print_stated_stiffness(const Setup& setup) {
   }
 }
 
+/// Tells properties of contacts that go with the block size.
+void print_with_size(const Setup& setup) {
+  const ContactParameters& contacts = setup.moving->contacts;
+  for (const Role role : contacts.with_size)
+    for (const InterfaceParameters& interface : contacts.interfaces) {
+      const LawTable& law = *interface.contact.law;
+      for (const PropertyInfo& info : law.properties)
+        if (info.role == role)
+          fmt::print("contacts        {}: {} goes with the block size, {:.4g} times its value in the deck\n",
+                     interface.name, info.key, setup.specimen.block_size() / *contacts.fracture_zone_size);
+    }
+}
+
 /// Warns of loads that are shares of a strength which mortar like the deck's does not give.
 void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   if (!setup.moving) return;
@@ -129,6 +142,7 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
   if (setup.moving->contacts.fracture_zone_size && !setup.specimen.blocks.finer.empty())
     fmt::print("                of blocks of the mean size; between others t_b goes with their size\n");
   print_stated_stiffness(setup);
+  print_with_size(setup);
   const auto& whole = simulation.materials().composition;
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole, model.dimension());
 }

@@ -16,8 +16,8 @@ with `law = "name"` in a table of `[contacts]` ([Phases and interfaces](../under
 The [method](../understand/theory.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
 one, and [What every contact law must hold](../develop/laws-verified.md) what each is tried for.
 
-- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses, and
-  `second_slope` of `[contacts]` on second slopes.
+- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses,
+  `second_slope` of `[contacts]` on second slopes, and `mode_2_energy` of `[contacts]` on energies of sliding.
 - **Remembered.** What a contact point carries from step to step. A value "in files" is a field of the contacts in
   `fields/`, and a column of `pyroclast law`.
 - **Lost.** Energies are columns `dissipated_<name>_J` of the history and entries of the energy ledger.
@@ -34,6 +34,8 @@ const char* name_of(Role role) {
       return "strength";
     case Role::energy:
       return "energy";
+    case Role::sliding_energy:
+      return "energy of sliding";
     case Role::second_slope:
       return "second slope";
     case Role::cold_strength:

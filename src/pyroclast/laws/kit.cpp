@@ -247,6 +247,7 @@ class Kit {
           break;
         case Role::strength:
         case Role::energy:
+        case Role::sliding_energy:
           numbers[i] *= alike ? one_for_all : log_uniform(random, 0.1, 1.6);
           break;
         case Role::plain:
@@ -311,7 +312,7 @@ class Kit {
     for (std::size_t i = 0; i < m.numbers.size(); ++i) {
       const PropertyInfo& info = law_.properties[i];
       if (info.role == Role::strength && m.numbers[i] > 0.0) strengths.push_back(m.numbers[i]);
-      if (info.role == Role::energy && m.numbers[i] > 0.0) energies.push_back(m.numbers[i]);
+      if (is_energy(info.role) && m.numbers[i] > 0.0) energies.push_back(m.numbers[i]);
       if (same_unit(info.unit, unit::length) && m.numbers[i] > 0.0) all.push_back(m.numbers[i]);
     }
     if (strengths.empty()) strengths.push_back(greatest_strength(m));

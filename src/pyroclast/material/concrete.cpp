@@ -153,11 +153,11 @@ ContactMaterial ContactMaterial::without_hidden_cracks() const {
   return whole;
 }
 
-void ContactMaterial::scale_stiffnesses(double factor, std::span<double> among) const {
+void ContactMaterial::scale_to_size(double factor, std::span<double> among) const {
   for (std::size_t i = 0; i < among.size(); ++i) {
     const Role role = law->properties[i].role;
     if (role == Role::normal_stiffness || role == Role::shear_stiffness) among[i] *= factor;
-    if (role == Role::second_slope && keeps_second_slope) among[i] /= factor;
+    if (std::ranges::find(with_size, role) != with_size.end()) among[i] /= factor;
   }
 }
 
@@ -275,8 +275,8 @@ ConcreteMaterials make_concrete(const std::vector<BlockMaterial>& block_material
   if (p.fracture_zone_size)
     for (ContactMaterial& contact : concrete.contacts) {
       contact.block_size = block_size;
-      contact.keeps_second_slope = p.keeps_second_slope;
-      if (p.keeps_second_slope) contact = contact.times(Role::second_slope, 1.0 / scale);
+      contact.with_size = p.with_size;
+      for (const Role role : p.with_size) contact = contact.times(role, 1.0 / scale);
     }
   if (!of_matrix)
     throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));

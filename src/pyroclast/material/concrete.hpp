@@ -80,8 +80,8 @@ struct ContactMaterial {
   std::vector<int> choices;  ///< options chosen, in the order of LawTable::choices
   /// Block size at which the stiffnesses hold, m; they go with its inverse. 0: they hold for any.
   double block_size = 0.0;
-  /// True: second slopes are the same at any block size, so that their shares of K_n go with it.
-  bool keeps_second_slope = false;
+  /// Roles of the properties that hold at that block size too, and go with it.
+  std::vector<Role> with_size;
 
   ContactMaterial() = default;
   /// Makes a contact whose numbers are all zero, with the first option of each choice.
@@ -117,7 +117,7 @@ struct ContactMaterial {
   }
   /// Turns numbers of the law into those between blocks of another size, whose stiffnesses differ by a
   /// factor.
-  void scale_stiffnesses(double factor, std::span<double> among) const;
+  void scale_to_size(double factor, std::span<double> among) const;
 };
 
 /// Interface between blocks of two phases, as a deck states it.
@@ -167,8 +167,9 @@ struct ContactParameters {
   /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size. Without it they
   /// are fixed.
   std::optional<double> fracture_zone_size;
-  /// True: slopes beyond the first are those at that block size for any; false: they scale as K_n.
-  bool keeps_second_slope = false;
+  /// Roles of the properties that hold at that block size too, and go with it; all others but stiffnesses
+  /// hold at any.
+  std::vector<Role> with_size;
   std::vector<BearingInterface> bearings;
   std::string matrix;  ///< phase whose own contacts give the bearings' contacts their stiffness
 };

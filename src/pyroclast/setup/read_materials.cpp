@@ -262,7 +262,7 @@ std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curve
 Curve read_property(const Section& s, const PropertyInfo& info, const std::optional<Curve>& ratio,
                     bool& ratio_has_effect, CurveReader& curves) {
   const Curve curve = curves.read(s, info.key, info.unit, info.range, Meaning(info.meaning));
-  const bool scales = info.role == Role::strength || info.role == Role::energy;
+  const bool scales = info.role == Role::strength || is_energy(info.role);
   if (info.role == Role::hidden_cracks) {
     require_at_reference(s, info.key, curve, 0.0, kNoStrain);
     require_no_fall(s, info.key, curve, "these cracks only grow as the contact gets hotter", curves);
@@ -284,7 +284,7 @@ void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMateria
   bool has_effect = false;
   for (std::size_t i = 0; i < m.numbers.size(); ++i) {
     const Role role = m.law->properties[i].role;
-    if (role != Role::strength && role != Role::energy) continue;
+    if (role != Role::strength && !is_energy(role)) continue;
     m.residual_ratios[i] = ratio;
     has_effect = true;
   }
@@ -476,7 +476,8 @@ class InterfaceReader {
       s.error("law", fmt::format("has no meaning beside \"like\": the law is that of {}", *p.like));
     return other->contact.times(Role::strength, strength)
         .times(Role::cold_strength, strength)
-        .times(Role::energy, energy ? strength : 1.0);
+        .times(Role::energy, energy ? strength : 1.0)
+        .times(Role::sliding_energy, energy ? strength : 1.0);
   }
 
   const LawTable& read_law(const Section& s) {
@@ -683,16 +684,26 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
         s.quantity("t_b_block_size", unit::length, Range::positive(),
                    "block size √(area / count), of a solid ∛(volume / count), at which t_b and "
                    "stated stiffnesses hold");
-  if (scales)
-    c.keeps_second_slope = s.choice<bool>(
-        "second_slope",
-        {{"with K_n", false, "beta is the same at any block size: finer blocks yield along a steeper slope"},
-         {"fixed", true,
-          "beta holds at t_b_block_size and goes with the block size, so that beta K_n is the same, see "
-          "[f_c over the number of blocks](../validation/grains.md#f_c-over-the-number-of-blocks)"}},
-        false, "whether the slope of contacts beyond f_cm, beta K_n, depends on the block size");
-  else
-    s.know({"second_slope"});
+  const bool keeps_slope =
+      scales &&
+      s.choice<bool>(
+          "second_slope",
+          {{"with K_n", false,
+            "beta is the same at any block size: finer blocks yield along a steeper slope"},
+           {"fixed", true,
+            "beta holds at t_b_block_size and goes with the block size, so that beta K_n is the same, see "
+            "[f_c over the number of blocks](../validation/grains.md#f_c-over-the-number-of-blocks)"}},
+          false, "whether the slope of contacts beyond f_cm, beta K_n, depends on the block size");
+  const bool slides_by_volume =
+      scales &&
+      s.choice<bool>(
+          "mode_2_energy",
+          {{"as stated", false, "G_f2 is the same at any block size: finer blocks lose more by sliding"},
+           {"block size", true,
+            "G_f2 holds at t_b_block_size and goes with the block size, so that sliding loses as much per "
+            "volume, see [One concrete](../validation/one_concrete.md)"}},
+          false, "whether the mode II fracture energy of contacts depends on the block size");
+  if (!scales) s.know({"second_slope", "mode_2_energy"});
   if (has_platens)
     c.bearings.push_back({.name = "platen",
                           .friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
@@ -701,12 +712,18 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
     s.know({"platen_friction"});
   InterfaceReader reader(s, phases, of_stones, on_cooling, find_law, curves);
   c.interfaces = reader.read();
-  const auto has_second_slope = [](const InterfaceParameters& interface) {
-    return std::ranges::any_of(interface.contact.law->properties,
-                               [](const PropertyInfo& info) { return info.role == Role::second_slope; });
+  const auto go_with_size = [&](bool stated, const char* key, Role role, const char* lacking) {
+    if (!stated) return;
+    const auto has_one = [role](const InterfaceParameters& interface) {
+      return std::ranges::any_of(interface.contact.law->properties,
+                                 [role](const PropertyInfo& info) { return info.role == role; });
+    };
+    if (std::ranges::none_of(c.interfaces, has_one))
+      s.error(key, fmt::format("has no meaning here: no contact law of these interfaces has {}", lacking));
+    c.with_size.push_back(role);
   };
-  if (c.keeps_second_slope && std::ranges::none_of(c.interfaces, has_second_slope))
-    s.error("second_slope", "has no meaning here: no contact law of these interfaces has a second slope");
+  go_with_size(keeps_slope, "second_slope", Role::second_slope, "a second slope");
+  go_with_size(slides_by_volume, "mode_2_energy", Role::sliding_energy, "an energy of sliding");
   check_pairs(reader.sections(), c.interfaces);
   check_complete(s, c.interfaces, phases, matrix);
   return c;

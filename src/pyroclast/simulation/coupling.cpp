@@ -78,7 +78,7 @@ BodyProperties by_block_size(const Model& model, std::vector<ZoneProperties> zon
     p.of_contact.push_back(set->second);
     if (!is_new) continue;
     ContactProperties scaled = interfaces[joint.interface];
-    contact.scale_stiffnesses(factor, scaled.numbers);
+    contact.scale_to_size(factor, scaled.numbers);
     validate(scaled, model.interface_names[joint.interface]);
     p.contacts.add(scaled);
   }
@@ -208,7 +208,7 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
     const auto to = p.contacts.add(*contact.law, contact.choices);
     contact.write_at(now, materials.property_temperature(now, before.of_contact(c, now)), to);
     if (const double size = model.joint(c).block_size; size > 0.0)
-      contact.scale_stiffnesses(contact.stiffness_between(size), to);
+      contact.scale_to_size(contact.stiffness_between(size), to);
     p.contacts.validate(c, model.interface_names[interface]);
   }
   return p;

@@ -51,7 +51,7 @@ struct SolidSpecimen {
   double covered_fraction = 0.0;  ///< see SuperposedBalls
   std::vector<double> fraction;   ///< volume of the blocks of each phase over that of the specimen
   std::vector<SizeClass> classes;
-  int small_stones = 0;  ///< stones that are smaller than two of the blocks around them
+  int small_stones = 0;  ///< stones that are smaller than three of the blocks around them
   CellMetrics metrics;
 };
 
