@@ -296,6 +296,21 @@ class StrengthOfARun(unittest.TestCase):
         self.assertEqual((self.folder / "alone/fork/history.csv").read_bytes(),
                          (self.folder / "hot/history.csv").read_bytes())
 
+    def test_check_tells_by_what_the_body_of_that_run_is_another(self):
+        def told(deck: str, *words: str) -> str:
+            return subprocess.run([PROGRAM, "check", deck, "--set", "blocks.count=60", *words], cwd=self.folder,
+                                  capture_output=True, text=True, check=True).stdout
+
+        load = ('[[stages]]\nkind = "load"\nlevel = 0.2\nf_c = { run = "cold" }\nramp_time = "20 ms"\n'
+                'unbalanced_ratio = 1e-3\nmost_steps = 20000\n\n')
+        starter = (CASES / "starter.toml").read_text()
+        last = starter.rindex("[[stages]]", 0, starter.index('kind = "compress"'))
+        (self.folder / "same.toml").write_text(starter[:last] + load + starter[last:])
+        another = "a load is a share of f_c of the run cold, whose body is another one: "
+        self.assertNotIn(another, told("same.toml"))
+        self.assertIn(another + "specimen.seed was 1, and is 2 here", told("same.toml", "--seed", "2"))
+        self.assertIn(another, told("hot.toml"))
+
     def test_a_run_without_one_is_refused_with_its_reason(self):
         self.run_deck(CASES / "starter.toml", *self.SMALL, "--set", "stages[1].velocity=4 mm/s", "--set",
                       "stages[1].stop_strain=2e-4", "--out", "short", code=0)

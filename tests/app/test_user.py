@@ -716,7 +716,6 @@ class StrengthThatRemembers(UserTest):
         self.assertIn(told, self.pyroclast("check", self.CASE, "--set", "stages[1].f_c=45 MPa").stdout)
 
 
-
 class Heating(UserTest):
     def run_case(self, name: str, *arguments: str) -> dict:
         done = self.pyroclast("run", CASES / f"{name}.toml", *arguments, "--out", name)

@@ -99,6 +99,26 @@ void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   }
 }
 
+/// Warns of loads that are shares of the strength which another body had.
+void warn_of_other_bodies(const DeckOfRun& opened) {
+  RunChoices choices = opened.choices;
+  choices.seed.reset();  // a run's deck has its own
+  choices.body.clear();
+  choices.needs_code = false;
+  for (const auto& stage : opened.setup.stages) {
+    const auto* load = dynamic_cast<const Load*>(stage.get());
+    if (!load || !exists(load->keys().run / "deck.toml")) continue;
+    const auto& run = load->keys().run;
+    const DeckOfRun of(Deck::open(run / "deck.toml"), run, choices);
+    const std::string other =
+        first_difference(body_inputs(of.deck, of.setup), body_inputs(opened.deck, opened.setup));
+    if (!other.empty())
+      fmt::print("{}", describe_warnings({fmt::format(
+                           "a load is a share of f_c of the run {}, whose body is another one: {}",
+                           run.string(), other)}));
+  }
+}
+
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -257,6 +277,7 @@ int check(const RunOptions& options) {
 
   print_strength(setup);
   warn_of_strengths(setup, *simulation);
+  warn_of_other_bodies(opened);
   const std::size_t stages = setup.stages.size();
   const bool has_fields = setup.has_fields;
   const Rehearsal cost = rehearse(std::move(setup), *simulation);

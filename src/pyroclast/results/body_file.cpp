@@ -248,6 +248,20 @@ BodyInputs body_inputs(const Deck& deck, const Setup& setup) {
   return inputs;
 }
 
+std::string first_difference(const BodyInputs& was, const BodyInputs& is) {
+  const auto stated = [](const BodyInputs& of, const std::string& key) {
+    const auto found = of.find(key);
+    return found == of.end() ? std::string("not stated") : found->second;
+  };
+  std::set<std::string> keys;
+  for (const auto* of : {&was, &is})
+    for (const auto& [key, value] : *of) keys.insert(key);
+  for (const std::string& key : keys)
+    if (stated(was, key) != stated(is, key))
+      return fmt::format("{} was {}, and is {} here", key, stated(was, key), stated(is, key));
+  return {};
+}
+
 SpecimenTold told_of(const MadeSpecimen& made, const specimen::SpecimenParameters& asked, std::string text) {
   return {std::move(text), warnings(made), grains(made), specimen_facts(made).dump(),
           specimen_files(made, asked)};
@@ -323,20 +337,10 @@ BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
 }
 
 void BodyFile::require(const BodyInputs& inputs) const {
-  const auto own = table_.at("inputs").get<BodyInputs>();
-  const auto stated = [](const BodyInputs& of, const std::string& key) {
-    const auto found = of.find(key);
-    return found == of.end() ? std::string("not stated") : found->second;
-  };
-  std::set<std::string> keys;
-  for (const auto* of : {&own, &inputs})
-    for (const auto& [key, value] : *of) keys.insert(key);
-  for (const std::string& key : keys)
-    if (stated(own, key) != stated(inputs, key))
-      throw Error(
-          fmt::format("{}: is the body of another deck: {} was {}, and is {} here; make it anew, or run "
-                      "without it",
-                      path_.string(), key, stated(own, key), stated(inputs, key)));
+  const std::string other = first_difference(table_.at("inputs").get<BodyInputs>(), inputs);
+  if (!other.empty())
+    throw Error(fmt::format("{}: is the body of another deck: {}; make it anew, or run without it",
+                            path_.string(), other));
 }
 
 template <class T>

@@ -20,6 +20,9 @@ using BodyInputs = std::map<std::string, std::string>;
 /// and what its interfaces and bearings are. Numbers of materials and contacts are not among them.
 BodyInputs body_inputs(const Deck& deck, const Setup& setup);
 
+/// Returns the first input by which two bodies differ, with what it was and is; empty: they are the same.
+std::string first_difference(const BodyInputs& was, const BodyInputs& is);
+
 /// Returns what is told of a specimen.
 /// \param text  description for the screen
 SpecimenTold told_of(const MadeSpecimen& made, const specimen::SpecimenParameters& asked, std::string text);

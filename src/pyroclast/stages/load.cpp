@@ -30,6 +30,7 @@ std::string read_run(const Section& s, const std::filesystem::path& run, Load::K
     s.needs_file(found.manifest);
     s.needs_file(found.facts);
     keys.strength = found.value;
+    keys.run = run;
     if (!found.doubts.empty())
       s.warn("run", fmt::format("its f_c, {:.4g} MPa, is in doubt: {}", found.value * 1e-6, found.doubts));
     return fmt::format("of the run of deck {}", found.deck_sha256.substr(0, kShortHash));
