@@ -31,7 +31,8 @@ std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
 
 std::optional<BodyOfRun> body_of(const DeckOfRun& opened) {
   if (!opened.body) return std::nullopt;
-  return BodyOfRun{opened.choices.body, opened.body->hash()};
+  // a resume may begin in another directory
+  return BodyOfRun{std::filesystem::absolute(opened.choices.body).lexically_normal(), opened.body->hash()};
 }
 
 /// Returns the folder into which this process writes the files of a run; none on ranks but the first.
