@@ -1,0 +1,110 @@
+"""Studies of bodies: cases with changes, each run with some seeds, and one table of what they bear."""
+
+import argparse
+import dataclasses
+import functools
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import runs
+
+
+@dataclasses.dataclass(frozen=True)
+class Body:
+    """A case with changes, and the seeds that it is run with."""
+
+    case: str
+    changes: list[str] = dataclasses.field(default_factory=list)
+    seeds: tuple[int, ...] = (1, 2, 3)
+
+    def but(self, *changes: str) -> "Body":
+        """The same with more changes."""
+        return dataclasses.replace(self, changes=[*self.changes, *changes])
+
+
+def with_properties(**values: str) -> list[str]:
+    """Changes of the mortar's contacts."""
+    return [f"contacts.mortar_mortar.{key}={value}" for key, value in values.items()]
+
+
+@dataclasses.dataclass(frozen=True)
+class Studies:
+    """Bodies by study and name, the table of their rows, and what a row has beside the key by which it is known.
+
+    deck_of: the deck of a case. told_of: what a run's folder tells of a body beside its summary, by column.
+    """
+
+    table: Path
+    folder: Path
+    columns: tuple[str, ...]
+    bodies: dict[str, dict[str, Body]]
+    deck_of: Callable[[str], Path]
+    told_of: Callable[[Body, Path], dict[str, Any]]
+
+    def run(self, study: str, only: list[str] | None, seeds: list[int] | None, jobs: int) -> None:
+        """Runs each body of a study with each seed that the table lacks. A run that fails is told; the others go on."""
+        bodies = self.bodies[study]
+        for name in only or ():
+            if name not in bodies:
+                raise SystemExit(f"{name!r} is no body of {study}; there are: {', '.join(map(repr, bodies))}")
+        wanted = [(name, body, seed) for name, body in bodies.items() if not only or name in only
+                  for seed in body.seeds if not seeds or seed in seeds]
+        table = runs.read_table(self.table)
+        makers = [functools.partial(self._row, study, *what) for what in wanted
+                  if not runs.stands(table, self._key(study, *what))]
+        runs.fill_table(self.table, self.columns, makers, jobs, ("study", "body", "seed"), self._order)
+
+    def rows(self, study: str, name: str) -> list[dict[str, str]]:
+        return [row for row in runs.read_table(self.table) if (row["study"], row["body"]) == (study, name)]
+
+    def _row(self, study: str, name: str, body: Body, seed: int) -> dict[str, str]:
+        folder, deck = self.folder / f"{study}-{_slug(name)}-{seed}", self.deck_of(body.case)
+        runs.run(deck, folder, seed, body.changes, again=False)
+        summary = json.loads((folder / "summary.json").read_text())
+        results = summary["stages"][-1]["results"]
+        told = summary | summary["specimen"] | results | self.told_of(body, folder)
+        row = self._key(study, name, body, seed) | {key: told[key] for key in self.columns if key in told}
+        return runs.rounded(row)
+
+    def _key(self, study: str, name: str, body: Body, seed: int) -> dict[str, str]:
+        return {"deck": runs.deck_hash(self.deck_of(body.case), body.changes),
+                "physics_version": runs.physics_version(), "study": study, "body": name, "seed": str(seed)}
+
+    def _order(self, row: dict[str, str]) -> tuple[int, int, int]:
+        study = list(self.bodies).index(row["study"])
+        return study, list(self.bodies[row["study"]]).index(row["body"]), int(row["seed"])
+
+
+def numbers(rows: list[dict[str, str]], column: str) -> np.ndarray:
+    return np.array([float(row[column]) for row in rows if row[column]])
+
+
+def mean_and_spread(values: np.ndarray, digits: int, of: int) -> str:
+    """Mean, standard deviation over seeds, and how many of the rows have a value where some lack one."""
+    if not len(values):
+        return "none"
+    spread = f" ± {values.std(ddof=1):.{digits}f}" if len(values) > 1 else ""
+    return f"{values.mean():.{digits}f}{spread}" + (f" ({len(values)} of {of})" if len(values) < of else "")
+
+
+def ask(description: str, studies: Studies, **shown: Callable[[], None]) -> None:
+    """Reads the command line: a study, or something to show of what stands in the table."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=(*studies.bodies, *shown))
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="bodies of the study")
+    parser.add_argument("--seeds", type=int, nargs="+")
+    parser.add_argument("--jobs", type=int, default=2)
+    asked = parser.parse_args()
+    studies.folder.mkdir(parents=True, exist_ok=True)
+    if asked.what in shown:
+        shown[asked.what]()
+    else:
+        studies.run(asked.what, asked.only, asked.seeds, asked.jobs)
+
+
+def _slug(name: str) -> str:
+    return "".join(c if c.isalnum() or c == "." else "-" for c in name)
