@@ -6,9 +6,10 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/simulation/coupling.hpp"
-#include "pyroclast/solid/laguerre.hpp"
+#include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/spaced_seeds.hpp"
 #include "pyroclast/stages/compress.hpp"
 
 namespace bench {
@@ -50,10 +51,10 @@ std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {
   auto parameters = setup.specimen;
   parameters.blocks.count = static_cast<int>(std::lround(zones / kZonesPerBlock));
   const auto made = pyroclast::specimen::make_specimen(parameters);
-  const auto& box = made.region.box();
+  const auto& box = made.outline.box();
   auto sample = std::make_unique<Sample<2>>();
-  sample->model = pyroclast::make_concrete_model(made, setup.thickness, setup.moving->contacts.interfaces,
-                                                 setup.moving->bearings);
+  sample->model =
+      pyroclast::make_model(made, setup.thickness, setup.moving->contacts.interfaces, setup.moving->bearings);
   sample->size = {{box.width(), box.height()}};
   const auto& model = sample->model;
   for (const char* const platen : {"bottom_platen", "top_platen"})
@@ -65,11 +66,11 @@ std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {
 }
 
 std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
-  const pyroclast::solid::Prism body(pyroclast::specimen::Region::rectangle(kEdgeOfCube, kEdgeOfCube),
-                                     pyroclast::solid::Prism::Axis::z, kEdgeOfCube);
+  const pyroclast::specimen::Prism body(pyroclast::specimen::Region::rectangle(kEdgeOfCube, kEdgeOfCube),
+                                        pyroclast::specimen::Prism::Axis::z, kEdgeOfCube);
   pyroclast::Random random(1);
   const auto result =
-      pyroclast::solid::laguerre_complex(spaced_seeds(body, blocks, kSpreadOfRadii, random), body);
+      pyroclast::specimen::laguerre_cells(spaced_seeds(body, blocks, kSpreadOfRadii, random), body);
   if (!result.broken.empty()) throw Error("a cell of the cube is empty or does not match its neighbours");
   auto sample = std::make_unique<Sample<3>>();
   sample->size = {{kEdgeOfCube, kEdgeOfCube, kEdgeOfCube}};
@@ -78,7 +79,7 @@ std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
   const pyroclast::InterfaceTable interfaces(model.material_names, setup.moving->contacts.interfaces);
   model.interface_names = interfaces.names();
   const int matrix = pyroclast::place_in(model.material_names, setup.specimen.matrix);
-  add_cells(model, result.complex, std::vector<int>(blocks, matrix),
+  add_cells(model, result.cells, std::vector<int>(blocks, matrix),
             [of_matrix = interfaces.between(matrix, matrix)](int, int) { return of_matrix; });
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     if (model.position[g][1] == 0.0) sample->held.push_back(g);

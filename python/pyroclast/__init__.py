@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from .live.run import Sets as Sets
     from .live.run import State as State
     from .live.run import Views as Views
-    from .live.specimen import SolidSpecimen as SolidSpecimen
     from .live.specimen import Specimen as Specimen
     from .live.stages import Key as Key
     from .live.stages import Stage as Stage
@@ -82,7 +81,7 @@ else:
         "live.functions": ("Function",),
         "live.laws": ("Law",),
         "live.run": ("Fields", "History", "Observer", "Run", "Sets", "State", "Views"),
-        "live.specimen": ("SolidSpecimen", "Specimen"),
+        "live.specimen": ("Specimen",),
         "live.stages": ("Key", "Stage", "Verdict"),
         "live.units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
         "study.study": ("Study",),

@@ -15,7 +15,6 @@ MODULES = [
     "deck",
     "tables",
     "specimen",
-    "solid",
     "material",
     "model",
     "thermal",
@@ -36,7 +35,6 @@ MODULES = [
 NEVER = {
     "tables": {"deck": ["read_choice.hpp", "read_choice.cpp"]},
     "specimen": {"units": [], "deck": []},
-    "solid": {"units": [], "deck": []},
     "material": {"deck": ["curve_reader.hpp", "curve_reader.cpp"]},
     "model": {"units": [], "deck": []},
     "thermal": {"units": [], "deck": []},

@@ -10,8 +10,9 @@
 
 #include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
-#include "pyroclast/model/solid_model.hpp"
-#include "pyroclast/solid/laguerre.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/spaced_seeds.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "table_2.hpp"
 
@@ -43,13 +44,13 @@ inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint
   p.blocks.count = blocks;
   p.blocks.shortest_edge = 0.2;
   const auto specimen = specimen::make_specimen(p);
-  const auto& cells = specimen.tessellation.cells;
+  const auto& cells = specimen.cells.cells;
   ModelOf<2> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   for (const auto& cell : cells) {
     std::vector<Vec<2>> corners;
-    for (int v : cell) corners.push_back(turned(specimen.tessellation.vertices[v], angle));
+    for (int v : cell) corners.push_back(turned(specimen.cells.vertices[v], angle));
     const auto zoned = specimen::zone_block(corners);
     model.add_block(zoned.gridpoints, zoned.zones, 0);
   }
@@ -58,10 +59,10 @@ inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint
       if (cells[cell][i] == vertex) return model.block_gridpoints[cell] + static_cast<int>(i);
     return -1;
   };
-  for (const auto& e : specimen::edges(specimen.tessellation))
-    if (e.right >= 0)
-      model.join_faces({gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)},
-                       {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, 0);
+  for (const auto& e : specimen::facets(specimen.cells))
+    if (e.outer >= 0)
+      model.join_faces({gridpoint(e.inner, e.corners[0]), gridpoint(e.inner, e.corners[1])},
+                       {gridpoint(e.outer, e.corners[0]), gridpoint(e.outer, e.corners[1])}, 0);
   return model;
 }
 
@@ -172,7 +173,7 @@ inline ModelOf<3> cubes(int count, double d) {
 }
 
 /// Adds a face between two cells, or on the surface where `outer` is -1.
-inline void add_face(solid::Complex& complex, std::vector<int> corners, int inner, int outer) {
+inline void add_face(specimen::Cells<3>& complex, std::vector<int> corners, int inner, int outer) {
   const int face = static_cast<int>(complex.faces.size());
   complex.faces.push_back({std::move(corners), inner, outer, outer < 0 ? 0 : -1});
   for (const int cell : {inner, outer})
@@ -184,7 +185,7 @@ inline void add_face(solid::Complex& complex, std::vector<int> corners, int inne
 /// begins at the radius 0 are pyramids. Block b stands in shell b / (3 n^2). Materials are `inner` and
 /// `outer`. \param inner_shells  number of shells of the inner material
 inline ModelOf<3> octant(const std::vector<double>& radii, int n, int inner_shells = 0) {
-  solid::Complex complex;
+  specimen::Cells<3> complex;
   std::map<std::array<int, 4>, int> vertices;     // by level and place on the cube
   std::map<std::vector<int>, std::size_t> faces;  // by their corners, ascending
   std::vector<int> material;
@@ -245,10 +246,10 @@ inline ModelOf<3> octant(const std::vector<double>& radii, int n, int inner_shel
 /// Raw Laguerre cells of a cube, one material, one interface. Their corners within are moved at random by up
 /// to a share of their shortest edge along each axis, which bends faces.
 inline ModelOf<3> laguerre_cells(int blocks, double edge, std::uint64_t seed, double shake = 0.0) {
-  const solid::Prism body(specimen::Region::rectangle(edge, edge), solid::Prism::Axis::z, edge);
+  const specimen::Prism body(specimen::Region::rectangle(edge, edge), specimen::Prism::Axis::z, edge);
   Random random(seed);
-  solid::Complex complex =
-      solid::laguerre_complex(solid::spaced_seeds(body, blocks, 0.3, random), body).complex;
+  specimen::Cells<3> complex =
+      specimen::laguerre_cells(specimen::spaced_seeds(body, blocks, 0.3, random), body).cells;
   std::vector<double> shortest(complex.vertices.size(), edge);
   for (const auto& face : complex.faces)
     for (std::size_t i = 0; i < face.corners.size(); ++i) {

@@ -243,8 +243,8 @@ TEST(CoolingVerification, LeavesTheMisfitOfADiscInARing) {
 // ---- A specimen under load: R
 
 TEST(CreepVerification, OfASpecimenIsThatOfItsMatrixTimesR) {
-  const specimen::Specimen specimen = small_specimen(1200);
-  const ModelOf<2> model = make_concrete_model(specimen, 1.0);
+  const specimen::Specimen<2> specimen = small_specimen(1200);
+  const ModelOf<2> model = make_model(specimen, 1.0);
   const double size = specimen.metrics.mean_size, layer = 1.6e-3;
   const double with_contacts = 1.0 + layer / size;
   const double inclusions = specimen.fraction[aggregate_material];

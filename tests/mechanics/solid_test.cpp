@@ -19,7 +19,7 @@ using namespace bodies;
 constexpr double kYoung = 29.4e9, kPoisson = 0.2;
 
 /// A body of two materials, 0 and 1, from cells; contacts between the two are of the second interface.
-ModelOf<3> of_two_materials(const solid::Complex& complex, const std::vector<int>& material) {
+ModelOf<3> of_two_materials(const specimen::Cells<3>& complex, const std::vector<int>& material) {
   ModelOf<3> model;
   model.material_names = {"lower", "upper"};
   model.interface_names = {"within", "between"};
@@ -34,7 +34,7 @@ constexpr double kCube = 0.005;  // m
 /// about its mean plane, which is level.
 ModelOf<3> layers_on_saddles(double angle) {
   const double rise = kCube * std::tan(angle) / (2.0 * std::numbers::sqrt2);
-  solid::Complex complex;
+  specimen::Cells<3> complex;
   const auto vertex = [](int i, int j, int k) { return (k * (kCubes + 1) + j) * (kCubes + 1) + i; };
   for (int k = 0; k <= 2; ++k)
     for (int j = 0; j <= kCubes; ++j)
@@ -238,7 +238,7 @@ TEST(BentCells, ForcesOfContactsHaveNeitherSumNorMoment) {
 
 /// Two prisms of one material over a polygon of so many corners, one on the other.
 ModelOf<3> two_prisms(int corners, double radius, double height) {
-  solid::Complex complex;
+  specimen::Cells<3> complex;
   for (int level = 0; level < 3; ++level)
     for (int i = 0; i < corners; ++i) {
       // not regular, so that no two shares of the area are alike

@@ -19,7 +19,7 @@ TEST(Chunks, HaveTheBlocksThatATestAsksFor) {
   const SmallChunks chunks(30);
   const ModelOf<2> with_platens = between_platens(specimen, 0.01, 0.5);
   EXPECT_EQ(with_platens.chunk_blocks, (std::vector<int>{0, 1, 31, 61, 91, 101, 102}));
-  EXPECT_EQ(make_concrete_model(specimen, 0.5, {}, {}).chunk_blocks, (std::vector<int>{0, 30, 60, 90, 100}));
+  EXPECT_EQ(make_model(specimen, 0.5, {}, {}).chunk_blocks, (std::vector<int>{0, 30, 60, 90, 100}));
 }
 
 TEST(Chunks, RefuseAnyOtherText) {

@@ -35,7 +35,7 @@ TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
 TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
   const auto specimen = small_specimen();
   const auto with = between_platens(specimen, 0.01, 1.0);
-  const auto without = make_concrete_model(specimen, 1.0);
+  const auto without = make_model(specimen, 1.0);
   EXPECT_EQ(without.block_count(), with.block_count() - 2);
   const auto at_platens = std::count_if(with.contacts.begin(), with.contacts.end(),
                                         [&](const auto& c) { return with.is_of_bearing(c); });
@@ -194,7 +194,7 @@ TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   p.blocks.shortest_edge = 0.2;
   const auto specimen = specimen::make_specimen(p);
   const ModelOf<2> body =
-      make_concrete_model(specimen, 0.5, {}, {{"strip", "strip_seat", 0.006, "steel", "glue", true}});
+      make_model(specimen, 0.5, {}, {{"strip", "strip_seat", 0.006, "steel", "glue", true}});
   double seat = 0.0;
   for (const auto& c : body.contacts) {
     if (!body.is_of_bearing(c)) continue;

@@ -5,7 +5,7 @@
 namespace pyroclast {
 
 /// A specimen of 50 mm x 100 mm that is made in no time.
-inline specimen::Specimen small_specimen(int blocks = 300) {
+inline specimen::Specimen<2> small_specimen(int blocks = 300) {
   specimen::SpecimenParameters p;
   p.region = specimen::Region::rectangle(0.05, 0.1);
   p.seed = 2;
@@ -22,8 +22,9 @@ inline specimen::Specimen small_specimen(int blocks = 300) {
 }
 
 /// A specimen between two platens; thicknesses in m.
-inline ModelOf<2> between_platens(const specimen::Specimen& specimen, double of_platens, double thickness) {
-  return make_concrete_model(specimen, thickness, {}, platens(of_platens));
+inline ModelOf<2> between_platens(const specimen::Specimen<2>& specimen, double of_platens,
+                                  double thickness) {
+  return make_model(specimen, thickness, {}, platens(of_platens));
 }
 
 }  // namespace pyroclast

@@ -25,7 +25,7 @@ class Bodies(Case):
         a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()
         self.assertAlmostEqual(area / (60e-3 * 40e-3 - 0.5 * 30e-3 * 20e-3 - np.pi * 6e-3**2), 1.0, places=9)
-        self.assertAlmostEqual(run.specimen.area, area, places=12)
+        self.assertAlmostEqual(run.specimen.extent, area, places=12)
 
     def test_sets_are_indices_and_records_columns(self):
         made = plate(sets=[{"name": "halves", "of": "contacts", "box": [["25 mm", "0 mm"], ["35 mm", "40 mm"]]}],

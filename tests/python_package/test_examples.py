@@ -11,7 +11,7 @@ import unittest
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples" / "python"
 PACKAGE = pathlib.Path(os.environ["PYTHONPATH"].split(":")[0])
 CONFIGURATION = EXAMPLES.parents[1] / "pyproject.toml"
-BOUND = ("Body", "DeckText", "Session", "SolidSpecimen", "Specimen", "Table", "TomlFile")
+BOUND = ("Body", "DeckText", "Session", "Specimen", "Table", "TomlFile")
 BLOCKS = "120"
 COMPILES = ("own_law",)  # takes a minute where nothing is cached
 

@@ -83,8 +83,8 @@ class Made(Case):
             make()
         return str(raised.exception)
 
-    def solid(self, content, **options) -> pyroclast.SolidSpecimen:
-        return pyroclast.SolidSpecimen.read(self.file(content), **options)
+    def solid(self, content, **options) -> pyroclast.Specimen:
+        return pyroclast.Specimen.read(self.file(content), **options)
 
 
 class Rounded(Made):
@@ -109,7 +109,7 @@ class Rounded(Made):
                 made = self.solid(whole | {"vertices_m": rounded(whole["vertices_m"])})
                 self.assertLess(np.abs(made.vertices - whole["vertices_m"]).max(), 1e-8)
                 exact = self.solid(whole)
-                self.assertAlmostEqual(made.volume, exact.volume, delta=1e-12 * exact.volume)
+                self.assertAlmostEqual(made.extent, exact.extent, delta=1e-12 * exact.extent)
                 self.assertEqual(made.sides, exact.sides)
                 lowest, highest = np.abs(made.vertices[:, 1]).min(), made.vertices[:, 1].max()
                 self.assertEqual((lowest, highest), (0.0, exact.size[1]))  # ends are level again
@@ -147,7 +147,7 @@ class Rounded(Made):
                 for rounded in (np.round(at, 9), at.astype(np.float32), at + noise.uniform(-1e-9, 1e-9, at.shape)):
                     made = pyroclast.Specimen.from_arrays(rounded, cells, ["mortar"] * len(cells), unit="m")
                     self.assertEqual(made.sides, sides)
-                    self.assertAlmostEqual(made.area, 0.04, delta=1e-7 * 0.04)
+                    self.assertAlmostEqual(made.extent, 0.04, delta=1e-7 * 0.04)
                     self.assertLess(np.abs(made.vertices - at).max(), 3e-8)
 
     def test_corners_on_a_straight_line_may_bend_inwards_by_rounding(self):
@@ -221,7 +221,7 @@ class Joined(Made):
         for gap in (0.0, 5e-7, -5e-7):
             joined = self.solid(parted_cubes(gap), join="1 um")
             self.assertEqual(joined.vertices.tolist(), shared.vertices.tolist())
-            self.assertEqual([face.tolist() for face in joined.faces], [face.tolist() for face in shared.faces])
+            self.assertEqual([face.tolist() for face in joined.facets], [face.tolist() for face in shared.facets])
             self.assertEqual(joined.neighbours.tolist(), shared.neighbours.tolist())
         self.assertIn("2 pieces", self.refusal(lambda: self.solid(parted_cubes(1e-4), join="1 um")))
 
@@ -349,11 +349,15 @@ class InSpace(Made):
             lambda: pyroclast.Specimen.from_image(np.zeros((9, 9, 9), int), "1 mm", {0: "mortar"}, blocks=9)))
 
     def test_files(self):
-        cubes = self.file(two_cubes())
-        self.assertIn(self.HOW, self.refusal(lambda: pyroclast.Specimen.read(cubes)))
         at, cells = grid(2)
         plane = {"phases": ["mortar"], "vertices_m": at.tolist(), "cells": cells, "phase": [0] * 4}
-        self.assertIn('[specimen] shape = "cells"', self.refusal(lambda: self.solid(plane)))
+        for content, dimension, other, told in ((two_cubes(), 3, "cells", self.HOW),
+                                                (plane, 2, "polyhedra", '[specimen] shape = "cells"')):
+            file = self.file(content)
+            self.assertEqual(pyroclast.Specimen.read(file).dimension, dimension)
+            deck = self.folder() / "deck.toml"
+            deck.write_text(HEATED.format(specimen=f'shape = "{other}"\nfile = "{file}"'))
+            self.assertIn(told, self.refusal(lambda: pyroclast.Deck(deck).check()))
 
     def test_tessellations(self):
         folder = self.folder()

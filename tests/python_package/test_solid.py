@@ -206,9 +206,9 @@ class Cylinder(unittest.TestCase):
         deck["blocks.count"] = 120
         specimen = deck.make_specimen()
         self.assertEqual(len(specimen.cells), 120)
-        self.assertAlmostEqual(specimen.volume, math.pi / 4.0 * DIAMETER**2 * HEIGHT, delta=1e-15)
+        self.assertAlmostEqual(specimen.extent, math.pi / 4.0 * DIAMETER**2 * HEIGHT, delta=1e-15)
         areas = np.zeros((120, 3))
-        for corners, (inner, outer) in zip(specimen.faces, specimen.neighbours):
+        for corners, (inner, outer) in zip(specimen.facets, specimen.neighbours):
             x = specimen.vertices[corners]
             vector = 0.5 * np.cross(x[1:-1] - x[0], x[2:] - x[0]).sum(axis=0)
             areas[inner] += vector
@@ -223,12 +223,12 @@ class Cylinder(unittest.TestCase):
             deck[path] = json.loads(value) if value[0] in "[0123456789" and " " not in value else value
         made = deck.make_specimen()
         made.save(self.place / "cylinder.json")
-        read = pyroclast.SolidSpecimen.read(self.place / "cylinder.json")
+        read = pyroclast.Specimen.read(self.place / "cylinder.json")
         for what in ("vertices", "neighbours", "phase", "stone"):
             np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
         self.assertEqual({read.phases[p] for p in read.phase[read.stone >= 0]}, {"aggregate"})
         self.assertEqual((read.sides, read.phases, read.shares, read.size), (made.sides, made.phases, made.shares, made.size))
-        self.assertEqual(len(read.balls), 0)
+        self.assertEqual(len(read.stones), 0)
         deck["specimen"] = read
         self.assertEqual(deck["specimen"], {"shape": "polyhedra", "file": "cells.json"})
         run = pyroclast.Run(deck, out=self.place / "again", threads=1).finish()
@@ -279,8 +279,8 @@ class Cylinder(unittest.TestCase):
                 ({"vertices_m": bent}, "lies on no side")):
             file.write_text(json.dumps({**good, **change}))
             with self.assertRaisesRegex(pyroclast.Error, told, msg=str(change)[:80]):
-                pyroclast.SolidSpecimen.read(file)
-        deck["specimen"] = pyroclast.SolidSpecimen.read(self.place / "good.json")
+                pyroclast.Specimen.read(file)
+        deck["specimen"] = pyroclast.Specimen.read(self.place / "good.json")
         for key, value, told in (("specimen.depth", "1 m", "has no meaning"), ("specimen.thickness", "1 m", "thickness"),
                                  ("blocks.count", 9, "no effect"),
                                  ("superposition.matrix", "paste", "none is the matrix")):
@@ -308,10 +308,10 @@ class Cylinder(unittest.TestCase):
         volume, phase = (vtk_to_numpy(data.GetArray(name)) for name in ("Volume", "phase"))
         for number, share in enumerate(specimen.shares.values()):
             # VTK leaves out slivers of the tetrahedra into which it cuts a block
-            self.assertAlmostEqual(volume[phase == number].sum() / specimen.volume, share, delta=2e-3)
+            self.assertAlmostEqual(volume[phase == number].sum() / specimen.extent, share, delta=2e-3)
 
 
-def pressed_quickly(deck: pyroclast.Deck, out: pathlib.Path) -> pyroclast.SolidSpecimen:
+def pressed_quickly(deck: pyroclast.Deck, out: pathlib.Path) -> pyroclast.Specimen:
     """Presses a few blocks of a starter past the first cracks. Returns the specimen as it was made."""
     deck["output"].update(history_strain=2e-5, fields=False)
     deck["stages[1]"].update(stop_strain=6e-4, ramp_time="2 ms", velocity="4 mm/s")
@@ -321,7 +321,7 @@ def pressed_quickly(deck: pyroclast.Deck, out: pathlib.Path) -> pyroclast.SolidS
 
 
 def assert_same_bits(test: unittest.TestCase, place: pathlib.Path, deck: pyroclast.Deck,
-                     specimen: pyroclast.SolidSpecimen) -> None:
+                     specimen: pyroclast.Specimen) -> None:
     """The run `out` of a deck goes alike with the specimen given back, on two threads, and as a fork of its settling."""
     deck["specimen"] = specimen
     with pyroclast.Run(deck, out=place / "read", threads=2) as run:
@@ -348,7 +348,7 @@ class WithoutShortEdges(unittest.TestCase):
         self.assertGreater(facts["vertices_merged"], 300)
         self.assertTrue(15.0 < facts["largest_bend_deg"] < 20.0 + 1e-9)
         made.save(place / "cylinder.json")
-        read = pyroclast.SolidSpecimen.read(place / "cylinder.json")
+        read = pyroclast.Specimen.read(place / "cylinder.json")
         for what in ("vertices", "neighbours", "phase"):
             np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
         assert_same_bits(self, place, deck, read)
@@ -377,7 +377,7 @@ class Finer(unittest.TestCase):
         self.assertIn("from 12.000 mm where they are finest to 20.000 mm", told.stdout)
         self.assertIn("between others t_b goes with their size", told.stdout)
         made.save(place / "cylinder.json")
-        read = pyroclast.SolidSpecimen.read(place / "cylinder.json")
+        read = pyroclast.Specimen.read(place / "cylinder.json")
         for what in ("vertices", "neighbours", "phase", "block_size"):
             np.testing.assert_array_equal(getattr(read, what), getattr(made, what))
         good = json.loads((place / "cylinder.json").read_text())
@@ -385,7 +385,7 @@ class Finer(unittest.TestCase):
                              ([0.0, *good["block_size_m"][1:]], "cell 0 .from 0. has the size 0")):
             (place / "wrong.json").write_text(json.dumps({**good, "block_size_m": wrong}))
             with self.assertRaisesRegex(pyroclast.Error, words):
-                pyroclast.SolidSpecimen.read(place / "wrong.json")
+                pyroclast.Specimen.read(place / "wrong.json")
         assert_same_bits(self, place, deck, read)
 
 

@@ -93,7 +93,7 @@ class Arrays(Case):
         labels = ["mortar"] * 7 + ["stone"]
         made = pyroclast.Specimen.from_arrays(squares(), [SQUARES[0][::-1], *SQUARES[1:]], labels, unit="m")
         self.assertEqual(made.sides, ["bottom", "right", "top", "left", "hole_1"])
-        self.assertAlmostEqual(made.area, 8 * 0.02**2)
+        self.assertAlmostEqual(made.extent, 8 * 0.02**2)
         self.assertAlmostEqual(made.shares["stone"], 1 / 8)
         self.assertEqual([made.phases[i] for i in made.phase], labels)
         np.testing.assert_array_equal(made.vertices, squares())
@@ -156,7 +156,7 @@ class Arrays(Case):
         (folder / "mm.json").write_text(json.dumps(
             {**corners, "vertices_mm": [[0, 0], [100, 0], [100, 200], [0, 200]]}))
         self.assertEqual(body.check(), [])
-        self.assertAlmostEqual(body.make_specimen().area, 0.02)
+        self.assertAlmostEqual(body.make_specimen().extent, 0.02)
         wide = pyroclast.Deck.from_text(HEATED.format(
             'shape = "polygon"\nseed = 1\ncorners = [["0 m", "0 m"], ["20 m", "0 m"], ["0 m", "1 m"]]\n'
             '[blocks]\ncount = 40\nshortest_edge = 0.2'))
@@ -191,6 +191,17 @@ class Arrays(Case):
         pyroclast.Deck.from_text(HEATED.format(text + '\njoin = "1 um"'), folder=folder).check()
         self.refused("join", join=1e-6)
         self.refused("cell 0 .* two corners", join="25 mm")
+
+    def test_facets_of_the_plane_are_edges_with_the_block_on_their_left_first(self):
+        made = plate().make_specimen()
+        self.assertEqual((made.dimension, made.shape, made.size), (2, "cells", (0.06, 0.04)))
+        corners = [cell.tolist() for cell in made.cells]
+        for (start, end), (first, second) in zip(made.facets, made.neighbours):
+            self.assertEqual(corners[first][(corners[first].index(start) + 1) % len(corners[first])], end)
+            if second >= 0:
+                self.assertEqual(corners[second][corners[second].index(start) - 1], end)
+        self.assertEqual(np.bincount(made.neighbours[made.neighbours >= 0]).tolist(), [len(cell) for cell in corners])
+        self.assertEqual(made.stones.shape[1], 3)
 
     def test_a_run_of_them_is_made_again_from_its_folder(self):
         made = plate().make_specimen()
@@ -359,7 +370,7 @@ class Meshes(Case):
         made = plate().make_specimen()
         again = pyroclast.Specimen.from_meshio(made.to_meshio(), "phase", dict(enumerate(made.phases)), unit="m")
         self.assertEqual(sorted(map(len, again.cells)), sorted(map(len, made.cells)))
-        self.assertAlmostEqual(again.area, made.area, places=12)
+        self.assertAlmostEqual(again.extent, made.extent, places=12)
 
     def test_triangles_and_quads_with_lines_and_spare_points(self):
         points = np.column_stack([np.vstack([[[9.0, 9.0]], squares()]), np.zeros(17)])
@@ -438,12 +449,12 @@ class Meshes(Case):
         made = pyroclast.Specimen.from_meshio(meshio.Mesh(points, cells, cell_data={"k": [[1], [1], [1]]}), "k",
                                               {1: "mortar"}, unit="m")
         self.assertEqual(sorted(map(len, made.cells)), [3, 4])
-        self.assertAlmostEqual(made.area, 0.06)
+        self.assertAlmostEqual(made.extent, 0.06)
 
     def test_a_mesh_in_mm(self):
         mesh = self.two_quads(cell_data={"l": [[1, 1]]})
         mesh.points = mesh.points * 1000.0
-        self.assertAlmostEqual(pyroclast.Specimen.from_meshio(mesh, "l", {1: "mortar"}, unit="mm").area, 0.02)
+        self.assertAlmostEqual(pyroclast.Specimen.from_meshio(mesh, "l", {1: "mortar"}, unit="mm").extent, 0.02)
         with self.assertWarnsRegex(UserWarning, "200 m wide and 100 m high.*points of the mesh are in m"):
             pyroclast.Specimen.from_meshio(mesh, "l", {1: "mortar"}, unit="m")
 
@@ -458,7 +469,7 @@ class Images(Case):
         image = self.image()
         made = pyroclast.Specimen.from_image(image, 1 * mm, {0: "mortar", 1: "stone"}, blocks=400)
         self.assertEqual(made.sides, ["bottom", "right", "top", "left"])
-        self.assertAlmostEqual(made.area, 0.06 * 0.12, places=12)
+        self.assertAlmostEqual(made.extent, 0.06 * 0.12, places=12)
         self.assertAlmostEqual(made.shares["stone"], image.mean(), delta=0.01)
         self.assertGreater(made.agreement, 0.96)
         middle = np.array([made.vertices[cell].mean(axis=0) for cell in made.cells])
@@ -494,9 +505,9 @@ class Images(Case):
         image[np.hypot(x + 20.0, y) < 9.0] = 0
         image[:3, :3] = 1  # a crumb that does not hang together with the core
         made = pyroclast.Specimen.from_image(image, "1 mm", {0: None, 1: "mortar", 2: "stone"}, blocks=900)
-        self.assertAlmostEqual(made.area, 1e-6 * np.pi * (38.0**2 - 9.0**2), delta=0.03 * 4.3e-3)
+        self.assertAlmostEqual(made.extent, 1e-6 * np.pi * (38.0**2 - 9.0**2), delta=0.03 * 4.3e-3)
         self.assertEqual([side for side in made.sides if side.startswith("hole")], ["hole_1"])
-        self.assertAlmostEqual(made.shares["stone"] * made.area, 1e-6 * np.pi * 14.0**2, delta=0.1 * 6e-4)
+        self.assertAlmostEqual(made.shares["stone"] * made.extent, 1e-6 * np.pi * 14.0**2, delta=0.1 * 6e-4)
         speckled = np.where(np.random.default_rng(2).random((60, 60)) < 0.25, 0, 1)
         pyroclast.Specimen.from_image(speckled, "1 mm", {0: None, 1: "mortar"}, blocks=1500)
 

@@ -701,8 +701,8 @@ TEST(SummaryFile, TellsWhatTheBodyIs) {
   EXPECT_DOUBLE_EQ(told["t_b_m"], 1.6e-3);
   EXPECT_EQ(told["time_step_s"], r.simulation->motion().time_step());
   EXPECT_EQ(told["mass_over_real_mass"], r.simulation->motion().mass_ratio());
-  const auto& specimen = std::get<specimen::Specimen>(*r.simulation->specimen());
-  EXPECT_EQ(told["specimen"]["blocks"], specimen.tessellation.cells.size());
+  const auto& specimen = std::get<specimen::Specimen<2>>(*r.simulation->specimen());
+  EXPECT_EQ(told["specimen"]["blocks"], specimen.cells.cells.size());
   EXPECT_EQ(told["specimen"]["fraction_asked"], 0.1);
   double sum = 0.0;
   for (const auto& [phase, fraction] : told["specimen"]["fraction"].items()) sum += fraction.get<double>();

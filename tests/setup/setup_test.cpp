@@ -155,7 +155,7 @@ TEST(Setup, TakesTheSizeOfBlocksInThePlaceOfTheirNumber) {
   EXPECT_EQ(read(with(deck, "count = 5000", "size = \"3 mm\"")).specimen.blocks.count, 5000);
   const std::string disc = shipped_case("brazilian");
   const auto by_number = read(with(disc, "count = 2000", "count = 500")).specimen;
-  const double size = std::sqrt(by_number.region.area() / 500);
+  const double size = std::sqrt(by_number.region.extent() / 500);
   const auto by_size = read(with(disc, "count = 2000", fmt::format("size = \"{:.12g} m\"", size))).specimen;
   EXPECT_EQ(by_size.blocks.count, 500);
   EXPECT_EQ(by_size.region.pieces().size(), by_number.region.pieces().size());
@@ -180,7 +180,7 @@ TEST(FinerBlocks, CountIsOfAllAndSizeOfThoseFarAway) {
   // 750 blocks of 10 mm; the fine strip alone has 99 mm x 24 mm / (4 mm)²
   EXPECT_GT(by_size.blocks.count, 750 + 100);
   EXPECT_LT(by_size.blocks.count, 750 + 400);
-  EXPECT_DOUBLE_EQ(by_size.block_size(), std::sqrt(by_size.region.area() / by_size.blocks.count));
+  EXPECT_DOUBLE_EQ(by_size.block_size(), std::sqrt(by_size.region.extent() / by_size.blocks.count));
   const auto by_count = read(finer_beam(ligament, fmt::format("count = {}", by_size.blocks.count))).specimen;
   EXPECT_EQ(by_count.blocks.count, by_size.blocks.count);
   EXPECT_NEAR(by_count.blocks.largest_size, 10e-3, 0.02e-3);  // the count is rounded
@@ -207,7 +207,7 @@ TEST(FinerBlocks, StandNearWhateverHasAName) {
   const auto even = read(shipped_case("brazilian")).specimen,
              finer = read(with(disc, "count = 2000", "count = 5000")).specimen;
   EXPECT_GT(finer.region.pieces().size(), 1.5 * even.region.pieces().size());  // sides follow the blocks
-  EXPECT_NEAR(finer.region.area(), even.region.area(), 1e-12);
+  EXPECT_NEAR(finer.region.extent(), even.region.extent(), 1e-12);
 }
 
 TEST(FinerBlocks, WrongOnesAreRefusedWithTheirPlace) {
@@ -397,7 +397,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   ASSERT_EQ(phases_of(setup.block_materials),
             (std::vector<std::string>{"aggregate", "light", "pore", "steel", "mortar"}));
   const auto simulation = make_simulation(setup);
-  const auto& specimen = std::get<specimen::Specimen>(*simulation->specimen());
+  const auto& specimen = std::get<specimen::Specimen<2>>(*simulation->specimen());
   double sum = 0.0;
   for (std::size_t i = 0; i < specimen.phases.size(); ++i) {
     EXPECT_GT(specimen.fraction[i], 0.0) << specimen.phases[i];
@@ -438,7 +438,7 @@ TEST(Phases, StonesThatTouchMayHaveAnInterface) {
   deck = with(deck, "fraction = 0.34", "fraction = 0.45");
   const auto setup = read(deck);
   const auto simulation = make_simulation(setup);
-  const auto& specimen = std::get<specimen::Specimen>(*simulation->specimen());
+  const auto& specimen = std::get<specimen::Specimen<2>>(*simulation->specimen());
   const auto& model = simulation->model();
   const auto place = [&](const char* name) {
     return std::ranges::find(model.interface_names, name) - model.interface_names.begin();

@@ -11,7 +11,6 @@
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/part.hpp"
-#include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "ranks_in_threads.hpp"
 #include "solid/bodies.hpp"
@@ -31,22 +30,22 @@ std::vector<InterfaceParameters> apart() {
 }
 
 /// Squares of 1 m in rows: digits are stones, '.' is mortar.
-specimen::Specimen squares(const std::vector<std::string>& rows) {
-  specimen::Cells cells;
+specimen::Specimen<2> squares(const std::vector<std::string>& rows) {
+  specimen::GivenCells<2> cells;
   cells.phases = {"aggregate", "mortar"};
   const int columns = static_cast<int>(rows[0].size()), count = static_cast<int>(rows.size());
   std::vector<int> grain;
   for (int y = 0; y <= count; ++y)
     for (int x = 0; x <= columns; ++x)
-      cells.tessellation.vertices.push_back({{static_cast<double>(x), static_cast<double>(y)}});
+      cells.cells.vertices.push_back({{static_cast<double>(x), static_cast<double>(y)}});
   for (int y = 0; y < count; ++y)
     for (int x = 0; x < columns; ++x) {
       const int low = y * (columns + 1) + x, high = low + columns + 1;
-      cells.tessellation.cells.push_back({low, low + 1, high + 1, high});
+      cells.cells.cells.push_back({low, low + 1, high + 1, high});
       cells.phase.push_back(rows[y][x] == '.' ? 1 : 0);
       grain.push_back(rows[y][x] == '.' ? -1 : rows[y][x] - '0');
     }
-  specimen::Specimen made = specimen::specimen_from(std::move(cells));
+  specimen::Specimen<2> made = specimen::specimen_from(std::move(cells));
   made.grain = std::move(grain);
   return made;
 }
@@ -59,8 +58,9 @@ std::vector<ContactMaterial> contacts_of(const Model& model) {
   return contacts;
 }
 
-Skeleton of_squares(const specimen::Specimen& specimen, const std::vector<InterfaceParameters>& interfaces) {
-  const auto model = make_concrete_model(specimen, 0.5, interfaces);
+Skeleton of_squares(const specimen::Specimen<2>& specimen,
+                    const std::vector<InterfaceParameters>& interfaces) {
+  const auto model = make_model(specimen, 0.5, interfaces);
   return largest_skeleton(model, specimen.grain, contacts_of(model));
 }
 
@@ -87,7 +87,7 @@ TEST(Skeleton, IsLargerThanAFewStones) {
   const auto line = [](const std::vector<std::string>& rows,
                        const std::vector<InterfaceParameters>& interfaces) {
     const auto made = squares(rows);
-    const auto model = make_concrete_model(made, 1.0, interfaces);
+    const auto model = make_model(made, 1.0, interfaces);
     return skeleton(model, made.grain, contacts_of(model));
   };
   const std::vector<std::string> small{"0..1", "2345", "...."}, large{"0..0", "0000", "1..."};
@@ -102,7 +102,7 @@ TEST(Skeleton, BlocksOfNoStoneHoldTogether) {
   const auto interfaces_of = [](std::vector<int> grain) {
     auto row = squares({"0123"});
     row.grain = std::move(grain);
-    const auto model = make_concrete_model(row, 1.0, apart());
+    const auto model = make_model(row, 1.0, apart());
     std::vector<std::string> names;
     for (int face = 0; face < model.face_count(); ++face)
       names.push_back(model.interface_names[model.joint(model.face_contacts[face]).interface]);
@@ -114,7 +114,7 @@ TEST(Skeleton, BlocksOfNoStoneHoldTogether) {
 }
 
 TEST(Skeleton, IsNotKnownWithoutStones) {
-  const auto model = make_concrete_model(squares({"0123"}), 1.0);
+  const auto model = make_model(squares({"0123"}), 1.0);
   EXPECT_EQ(skeleton(model, {}, contacts_of(model)), "");
 }
 
@@ -132,11 +132,11 @@ TEST(Skeleton, OfBallsRunsThroughASolid) {
   p.blocks.count = 1000;
   p.blocks.radius_spread = 0.3;
   p.superposition = specimen::Superposition::fit;
-  const solid::SolidSpecimen solid = solid::make_specimen(p, solid::cuboid(0.08, 0.08, 0.08));
-  const auto joined = make_solid_model(solid);
+  const specimen::Specimen<3> solid = specimen::make_specimen<3>(p, specimen::cuboid(0.08, 0.08, 0.08));
+  const auto joined = make_model(solid);
   const Skeleton found = largest_skeleton(joined, solid.grain, contacts_of(joined));
   EXPECT_GT(found.share, 0.8);
-  EXPECT_GT(found.stones, std::ssize(solid.balls) / 2);
+  EXPECT_GT(found.stones, std::ssize(solid.stones) / 2);
   EXPECT_NE(skeleton(joined, solid.grain, contacts_of(joined)).find("of their volume is one cluster of"),
             std::string::npos);
   auto in_chunks = joined;
@@ -148,7 +148,7 @@ TEST(Skeleton, OfBallsRunsThroughASolid) {
     EXPECT_EQ(on_ranks.volume, ranks->is_first() ? found.volume : 0.0);
     EXPECT_EQ(on_ranks.of_largest, ranks->is_first() ? found.of_largest : 0.0);
   });
-  const auto parted = make_solid_model(solid, apart());
+  const auto parted = make_model(solid, 1.0, apart());
   EXPECT_EQ(largest_skeleton(parted, solid.grain, contacts_of(parted)).stones, 1);
   EXPECT_EQ(skeleton(parted, solid.grain, contacts_of(parted)), "");
 }

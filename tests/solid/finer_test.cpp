@@ -10,11 +10,13 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
-#include "pyroclast/model/solid_model.hpp"
-#include "pyroclast/solid/polyhedra.hpp"
-#include "pyroclast/solid/specimen.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/polyhedra_file.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 namespace {
 
 constexpr double kFine = 5e-3, kLargest = 10e-3, kReach = 12e-3;
@@ -23,17 +25,15 @@ constexpr double kSlopeOfSize = 0.4 / 2.2;
 constexpr double kGrowing = (kLargest - kFine) / kSlopeOfSize;  // 27.5 mm
 
 /// Asks for blocks of mortar that are finer near a part.
-specimen::SpecimenParameters finer_near(specimen::FinerPart part, const Prism& body, std::uint64_t seed,
-                                        double shortest_edge) {
-  specimen::SpecimenParameters p;
+SpecimenParameters finer_near(FinerPart part, const Prism& body, std::uint64_t seed, double shortest_edge) {
+  SpecimenParameters p;
   p.seed = seed;
   p.aggregates.phase = p.matrix;
   part.size = kFine;
   part.distance = kReach;
   p.blocks.finer = {part};
   p.blocks.largest_size = kLargest;
-  p.blocks.count =
-      static_cast<int>(std::lround(specimen::SizedExtent(room_in(body), p.blocks.finer).blocks(kLargest)));
+  p.blocks.count = static_cast<int>(std::lround(SizedExtent(room_in(body), p.blocks.finer).blocks(kLargest)));
   p.blocks.radius_spread = 0.3;
   p.blocks.shortest_edge = shortest_edge;
   p.blocks.largest_bend = 20.0 * std::numbers::pi / 180.0;
@@ -41,10 +41,10 @@ specimen::SpecimenParameters finer_near(specimen::FinerPart part, const Prism& b
 }
 
 /// The part by the face of a body on a side.
-specimen::FinerPart on_side(const Prism& body, const std::string& side) {
-  specimen::FinerPart part;
+FinerPart on_side(const Prism& body, const std::string& side) {
+  FinerPart part;
   for (std::size_t plane = 0; plane < body.planes().size(); ++plane)
-    if (body.sides()[body.planes()[plane].side] == side) part.pieces.push_back(body.corners_on(plane));
+    if (body.sides()[body.planes()[plane].side].name == side) part.pieces.push_back(body.corners_on(plane));
   return part;
 }
 
@@ -52,10 +52,10 @@ specimen::FinerPart on_side(const Prism& body, const std::string& side) {
 using Bands = std::map<int, std::array<double, 2>>;
 
 template <class Band>
-void add_to_bands(const SolidSpecimen& s, Bands& bands, Band band_of) {
-  for (std::size_t cell = 0; cell < s.complex.cells.size(); ++cell) {
-    const int band = band_of(zone_cell(s.complex, cell).gridpoints.back());
-    bands[band][0] += volume(s.complex, cell);
+void add_to_bands(const Specimen<3>& s, Bands& bands, Band band_of) {
+  for (std::size_t cell = 0; cell < s.cells.cells.size(); ++cell) {
+    const int band = band_of(zone_cell(s.cells, cell).gridpoints.back());
+    bands[band][0] += extent(s.cells, cell);
     ++bands[band][1];
   }
 }
@@ -72,12 +72,12 @@ TEST(FinerBlocksOfSolids, HaveTheirSizesNearAndFarAndFillTheBody) {
     Bands bands;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const auto p = finer_near(on_side(body, "left"), body, seed, shortest_edge);
-      const SolidSpecimen s = make_specimen(p, body);
-      require_valid(s.complex, body, "finer blocks");
-      EXPECT_EQ(std::ssize(s.complex.cells), p.blocks.count);
+      const Specimen<3> s = make_specimen<3>(p, body);
+      require_valid(s.cells, body, "finer blocks");
+      EXPECT_EQ(std::ssize(s.cells.cells), p.blocks.count);
       ASSERT_EQ(std::ssize(s.size), p.blocks.count);
       for (std::size_t cell = 0; cell < s.size.size(); ++cell) {
-        const double x = zone_cell(s.complex, cell).gridpoints.back()[0];
+        const double x = zone_cell(s.cells, cell).gridpoints.back()[0];
         EXPECT_NEAR(s.size[cell], std::clamp(kFine + kSlopeOfSize * (x - kReach), kFine, kLargest), 1e-12);
       }
       add_to_bands(s, bands, [&](const Vec<3>& place) { return static_cast<int>(place[0] / kBand); });
@@ -103,7 +103,7 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
   const Vec<3> middle{{0.045, 0.035, 0.045}};
   const auto from_axis = [&](const Vec<3>& p) { return std::hypot(p[0] - middle[0], p[2] - middle[2]); };
   struct Case {
-    specimen::FinerPart part;
+    FinerPart part;
     std::function<double(const Vec<3>&)> distance;
   };
   const std::vector<Case> cases{
@@ -114,7 +114,7 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Bands bands;
     for (std::uint64_t seed = 1; seed <= 2; ++seed)
-      add_to_bands(make_specimen(finer_near(cases[i].part, body, seed, 0.35), body), bands,
+      add_to_bands(make_specimen<3>(finer_near(cases[i].part, body, seed, 0.35), body), bands,
                    [&](const Vec<3>& place) { return cases[i].distance(place) < kReach ? 0 : 1; });
     EXPECT_NEAR(size_in(bands, 0), kFine, 0.1 * kFine) << i;
     EXPECT_GT(size_in(bands, 1), 1.25 * kFine) << i;
@@ -124,15 +124,15 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
 // Promise: edges of fine blocks are merged where they are short against those of blocks of their size.
 TEST(FinerBlocksOfSolids, LoseEdgesThatAreShortForTheirSize) {
   const Prism body = cuboid(0.1, 0.06, 0.06);
-  const SolidSpecimen s = make_specimen(finer_near(on_side(body, "left"), body, 1, 0.35), body);
+  const Specimen<3> s = make_specimen<3>(finer_near(on_side(body, "left"), body, 1, 0.35), body);
   EXPECT_LT(s.metrics.edges_left_short, 20);
   EXPECT_LE(s.metrics.largest_bend, 20.0 + 1e-9);
   std::array<double, 2> sum{}, count{};
   int short_ones = 0;
-  for (const CellFace& face : s.complex.faces)
+  for (const Facet<3>& face : s.cells.faces)
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
-      const Vec<3>&a = s.complex.vertices[face.corners[i]],
-            &b = s.complex.vertices[face.corners[(i + 1) % face.corners.size()]];
+      const Vec<3>&a = s.cells.vertices[face.corners[i]],
+            &b = s.cells.vertices[face.corners[(i + 1) % face.corners.size()]];
       const double x = 0.5 * (a + b)[0];
       const int band = x < kReach ? 0 : x > kReach + kGrowing ? 1 : -1;
       if (band < 0) continue;
@@ -151,8 +151,8 @@ TEST(FinerBlocksOfSolids, LoseEdgesThatAreShortForTheirSize) {
 // file keeps the sizes to the bit.
 TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
   const Prism body = cuboid(0.1, 0.06, 0.06);
-  const SolidSpecimen s = make_specimen(finer_near(on_side(body, "top"), body, 1, 0.35), body);
-  const ModelOf<3> model = make_solid_model(s, {}, platens(0.02));
+  const Specimen<3> s = make_specimen<3>(finer_near(on_side(body, "top"), body, 1, 0.35), body);
+  const ModelOf<3> model = make_model(s, 1.0, {}, platens(0.02));
   const int first = model.block_of(model.set("specimen").front());
   for (int c = 0; c < model.contact_count(); ++c) {
     const Joint& joint = model.joint(c);
@@ -163,7 +163,7 @@ TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
                                                      : 0.5 * (size(a) + size(b));
     EXPECT_EQ(joint.block_size, expected);
   }
-  Polyhedra read = polyhedra_from(polyhedra_text(s), "blocks.json");
+  GivenCells<3> read = polyhedra_from(cells_text(s), "blocks.json");
   EXPECT_EQ(read.size, s.size);
   EXPECT_EQ(read.grain, s.grain);
   EXPECT_EQ(specimen_from(std::move(read), body).size, s.size);
@@ -180,13 +180,14 @@ TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
                   .sieves = {0.0169, 0.0171},
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
-  p.superposition = specimen::Superposition::fit;
-  const SolidSpecimen s = make_specimen(p, body);
-  const auto far = std::ranges::count_if(s.balls, [](const Ball& ball) { return ball.centre[0] > 0.02; });
+  p.superposition = Superposition::fit;
+  const Specimen<3> s = make_specimen<3>(p, body);
+  const auto far =
+      std::ranges::count_if(s.stones, [](const Grain<3>& ball) { return ball.centre[0] > 0.02; });
   EXPECT_GE(s.small_stones, far);
-  EXPECT_LT(s.small_stones, std::ssize(s.balls));
+  EXPECT_LT(s.small_stones, std::ssize(s.stones));
   EXPECT_NE(warnings(s).front().find("smaller than 3 blocks there"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

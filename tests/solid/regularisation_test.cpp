@@ -1,5 +1,3 @@
-#include "pyroclast/solid/regularisation.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,38 +7,39 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
-#include "pyroclast/solid/laguerre.hpp"
-#include "pyroclast/solid/specimen.hpp"
+#include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/regularisation_space.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr RegularCells kAsked{.shortest_edge = 0.35, .largest_bend = 20.0 * kDegree};
 
-struct Cells {
-  Complex raw, merged;
+struct RawAndMerged {
+  Cells<3> raw, merged;
   RegularisedCells done;
 };
 
-Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked,
-                     const specimen::BlockSizes& sizes) {
+RawAndMerged raw_and_merged(const Prism& body, int count, const RegularCells& asked,
+                            const BlockSizes& sizes) {
   Random random(3);
-  const LaguerreComplex made = laguerre_complex(spaced_seeds(body, sizes, count, 0.3, random), body);
-  Cells cells{made.complex, made.complex, {}};
+  const Laguerre<3> made = laguerre_cells(spaced_seeds(body, sizes, count, 0.3, random), body);
+  RawAndMerged cells{made.cells, made.cells, {}};
   cells.done = regularise(cells.merged, body, made.plane, asked, sizes);
   return cells;
 }
 
-Cells raw_and_merged(const Prism& body, int count, const RegularCells& asked = kAsked) {
-  return raw_and_merged(body, count, asked, specimen::BlockSizes(std::cbrt(body.volume() / count)));
+RawAndMerged raw_and_merged(const Prism& body, int count, const RegularCells& asked = kAsked) {
+  return raw_and_merged(body, count, asked, BlockSizes(std::cbrt(body.extent() / count)));
 }
 
-double mean_flatness(const Complex& complex, const Prism& body) {
-  const auto count = static_cast<double>(complex.cells.size());
+double mean_flatness(const Cells<3>& cells, const Prism& body) {
+  const auto count = static_cast<double>(cells.cells.size());
   double sum = 0.0;
-  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell)
-    sum += flatness(complex, cell, std::cbrt(body.volume() / count));
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell)
+    sum += flatness(cells, cell, std::cbrt(body.extent() / count));
   return sum / count;
 }
 
@@ -48,8 +47,8 @@ double mean_flatness(const Complex& complex, const Prism& body) {
 // and what is told is so.
 TEST(Regularisation, RemovesShortEdgesAndFlatZones) {
   for (const Prism& body : bodies()) {
-    const Cells cells = raw_and_merged(body, 300);
-    const CellMetrics before = measure(cells.raw, body), after = measure(cells.merged, body);
+    const RawAndMerged cells = raw_and_merged(body, 300);
+    const Metrics<3> before = measure(cells.raw, body), after = measure(cells.merged, body);
     EXPECT_EQ(cells.raw.vertices.size() - cells.merged.vertices.size(),
               static_cast<std::size_t>(cells.done.vertices_merged));
     EXPECT_LE(cells.done.edges_left_short, 15);  // of some 2,000
@@ -66,29 +65,29 @@ TEST(Regularisation, RemovesShortEdgesAndFlatZones) {
 // Promise: merged cells fill the body, are closed, and keep the area of each of its sides, to round-off.
 TEST(Regularisation, KeepsTheBodyAndItsSides) {
   for (const Prism& body : bodies()) {
-    const Cells cells = raw_and_merged(body, 300);
+    const RawAndMerged cells = raw_and_merged(body, 300);
     require_valid(cells.merged, body, "merged cells");
     double filled = 0.0;
     for (std::size_t cell = 0; cell < cells.merged.cells.size(); ++cell) {
-      filled += volume(cells.merged, cell);
+      filled += extent(cells.merged, cell);
       Vec<3> sum{};
       double area = 0.0;
       for (const int f : cells.merged.cells[cell]) {
-        const CellFace& face = cells.merged.faces[f];
+        const Facet<3>& face = cells.merged.faces[f];
         sum += area_vector(cells.merged, face) * (face.inner == static_cast<int>(cell) ? 1.0 : -1.0);
         area += norm(area_vector(cells.merged, face));
       }
       EXPECT_LT(norm(sum), 1e-12 * area);
-      const ZonedCell zoned = zone_cell(cells.merged, cell);
+      const ZonedCell<3> zoned = zone_cell(cells.merged, cell);
       const auto& x = zoned.gridpoints;
       for (const auto& [a, b, c, d] : zoned.zones)
         EXPECT_GT(dot(cross(x[b] - x[a], x[c] - x[a]), x[d] - x[a]), 0.0);
     }
-    EXPECT_NEAR(filled, body.volume(), 1e-12 * body.volume());
+    EXPECT_NEAR(filled, body.extent(), 1e-12 * body.extent());
     std::vector<Vec<3>> before(body.sides().size()), after = before;
-    for (const CellFace& face : cells.raw.faces)
+    for (const Facet<3>& face : cells.raw.faces)
       if (face.side >= 0) before[face.side] += area_vector(cells.raw, face);
-    for (const CellFace& face : cells.merged.faces) {
+    for (const Facet<3>& face : cells.merged.faces) {
       if (face.side < 0) continue;
       after[face.side] += area_vector(cells.merged, face);
       EXPECT_LT(bend(cells.merged.vertices, face.corners), 1e-6);
@@ -104,21 +103,21 @@ TEST(Regularisation, KeepsTheBodyAndItsSides) {
 TEST(Regularisation, KeepsStretchesOfSides) {
   const double radius = 0.05;
   const std::vector<double> ends{-0.6 * std::numbers::pi, -0.4 * std::numbers::pi};
-  auto corners = specimen::circle_corners({{radius, radius}}, 2.0 * radius, 0.01, ends);
+  auto corners = circle_corners({{radius, radius}}, 2.0 * radius, 0.01, ends);
   std::vector<std::string> sides;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec<2> middle = 0.5 * (corners[i] + corners[(i + 1) % corners.size()]);
     sides.push_back(middle[1] < 0.01 * radius ? "seat" : "rim");
   }
-  const Prism body(specimen::Region::polygon(corners, sides), Prism::Axis::z, 0.04);
-  const Cells cells = raw_and_merged(body, 250);
+  const Prism body(Region::polygon(corners, sides), Prism::Axis::z, 0.04);
+  const RawAndMerged cells = raw_and_merged(body, 250);
   std::vector<double> before(body.sides().size()), after = before;
-  for (const CellFace& face : cells.raw.faces)
+  for (const Facet<3>& face : cells.raw.faces)
     if (face.side >= 0) before[face.side] += norm(area_vector(cells.raw, face));
-  for (const CellFace& face : cells.merged.faces)
+  for (const Facet<3>& face : cells.merged.faces)
     if (face.side >= 0) after[face.side] += norm(area_vector(cells.merged, face));
   for (std::size_t side = 0; side < before.size(); ++side)
-    EXPECT_NEAR(after[side], before[side], 1e-12 * before[side]) << body.sides()[side];
+    EXPECT_NEAR(after[side], before[side], 1e-12 * before[side]) << body.sides()[side].name;
 }
 
 // Promise: a smaller bound of the bend is kept too, and leaves more edges short.
@@ -126,7 +125,7 @@ TEST(Regularisation, BendsNoFaceByMoreThanAsked) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
   int left = -1;
   for (const double degrees : {20.0, 10.0, 5.0, 0.0}) {
-    const Cells cells = raw_and_merged(body, 200, {0.35, degrees * kDegree});
+    const RawAndMerged cells = raw_and_merged(body, 200, {0.35, degrees * kDegree});
     require_valid(cells.merged, body, "merged cells");
     EXPECT_LE(measure(cells.merged, body).largest_bend, degrees + 1e-5);
     EXPECT_GT(cells.done.edges_left_short, left);
@@ -135,7 +134,7 @@ TEST(Regularisation, BendsNoFaceByMoreThanAsked) {
 }
 
 TEST(Regularisation, IsTheSameForAnyNumberOfThreads) {
-  specimen::SpecimenParameters p;
+  SpecimenParameters p;
   p.seed = 2;
   p.blocks.count = 200;
   p.blocks.radius_spread = 0.3;
@@ -143,12 +142,12 @@ TEST(Regularisation, IsTheSameForAnyNumberOfThreads) {
   p.blocks.largest_bend = 0.3;
   p.aggregates.phase = p.matrix;
   const Prism body = cylinder(0.1, 0.2);
-  const SolidSpecimen alone = make_specimen(p, body);
+  const Specimen<3> alone = make_specimen<3>(p, body);
   EXPECT_GT(alone.metrics.vertices_merged, 0);
   Team team(3);
-  const SolidSpecimen shared = make_specimen(p, body, &team);
-  EXPECT_TRUE(shared.complex.vertices == alone.complex.vertices);
-  EXPECT_TRUE(shared.complex.cells == alone.complex.cells);
+  const Specimen<3> shared = make_specimen<3>(p, body, &team);
+  EXPECT_TRUE(shared.cells.vertices == alone.cells.vertices);
+  EXPECT_TRUE(shared.cells.cells == alone.cells.cells);
 }
 
 /// What regularised cells are, in numbers that hardly any other cells have.
@@ -158,7 +157,7 @@ struct Told {
   double flatness;  ///< mean
 };
 
-void expect_told(const Prism& body, const Cells& cells, const Told& told) {
+void expect_told(const Prism& body, const RawAndMerged& cells, const Told& told) {
   EXPECT_EQ(cells.merged.vertices.size(), told.vertices);
   EXPECT_EQ(cells.merged.faces.size(), told.faces);
   EXPECT_EQ(cells.done.edges_left_short, told.edges_left_short);
@@ -173,7 +172,7 @@ TEST(Regularisation, MakesTheCellsThatItMade) {
   const Prism box = cuboid(0.1, 0.06, 0.05), round = cylinder(0.1, 0.1, 9);
   expect_told(box, raw_and_merged(box, 60), {196, 321, 1, 5012.72952763});
   expect_told(round, raw_and_merged(round, 60, {0.5, 10.0 * kDegree}), {236, 373, 64, 7156.320683});
-  const specimen::BlockSizes finer(
+  const BlockSizes finer(
       0.02, 0.03,
       {{.pieces = {{{{0, 0, 0}}, {{0, 0.06, 0}}, {{0, 0.06, 0.05}}, {{0, 0, 0.05}}}}, .size = 0.01}});
   expect_told(box, raw_and_merged(box, 60, kAsked, finer), {200, 318, 0, 5257.414058173});
@@ -195,11 +194,11 @@ TEST(Bend, IsTheLargestAngleToTheMeanPlane) {
 // Promise: a cube's zones have r = 3 V / S, each 1/12 of the cube under half of a face.
 TEST(Flatness, OfACubeIsThatOfItsZones) {
   const Prism body = cuboid(1.0, 1.0, 1.0);
-  const Complex cube = laguerre_complex({{{{0.5, 0.5, 0.5}}}, {0.5}}, body).complex;
+  const Cells<3> cube = laguerre_cells({{{{0.5, 0.5, 0.5}}}, {0.5}}, body).cells;
   const double surface = 0.5 + 3.0 * std::sqrt(2.0) / 4.0, radius = 3.0 / 12.0 / surface;
   EXPECT_NEAR(flatness(cube, 0, 1.0), std::pow(radius, -4.0), 1e-9);
   EXPECT_NEAR(flatness(cube, 0, 2.0), 2.0 * std::pow(radius, -4.0), 1e-9);
 }
 
 }  // namespace
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

@@ -1,7 +1,5 @@
 // Promise: seeds of a solid keep their distance, are numbered along Morton's curve, and have the radii of the
 // blocks there.
-#include "pyroclast/solid/seeds.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,16 +9,17 @@
 
 #include "bodies.hpp"
 #include "messages.hpp"
+#include "pyroclast/specimen/spaced_seeds.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 namespace {
 
 /// Blocks of 4 mm near the side x = 0 of a body, and of 10 mm far from it.
-specimen::BlockSizes finer_on_the_left() {
+BlockSizes finer_on_the_left() {
   return {8e-3, 10e-3, {{.pieces = {{{{0, 0, 0}}, {{0, 1, 0}}, {{0, 1, 1}}, {{0, 0, 1}}}}, .size = 4e-3}}};
 }
 
-double nearest(const SolidSeeds& seeds, const specimen::BlockSizes& sizes) {
+double nearest(const Seeds<3>& seeds, const BlockSizes& sizes) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < seeds.position.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -35,7 +34,7 @@ TEST(SpacedSeeds, KeepTheirDistanceWhereBlocksAreAlikeAndWhereNot) {
   const Prism body = cuboid(0.06, 0.05, 0.04);
   Random random(1);
   const auto even = spaced_seeds(body, 800, 0.3, random);
-  const specimen::BlockSizes alike(std::cbrt(body.volume() / 800));
+  const BlockSizes alike(std::cbrt(body.extent() / 800));
   EXPECT_GE(nearest(even, alike), 0.62);
   EXPECT_LT(nearest(even, alike), 0.63);
   const auto finer = spaced_seeds(body, finer_on_the_left(), 300, 0.3, random);
@@ -63,8 +62,7 @@ TEST(SpacedSeeds, AreNumberedOctantByOctant) {
   };
   EXPECT_TRUE(std::ranges::is_sorted(seeds.position, {}, octants));
   // a body that does not begin at the origin
-  const Prism disc(specimen::Region::polygon(specimen::circle_corners({}, 0.06, 0.006), {"rim"}, true),
-                   Prism::Axis::z, 0.04);
+  const Prism disc(Region::polygon(circle_corners({}, 0.06, 0.006), {"rim"}, true), Prism::Axis::z, 0.04);
   ASSERT_LT(disc.low()[0], -0.029);
   const auto of_disc = spaced_seeds(disc, 200, 0.3, random);
   const double middle = 0.5 * (disc.low()[0] + disc.high()[0]);
@@ -75,7 +73,7 @@ TEST(SpacedSeeds, AreNumberedOctantByOctant) {
 TEST(SpacedSeeds, HaveRadiiWithinTheSpread) {
   const Prism body = cuboid(0.06, 0.05, 0.04);
   Random random(3);
-  const double size = std::cbrt(body.volume() / 500);
+  const double size = std::cbrt(body.extent() / 500);
   for (const double radius : spaced_seeds(body, 500, 0.0, random).radius) EXPECT_EQ(radius, 0.5 * size);
   const auto spread = spaced_seeds(body, 500, 0.3, random).radius;
   const auto [low, high] = std::ranges::minmax(spread);
@@ -90,9 +88,8 @@ TEST(SpacedSeeds, HaveRadiiWithinTheSpread) {
 
 TEST(SpacedSeeds, BlocksThatAreTooLargeAreRefused) {
   Random random(4);
-  EXPECT_EQ(
-      message([&] { spaced_seeds(cuboid(0.05, 0.05, 0.05), specimen::BlockSizes(0.2), 2, 0.3, random); }),
-      "after 1 blocks there is no place for more: blocks of 200 mm are too large");
+  EXPECT_EQ(message([&] { spaced_seeds(cuboid(0.05, 0.05, 0.05), BlockSizes(0.2), 2, 0.3, random); }),
+            "after 1 blocks there is no place for more: blocks of 200 mm are too large");
 }
 
 // Promise: seeds that are drawn anew keep their distance from those that stay, which stay as they are, and
@@ -101,8 +98,8 @@ TEST(SpacedSeeds, SomeAreDrawnAnew) {
   const Prism body = cuboid(0.06, 0.05, 0.04);
   const auto sizes = finer_on_the_left();
   Random random(5);
-  const SolidSeeds before = spaced_seeds(body, sizes, 300, 0.3, random);
-  SolidSeeds seeds = before;
+  const Seeds<3> before = spaced_seeds(body, sizes, 300, 0.3, random);
+  Seeds<3> seeds = before;
   const std::vector<int> which{0, 7, 120, 299};
   redraw(seeds, which, body, sizes, random);
   int larger = 0;
@@ -122,4 +119,4 @@ TEST(SpacedSeeds, SomeAreDrawnAnew) {
 }
 
 }  // namespace
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

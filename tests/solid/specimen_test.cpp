@@ -1,4 +1,4 @@
-#include "pyroclast/solid/specimen.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +8,15 @@
 #include "bodies.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/specimen/grain.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 namespace {
 
-specimen::SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
-  specimen::SpecimenParameters p;
+SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
+  SpecimenParameters p;
   p.seed = seed;
   p.aggregates = {.phase = "aggregate",
                   .fraction = 0.25,
@@ -27,15 +27,15 @@ specimen::SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
   p.blocks.count = blocks;
-  p.superposition = specimen::Superposition::fit;
+  p.superposition = Superposition::fit;
   return p;
 }
 
 // Promise: aggregates have the fraction and the grading that are asked for, by volume, and lie apart within
 // the body; blocks take their volume.
-TEST(SolidSpecimen, HasItsAggregatesByVolume) {
+TEST(SpecimenInSpace, HasItsAggregatesByVolume) {
   const Prism body = cylinder(0.1, 0.2);
-  const SolidSpecimen s = make_specimen(concrete(3000), body);
+  const Specimen<3> s = make_specimen<3>(concrete(3000), body);
   EXPECT_NEAR(s.fraction_placed, 0.25, 0.001);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 1.0 / 3000);
   ASSERT_EQ(s.classes.size(), 3U);
@@ -43,7 +43,7 @@ TEST(SolidSpecimen, HasItsAggregatesByVolume) {
   int stones = 0;
   for (const SizeClass& c : s.classes) {
     // a class takes what the larger ones left: less than its smallest stone
-    EXPECT_NEAR(c.placed, c.asked, specimen::extent_of_round<3>(c.to) / body.volume());
+    EXPECT_NEAR(c.placed, c.asked, extent_of_round<3>(c.to) / body.extent());
     EXPECT_NEAR(c.superposed, c.placed, 0.25 * c.placed);
     EXPECT_EQ(c.without_a_block, 0);
     asked += c.asked;
@@ -52,51 +52,51 @@ TEST(SolidSpecimen, HasItsAggregatesByVolume) {
   }
   EXPECT_NEAR(asked, 0.25, 1e-12);
   EXPECT_NEAR(superposed, s.fraction_superposed, 1e-12);
-  EXPECT_EQ(stones, static_cast<int>(s.balls.size()));
-  for (std::size_t i = 0; i < s.balls.size(); ++i) {
-    EXPECT_LE(body.distance(s.balls[i].centre), -0.5 * s.balls[i].diameter - 0.0005);
+  EXPECT_EQ(stones, static_cast<int>(s.stones.size()));
+  for (std::size_t i = 0; i < s.stones.size(); ++i) {
+    EXPECT_LE(body.distance(s.stones[i].centre), -0.5 * s.stones[i].diameter - 0.0005);
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GE(norm(s.balls[i].centre - s.balls[j].centre),
-                0.5 * (s.balls[i].diameter + s.balls[j].diameter) + 0.0005);
+      EXPECT_GE(norm(s.stones[i].centre - s.stones[j].centre),
+                0.5 * (s.stones[i].diameter + s.stones[j].diameter) + 0.0005);
   }
 }
 
-TEST(SolidSpecimen, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
+TEST(SpecimenInSpace, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
-  const auto centres = [](const SolidSpecimen& s) {
+  const auto centres = [](const Specimen<3>& s) {
     std::vector<Vec<3>> all;
-    for (const Ball& ball : s.balls) all.push_back(ball.centre);
+    for (const Grain<3>& ball : s.stones) all.push_back(ball.centre);
     return all;
   };
-  const SolidSpecimen one = make_specimen(concrete(300), body), same = make_specimen(concrete(300), body);
-  EXPECT_TRUE(one.complex.vertices == same.complex.vertices);
+  const Specimen<3> one = make_specimen<3>(concrete(300), body), same = make_specimen<3>(concrete(300), body);
+  EXPECT_TRUE(one.cells.vertices == same.cells.vertices);
   EXPECT_EQ(one.phase, same.phase);
-  EXPECT_TRUE(centres(make_specimen(concrete(500), body)) == centres(one));
-  EXPECT_FALSE(centres(make_specimen(concrete(300, 2), body)) == centres(one));
+  EXPECT_TRUE(centres(make_specimen<3>(concrete(500), body)) == centres(one));
+  EXPECT_FALSE(centres(make_specimen<3>(concrete(300, 2), body)) == centres(one));
 }
 
 // Promise: by the rule of fit each stone has a block, also where blocks are as large as stones.
-TEST(SolidSpecimen, EachStoneHasABlockAndCoarseBlocksAreTold) {
+TEST(SpecimenInSpace, EachStoneHasABlockAndCoarseBlocksAreTold) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
   auto p = concrete(500);  // blocks of 12.6 mm
-  const SolidSpecimen fit = make_specimen(p, body);
+  const Specimen<3> fit = make_specimen<3>(p, body);
   for (const SizeClass& c : fit.classes) EXPECT_EQ(c.without_a_block, 0);
   const auto told = warnings(fit);
   ASSERT_EQ(told.size(), 1U);
   expect_in("smaller than 3 blocks of 12.6 mm", told[0]);
-  p.superposition = specimen::Superposition::area;
+  p.superposition = Superposition::area;
   p.covered_fraction = 0.7;
-  const SolidSpecimen by_area = make_specimen(p, body);
+  const Specimen<3> by_area = make_specimen<3>(p, body);
   int without = 0;
   for (const SizeClass& c : by_area.classes) without += c.without_a_block;
   EXPECT_GT(without, 0);
   expect_in("have no block of their own", warnings(by_area).back());
 }
 
-TEST(SolidSpecimen, WhatASolidCannotHaveIsRefused) {
+TEST(SpecimenInSpace, WhatASolidCannotHaveIsRefused) {
   auto p = concrete(100);
-  p.inclusions = {specimen::FibreParameters{.phase = "steel", .count = 1, .length = 0.03}};
-  expect_in("fibres", message([&] { make_specimen(p, cuboid(0.1, 0.1, 0.1)); }));
+  p.inclusions = {FibreParameters{.phase = "steel", .count = 1, .length = 0.03}};
+  expect_in("fibres", message([&] { make_specimen<3>(p, cuboid(0.1, 0.1, 0.1)); }));
 }
 
 std::vector<Bearing> two_platens() {
@@ -106,15 +106,15 @@ std::vector<Bearing> two_platens() {
 // Promise: platens lie on the whole of both ends, with contacts of the ends' area, and fill their thickness.
 TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
   for (const Prism& body : {cylinder(0.1, 0.2), cuboid(0.1, 0.2, 0.08)}) {
-    const SolidSpecimen s = make_specimen(concrete(400), body);
-    const ModelOf<3> model = make_solid_model(s, {}, two_platens());
-    const double end = body.section().is_rectangle() ? 0.1 * 0.08 : body.section().area();
+    const Specimen<3> s = make_specimen<3>(concrete(400), body);
+    const ModelOf<3> model = make_model(s, 1.0, {}, two_platens());
+    const double end = body.section().is_rectangle() ? 0.1 * 0.08 : body.section().extent();
     const auto volumes = model.zone_volumes();
     double filled = 0.0, of_platens = 0.0;
     for (int b = 0; b < model.block_count(); ++b)
       for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
         (model.is_of_bearing(b) ? of_platens : filled) += volumes[z];
-    EXPECT_NEAR(filled, body.volume(), 1e-12 * filled);
+    EXPECT_NEAR(filled, body.extent(), 1e-12 * filled);
     EXPECT_NEAR(of_platens, 2 * 0.02 * end, 1e-12);
     for (const char* const platen : {"bottom_platen", "top_platen"}) {
       double area = 0.0;
@@ -126,7 +126,7 @@ TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
     for (const int g : model.set("top")) EXPECT_EQ(model.position[g][1], 0.2);
     // each gridpoint of the outline lies on a side
     std::size_t on_sides = 0;
-    for (const std::string& side : body.sides()) on_sides += model.set(side).size();
+    for (const Side& side : body.sides()) on_sides += model.set(side.name).size();
     EXPECT_GE(on_sides, model.set("outline").size());
     for (const int g : model.set("outline")) EXPECT_NEAR(body.distance(model.position[g]), 0.0, 1e-12);
     if (!body.section().is_rectangle()) {
@@ -146,4 +146,4 @@ TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
 }
 
 }  // namespace
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

@@ -33,7 +33,7 @@ BlockParameters finer_near(const Vec<2>& from, const Vec<2>& to, double largest,
 /// Root of the mean area of the blocks in each band of distance.
 /// \param band_of  band of a place; below 0: of none
 template <class Band>
-std::map<int, double> size_in_bands(const Tessellation& t, Band band_of) {
+std::map<int, double> size_in_bands(const Cells<2>& t, Band band_of) {
   std::map<int, std::array<double, 2>> sums;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < t.cells.size(); ++c) {
@@ -59,7 +59,7 @@ TEST(BlockSizes, AreFineAroundAPoint) {
   EXPECT_DOUBLE_EQ(sizes.at(Vec<3>{{0.1, 0.05, 0.016}}), 4e-3);  // 11 mm beyond, a fifth more in 1.1 sizes
   const Region region = Region::rectangle(0.2, 0.1);
   const SizedExtent area(room_of_blocks(region), {at_tip});
-  const double even = region.area() / 64e-6;
+  const double even = region.extent() / 64e-6;
   EXPECT_GT(area.blocks(8e-3), even + 15.0);  // a circle of 5 mm has 20 blocks of 2 mm, and 1 of 8 mm
   ASSERT_TRUE(area.largest_for(600));
   EXPECT_NEAR(area.blocks(*area.largest_for(600)), 600.0, 1e-6);
@@ -310,12 +310,12 @@ TEST(FinerBlocks, HaveTheirSizesNearAndFarAndTileTheBody) {
   const auto band = [](const Vec<2>& place) { return static_cast<int>(place[0] / 5e-3); };
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const Blocks blocks = make_blocks(p, region, random);
-    EXPECT_EQ(std::ssize(blocks.tessellation.cells), p.count);
+    const Blocks<2> blocks = make_blocks(p, region, random);
+    EXPECT_EQ(std::ssize(blocks.cells.cells), p.count);
     EXPECT_EQ(std::ssize(blocks.size), p.count);
-    EXPECT_EQ(blocks.edges_left_short, 0);
-    require_valid(blocks.tessellation, region, "finer blocks");
-    for (const auto& [number, size] : size_in_bands(blocks.tessellation, band)) sum[number] += size / kSeeds;
+    EXPECT_EQ(blocks.done.edges_left_short, 0);
+    require_valid(blocks.cells, region, "finer blocks");
+    for (const auto& [number, size] : size_in_bands(blocks.cells, band)) sum[number] += size / kSeeds;
   }
   EXPECT_NEAR(0.5 * (sum[0] + sum[1]), kFine, 0.1 * kFine);
   for (int number = 2; number * 5e-3 < kReach + growing; ++number) {
@@ -329,7 +329,7 @@ TEST(FinerBlocks, HaveTheirSizesNearAndFarAndTileTheBody) {
   EXPECT_LT(std::pow(sum[last] / sum[first], 1.0 / blocks), 1.21);  // 1.2, and the scatter of 12 seeds
   const auto far = [&](const Vec<2>& place) { return place[0] > kReach + growing ? 0 : -1; };
   Random random(9);
-  EXPECT_NEAR(size_in_bands(make_blocks(p, region, random).tessellation, far)[0], 6e-3, 0.05 * 6e-3);
+  EXPECT_NEAR(size_in_bands(make_blocks(p, region, random).cells, far)[0], 6e-3, 0.05 * 6e-3);
 }
 
 TEST(FinerBlocks, KeepTheirSizesUnderRelaxationAndShortEdgesInProportion) {
@@ -337,14 +337,14 @@ TEST(FinerBlocks, KeepTheirSizesUnderRelaxationAndShortEdgesInProportion) {
   BlockParameters p = finer_near({{0, 0}}, {{0, 0.15}}, 6e-3, region);
   p.relaxation = 20;
   Random random(1);
-  const Tessellation t = make_blocks(p, region, random).tessellation;
+  const Cells<2> t = make_blocks(p, region, random).cells;
   const auto near = size_in_bands(t, [](const Vec<2>& place) { return place[0] < kReach ? 0 : -1; });
   EXPECT_NEAR(near.at(0), kFine, 0.1 * kFine);
   // edges of fine blocks are as short against their mean as those of coarse ones
   double sum = 0.0, shortest = 1.0;
   int count = 0;
-  for (const Edge& e : edges(t)) {
-    const Vec<2>&a = t.vertices[e.v0], &b = t.vertices[e.v1];
+  for (const Facet<2>& e : facets(t)) {
+    const Vec<2>&a = t.vertices[e.corners[0]], &b = t.vertices[e.corners[1]];
     if (0.5 * (a + b)[0] > kReach) continue;
     sum += norm(b - a);
     shortest = std::min(shortest, norm(b - a));
@@ -357,7 +357,7 @@ TEST(FinerBlocks, FollowNotchesHolesAndArcs) {
   const Region disc = Region::polygon(
       circle_corners({{0, 0}}, 0.15, [](const Vec<2>& at) { return at[1] > 0.0 ? 2e-3 : 4e-3; }), {"rim"},
       true);
-  EXPECT_NEAR(disc.area(), std::numbers::pi * 0.075 * 0.075, 1e-9);
+  EXPECT_NEAR(disc.extent(), std::numbers::pi * 0.075 * 0.075, 1e-9);
   const double size = 2e-3;
   for (const double opening : {0.0, 3e-3}) {
     const Region whole = Region::rectangle(0.2, 0.1);
@@ -375,14 +375,14 @@ TEST(FinerBlocks, FollowNotchesHolesAndArcs) {
     BlockParameters p = finer_near({{0.1, 0.05}}, {{0.1, 0.1}}, 6e-3, region);
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       Random random(seed);
-      const Tessellation t = make_blocks(p, region, random).tessellation;
+      const Cells<2> t = make_blocks(p, region, random).cells;
       require_valid(t, region, "blocks");
       for (const Piece& piece : region.pieces())
         EXPECT_NE(std::ranges::find(t.vertices, piece.from), t.vertices.end());
       double slit = 0.0;
-      for (const Edge& e : edges(t))
-        if (region.slit_of(t.vertices[e.v0], t.vertices[e.v1]))
-          slit += norm(t.vertices[e.v1] - t.vertices[e.v0]);
+      for (const Facet<2>& e : facets(t))
+        if (region.slit_of(t.vertices[e.corners[0]], t.vertices[e.corners[1]]))
+          slit += norm(t.vertices[e.corners[1]] - t.vertices[e.corners[0]]);
       EXPECT_NEAR(slit, opening > 0.0 ? 0.0 : 0.05, 1e-9);
     }
   }
@@ -395,10 +395,10 @@ TEST(FinerBlocks, FollowGrains) {
   p.blocks.largest_size = 5e-3;
   p.blocks.count =
       static_cast<int>(std::lround(SizedExtent(room_of_blocks(p.region), p.blocks.finer).blocks(5e-3)));
-  const Specimen s = make_specimen(p);
-  EXPECT_EQ(std::ssize(s.tessellation.cells), p.blocks.count);
+  const Specimen<2> s = make_specimen(p);
+  EXPECT_EQ(std::ssize(s.cells.cells), p.blocks.count);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.02 * s.fraction_placed);
-  const auto sizes = size_in_bands(s.tessellation, [](const Vec<2>& place) {
+  const auto sizes = size_in_bands(s.cells, [](const Vec<2>& place) {
     return place[0] < 20e-3 ? 0 : place[0] > 35e-3 ? 1 : -1;
   });
   EXPECT_NEAR(sizes.at(0), 2.5e-3, 0.25e-3);

@@ -39,7 +39,7 @@ inline SpecimenParameters paper_specimen(std::uint64_t seed) {
 }
 
 /// A grain with an outline, from its corners where they lie, m.
-inline Aggregate grain_of(std::vector<Vec<2>> corners) {
+inline Grain<2> grain_of(std::vector<Vec<2>> corners) {
   const auto [outline, centre] = outline_around(std::move(corners));
   return {centre, outline->width(), 0, 0, outline};
 }

@@ -14,8 +14,8 @@ namespace pyroclast::specimen {
 namespace {
 
 /// Three by three squares of 1 m without the middle one, the first of them clockwise.
-Tessellation ring_of_squares() {
-  Tessellation t;
+Cells<2> ring_of_squares() {
+  Cells<2> t;
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) t.vertices.push_back({{1.0 * x, 1.0 * y}});
   for (int y = 0; y < 3; ++y)
@@ -28,18 +28,18 @@ Tessellation ring_of_squares() {
 TEST(SpecimenFromCells, FindsTheOutlineAndItsHoles) {
   std::vector<int> phase(8, 0);
   phase[3] = 1;
-  const Specimen specimen = specimen_from({ring_of_squares(), {"mortar", "stone"}, phase});
-  EXPECT_DOUBLE_EQ(specimen.region.area(), 8.0);
-  ASSERT_EQ(specimen.region.sides().size(), 5U);
-  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 0.0}}, {{2.0, 0.0}}).value()].name,
+  const Specimen<2> specimen = specimen_from({ring_of_squares(), {"mortar", "stone"}, phase});
+  EXPECT_DOUBLE_EQ(specimen.outline.extent(), 8.0);
+  ASSERT_EQ(specimen.outline.sides().size(), 5U);
+  EXPECT_EQ(specimen.outline.sides()[specimen.outline.side_of({{1.0, 0.0}}, {{2.0, 0.0}}).value()].name,
             "bottom");
-  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{3.0, 1.0}}, {{3.0, 2.0}}).value()].name,
+  EXPECT_EQ(specimen.outline.sides()[specimen.outline.side_of({{3.0, 1.0}}, {{3.0, 2.0}}).value()].name,
             "right");
-  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 1.0}}, {{2.0, 1.0}}).value()].name,
+  EXPECT_EQ(specimen.outline.sides()[specimen.outline.side_of({{1.0, 1.0}}, {{2.0, 1.0}}).value()].name,
             "hole_1");
   EXPECT_DOUBLE_EQ(specimen.fraction[0], 7.0 / 8.0);
   EXPECT_DOUBLE_EQ(specimen.fraction[1], 1.0 / 8.0);
-  EXPECT_NO_THROW(require_valid(specimen.tessellation, specimen.region, "cells"));
+  EXPECT_NO_THROW(require_valid(specimen.cells, specimen.outline, "cells"));
 }
 
 TEST(SpecimenFromCells, GivesBackWhatWasTessellated) {
@@ -47,18 +47,18 @@ TEST(SpecimenFromCells, GivesBackWhatWasTessellated) {
   p.blocks.count = 200;
   p.region = Region::polygon({{{0.0, 0.0}}, {{0.3, 0.0}}, {{0.3, 0.2}}, {{0.15, 0.3}}, {{0.0, 0.2}}},
                              {"side_1", "side_2", "side_3", "side_4", "side_5"});
-  const Specimen made = make_specimen(p);
-  const Specimen again = specimen_from({made.tessellation, made.phases, made.phase});
-  EXPECT_EQ(again.tessellation.cells, made.tessellation.cells);
-  EXPECT_NEAR(again.region.area(), p.region.area(), 1e-12);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.region.pieces()[i].from, p.region.pieces()[i].from);
+  const Specimen<2> made = make_specimen(p);
+  const Specimen<2> again = specimen_from({made.cells, made.phases, made.phase});
+  EXPECT_EQ(again.cells.cells, made.cells.cells);
+  EXPECT_NEAR(again.outline.extent(), p.region.extent(), 1e-12);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.outline.pieces()[i].from, p.region.pieces()[i].from);
   EXPECT_NEAR(again.fraction[0], made.fraction[0], 1e-12);
   EXPECT_EQ(again.metrics.mean_edge, made.metrics.mean_edge);
 }
 
 TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
   const auto refused = [](auto change) {
-    Tessellation t = ring_of_squares();
+    Cells<2> t = ring_of_squares();
     std::vector<int> phase(8, 0);
     change(t, phase);
     return message([&] { specimen_from({t, {"mortar"}, phase}); });
@@ -83,13 +83,13 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
                      t.vertices[5] = {{2.5, 2.5}};
                    }),
                    "more than one outer outline|pieces|not convex"));
-  const Tessellation flat{{{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}};
+  const Cells<2> flat{{{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}};
   EXPECT_TRUE(says(message([&] { specimen_from({flat, {"mortar"}, {0}}); }), "enclose no area"));
 }
 
 // Promise: cells count from 0 in every message, as arrays and files of cells do.
 TEST(SpecimenFromCells, ADentedCellIsToldByItsNumberFromZero) {
-  Tessellation t = ring_of_squares();
+  Cells<2> t = ring_of_squares();
   t.vertices[0] = {{0.9, 0.9}};  // a corner of cell 0 alone
   EXPECT_TRUE(says(message([&] {
                      specimen_from({t, {"mortar"}, std::vector<int>(8, 0)});
@@ -103,7 +103,7 @@ TEST(SpecimenFromCells, AFileSaysTheUnitOfItsVertices) {
   };
   const CellsFile file = cells_from(of_list(R"(, "vertices_mm": [[0, 0], [100, 0], [0, 100]])"), "mine.json");
   EXPECT_EQ(file.unit, "mm");
-  EXPECT_EQ(file.cells.tessellation.vertices[1], (Vec<2>{{100.0, 0.0}}));
+  EXPECT_EQ(file.cells.cells.vertices[1], (Vec<2>{{100.0, 0.0}}));
   EXPECT_TRUE(says(message([&] { cells_from(of_list(""), "mine.json"); }),
                    "mine.json: there is no list \"vertices_m\""));
   EXPECT_TRUE(
@@ -116,9 +116,10 @@ TEST(SpecimenFromCells, AFileKeepsTheSizesOfBlocks) {
     return R"({"phases": ["a"], "cells": [[0, 1, 2]], "phase": [0], "vertices_m": [[0, 0], [1, 0], [0, 1]])" +
            lists + "}";
   };
-  const Specimen made = specimen_from(cells_from(of_list(R"(, "block_size_m": [0.25])"), "mine.json").cells);
+  const Specimen<2> made =
+      specimen_from(cells_from(of_list(R"(, "block_size_m": [0.25])"), "mine.json").cells);
   EXPECT_EQ(made.size, std::vector<double>{0.25});
-  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size, made.grain});
+  const std::string text = cells_text(made);
   EXPECT_EQ(cells_from(text, "again.json").cells.size, made.size);
   EXPECT_TRUE(cells_from(of_list(""), "mine.json").cells.size.empty());
   EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_mm": [1])"), "mine.json"); }),
@@ -134,14 +135,14 @@ TEST(SpecimenFromCells, AFileKeepsTheStonesOfBlocks) {
     return R"({"phases": ["a", "b"], "cells": [[0, 1, 2], [1, 3, 2]], "phase": [1, 0], "stone": )" + stones +
            R"(, "vertices_m": [[0, 0], [1, 0], [0, 1], [1, 1]]})";
   };
-  const Cells read = cells_from(file("[7, -1]"), "mine.json").cells;
+  const GivenCells<2> read = cells_from(file("[7, -1]"), "mine.json").cells;
   EXPECT_EQ(phases_of_stones(read.phases, read.phase, read.grain), std::vector<std::string>{"b"});
-  const Specimen made = specimen_from(read);
+  const Specimen<2> made = specimen_from(read);
   EXPECT_EQ(made.grain, (std::vector<int>{7, -1}));
-  const std::string text = cells_text({made.tessellation, made.phases, made.phase, made.size, made.grain});
+  const std::string text = cells_text(made);
   EXPECT_EQ(cells_from(text, "again.json").cells.grain, made.grain);
-  EXPECT_TRUE(says(message([&] { cells_from(file("[7]"), "mine.json"); }),
-                   "there are 2 cells, but the stones of 1"));
+  EXPECT_TRUE(
+      says(message([&] { cells_from(file("[7]"), "mine.json"); }), "there are 2 cells, but the stones of 1"));
   EXPECT_TRUE(says(message([&] { cells_from(file("[7, -2]"), "mine.json"); }),
                    "must be the number of a stone, from 0, or -1 for none"));
 }

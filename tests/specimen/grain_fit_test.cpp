@@ -16,7 +16,7 @@ namespace pyroclast::specimen {
 namespace {
 
 /// Radius of the circle of a grain's area over the block size.
-double radius_in_blocks(const GrainFit& fit, const Specimen& specimen) {
+double radius_in_blocks(const GrainFit& fit, const Specimen<2>& specimen) {
   return std::sqrt(fit.area / std::numbers::pi) / specimen.metrics.mean_size;
 }
 
@@ -31,8 +31,8 @@ SpecimenParameters following(std::uint64_t seed) {
 TEST(GrainFit, BlocksFollowTheSurfacesOfGrains) {
   int small = 0, off = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const Specimen specimen = make_specimen(following(seed));
-    EXPECT_EQ(specimen.tessellation.cells.size(), 5000U);
+    const Specimen<2> specimen = make_specimen(following(seed));
+    EXPECT_EQ(specimen.cells.cells.size(), 5000U);
     for (const GrainFit& fit : fits_of(specimen)) {
       const double radius = radius_in_blocks(fit, specimen);
       if (radius >= 1.5) {
@@ -51,7 +51,7 @@ TEST(GrainFit, BlocksFollowTheSurfacesOfGrains) {
 // The staircase of superposed blocks is some 4 / pi times as long as the circle.
 TEST(GrainFit, SuperposedBlocksMakeTheInterfaceLonger) {
   SpecimenParameters p = paper_specimen(1);
-  const Specimen specimen = make_specimen(p);
+  const Specimen<2> specimen = make_specimen(p);
   double interface = 0.0, perimeter = 0.0;
   for (const GrainFit& fit : fits_of(specimen)) {
     if (radius_in_blocks(fit, specimen) < 3.0) continue;
@@ -66,7 +66,7 @@ TEST(GrainFit, ShapesAreFollowedToo) {
     SpecimenParameters p = following(1);
     p.aggregates.shape = {
         .kind = kind, .elongation = {1.1, 1.6}, .corners = {5, 8}, .roughness = {0.02, 0.06}};
-    const Specimen specimen = make_specimen(p);
+    const Specimen<2> specimen = make_specimen(p);
     double area = 0.0, of_blocks = 0.0, interface = 0.0, perimeter = 0.0;
     for (const GrainFit& fit : fits_of(specimen)) {
       area += fit.area;
@@ -87,22 +87,22 @@ TEST(GrainFit, BlocksFollowGrainsBesideNotchesAndInRings) {
   p.blocks.count = 4000;
   p.region = Region::rectangle(0.15, 0.3).with_notches(
       std::vector<Notch>{{.name = "notch_1", .mouth = {{0, 0.15}}, .tip = {{0.05, 0.15}}, .width = 0.0}});
-  const Specimen notched = make_specimen(p);
+  const Specimen<2> notched = make_specimen(p);
   EXPECT_NEAR(notched.fraction_superposed, notched.fraction_placed, 0.02);
   p.region = Region::polygon(circle_corners({}, 0.2, 3e-3), {"rim"}, true)
                  .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
-  const Specimen ring = make_specimen(p);
+  const Specimen<2> ring = make_specimen(p);
   EXPECT_NEAR(ring.fraction_superposed, ring.fraction_placed, 0.02);
 }
 
 /// Returns a specimen of three squares of 1 in a row, of which the middle one is of a grain, the others of
 /// none.
-Specimen with_middle_square(const Aggregate& grain) {
-  Specimen s;
-  s.tessellation.vertices = {{{0, 0}}, {{1, 0}}, {{2, 0}}, {{3, 0}}, {{0, 1}}, {{1, 1}}, {{2, 1}}, {{3, 1}}};
-  s.tessellation.cells = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}};
+Specimen<2> with_middle_square(const Grain<2>& grain) {
+  Specimen<2> s;
+  s.cells.vertices = {{{0, 0}}, {{1, 0}}, {{2, 0}}, {{3, 0}}, {{0, 1}}, {{1, 1}}, {{2, 1}}, {{3, 1}}};
+  s.cells.cells = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}};
   s.grain = {-1, 0, -1};
-  s.aggregates = {grain};
+  s.stones = {grain};
   return s;
 }
 
@@ -142,9 +142,9 @@ TEST(GrainFit, TellsTheDistanceOfEdgesFromACircle) {
 // Promise: edges between two grains count for both, edges on the surface of the body and within a grain for
 // none; a grain without a block has no interface, and without grains of blocks there are no fits.
 TEST(GrainFit, CountsEdgesBetweenGrainsForBoth) {
-  Specimen s = with_middle_square(grain_of({{{1, -1}}, {{2, -1}}, {{2, 2}}, {{1, 2}}}));
-  s.aggregates.push_back({{{0.5, 0.5}}, 1.0, 0, 0, nullptr});
-  s.aggregates.push_back({{{0.5, 0.5}}, 0.1, 0, 0, nullptr});
+  Specimen<2> s = with_middle_square(grain_of({{{1, -1}}, {{2, -1}}, {{2, 2}}, {{1, 2}}}));
+  s.stones.push_back({{{0.5, 0.5}}, 1.0, 0, 0, nullptr});
+  s.stones.push_back({{{0.5, 0.5}}, 0.1, 0, 0, nullptr});
   s.grain = {1, 0, 0};
   const auto fits = fits_of(s);
   ASSERT_EQ(fits.size(), 3U);
@@ -177,7 +177,7 @@ std::vector<Vec<2>> cut_ellipse(const Vec<2>& centre, double a, double b) {
 }
 
 /// Returns a specimen of 120 mm x 80 mm with one stone, which blocks follow.
-Specimen with_stone(std::vector<Vec<2>> points, int blocks) {
+Specimen<2> with_stone(std::vector<Vec<2>> points, int blocks) {
   SpecimenParameters p;
   p.region = Region::rectangle(0.12, 0.08);
   p.seed = 1;
@@ -186,7 +186,7 @@ Specimen with_stone(std::vector<Vec<2>> points, int blocks) {
   p.blocks.shortest_edge = 0.3;
   const auto [outline, centre] = outline_around(std::move(points));
   p.aggregates.stones = {{centre, outline->width(), "aggregate", "", outline}};
-  p.aggregates.fraction = outline->extent() / p.region.area();
+  p.aggregates.fraction = outline->extent() / p.region.extent();
   p.aggregates.d_min = p.aggregates.d_max = outline->width();
   return make_specimen(p);
 }
@@ -202,17 +202,17 @@ TEST(GrainFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
        {Cut{{{0.0, 0.04}}, 0.02, 0.02}, Cut{{{0.0, 0.0}}, 0.025, 0.02}, Cut{{{0.06, 0.04}}, 0.015, 0.05},
         Cut{{{0.0, 0.04}}, 0.02, 0.3}, Cut{{{0.118, 0.08}}, 0.006, 0.006}}) {
     for (const int blocks : {150, 600}) {
-      const Specimen specimen = with_stone(cut_ellipse(centre, a, b), blocks);
+      const Specimen<2> specimen = with_stone(cut_ellipse(centre, a, b), blocks);
       const GrainFit fit = fits_of(specimen).front();
       EXPECT_NEAR(fit.area_of_blocks / fit.area, 1.0, fit.blocks > 1 ? 0.01 : 0.05);
       double largest = 0.0;
       std::vector<Vec<2>> polygon;
-      for (std::size_t cell = 0; cell < specimen.tessellation.cells.size(); ++cell) {
-        corners(specimen.tessellation, cell, polygon);
+      for (std::size_t cell = 0; cell < specimen.cells.cells.size(); ++cell) {
+        corners(specimen.cells, cell, polygon);
         largest = std::max(largest, area(polygon));
       }
       EXPECT_LT(largest,
-                8.0 * specimen.region.area() / blocks);  // blocks of free seeds are up to 6 times the mean
+                8.0 * specimen.outline.extent() / blocks);  // blocks of free seeds are up to 6 times the mean
     }
   }
 }

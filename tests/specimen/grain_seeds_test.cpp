@@ -21,7 +21,7 @@ constexpr double kOffset = 0.4, kPower = 0.25 - kOffset * kOffset;
 
 /// Seeds around grains in a square of 20, unless a test says another body.
 struct Made {
-  explicit Made(std::vector<Aggregate> all, const BlockSizes& block_sizes = BlockSizes(1.0),
+  explicit Made(std::vector<Grain<2>> all, const BlockSizes& block_sizes = BlockSizes(1.0),
                 std::vector<GrainSeeds::Way> ways = {}, Region body = Region::rectangle(20.0, 20.0))
       : grains(std::move(all)),
         sizes(block_sizes),
@@ -40,7 +40,7 @@ struct Made {
   double from(const Vec<2>& centre, std::size_t seed) const { return norm(seeds.positions()[seed] - centre); }
   double radius(std::size_t seed) const { return seeds.radii()[seed]; }
 
-  std::vector<Aggregate> grains;
+  std::vector<Grain<2>> grains;
   BlockSizes sizes;
   Region region;
   OutlineSeeds outline;
@@ -49,12 +49,12 @@ struct Made {
 
 const Vec<2> kMiddle{{10.0, 10.0}};
 
-Aggregate circle(double radius, const Vec<2>& centre = kMiddle) {
+Grain<2> circle(double radius, const Vec<2>& centre = kMiddle) {
   return {centre, 2.0 * radius, 0, 0, nullptr};
 }
 
 /// A rectangle around the middle.
-Aggregate rectangle(double width, double height) {
+Grain<2> rectangle(double width, double height) {
   const double a = 0.5 * width, b = 0.5 * height;
   return grain_of({{{10 - a, 10 - b}}, {{10 + a, 10 - b}}, {{10 + a, 10 + b}}, {{10 - a, 10 + b}}});
 }
@@ -97,7 +97,7 @@ TEST(GrainSeeds, AGrainIsFollowedLargerByItsWay) {
 // Promise: the tangents of a small grain enclose at most a quarter more than 1 times its size, whatever they
 // are.
 TEST(GrainSeeds, ATriangleIsDrawnSmallerByAQuarterAtMost) {
-  const Aggregate triangle = grain_of({{{9, 9.5}}, {{11, 9.5}}, {{10, 11}}});
+  const Grain<2> triangle = grain_of({{{9, 9.5}}, {{11, 9.5}}, {{10, 11}}});
   const Made made({triangle});
   EXPECT_GE(made.seeds.grain_at(triangle.centre + Vec<2>{{0.0, 0.79}}), 0);  // the top stands 1 above
 }
@@ -125,7 +125,7 @@ TEST(GrainSeeds, ASmallGrainIsOneCellWithTangentsAroundIt) {
 
 // Promise: a grain in which a free seed would seldom find a place has one in its middle, by its inner radius.
 TEST(GrainSeeds, AGrainOfMiddleSizeHasASeedInItsMiddle) {
-  const auto in_middle = [](const Aggregate& grain) {
+  const auto in_middle = [](const Grain<2>& grain) {
     const Made made({grain});
     const auto own = made.of(0);
     return std::ranges::any_of(own, [&](std::size_t i) {

@@ -34,7 +34,7 @@ GrainShape random_kind(Random& random) {
   return kKinds[static_cast<std::size_t>(random.uniform(0.0, kKinds.size()))];
 }
 
-Aggregate random_grain(GrainShape kind, const Vec<2>& centre, Random& random) {
+Grain<2> random_grain(GrainShape kind, const Vec<2>& centre, Random& random) {
   const ShapeParameters shape{
       .kind = kind, .elongation = {1.0, 5.0}, .corners = {3, 6}, .roughness = {0.0, 0.1}};
   const double width = random.uniform(0.5, 1.0);
@@ -49,7 +49,7 @@ Vec<2> random_direction(Random& random) {
 
 /// Returns points on a grain's surface: the corners of its outline, or of a polygon of so many sides that its
 /// arcs rise 1e-6 of the radius above them.
-Points line_of(const Aggregate& grain) {
+Points line_of(const Grain<2>& grain) {
   if (grain.shape) return corners_of(grain);
   Points line;
   for (int i = 0; i < kSamples; ++i) {
@@ -119,12 +119,12 @@ TEST(Grain, OverlapsAndDistancesAreThoseOfSides) {
   Random random(1);
   int overlaps = 0, without_corner = 0;
   for (int pair = 0; pair < kPairs; ++pair) {
-    const Aggregate a = random_grain(random_kind(random), {}, random);
-    const Aggregate b =
+    const Grain<2> a = random_grain(random_kind(random), {}, random);
+    const Grain<2> b =
         random_grain(random_kind(random), random.uniform(0.0, 2.2) * random_direction(random), random);
     const Points of_a = line_of(a), of_b = line_of(b);
     const bool overlap = meet(of_a, of_b);
-    const auto holds_corner = [](const Aggregate& grain, const Points& points) {
+    const auto holds_corner = [](const Grain<2>& grain, const Points& points) {
       return std::ranges::any_of(points, [&](const Vec<2>& p) { return holds(grain, p); });
     };
     overlaps += overlap ? 1 : 0;
@@ -186,7 +186,7 @@ TEST(Grain, LiesInABodyWhereItIsClearOfHolesNotchesAndSlits) {
     const int kind = pair % 4;
     const Featured feature = random_feature(kind, random);
     const Room<2> room = room_of_blocks(feature.region);
-    const Aggregate grain =
+    const Grain<2> grain =
         random_grain(random_kind(random), random.uniform(0.0, 1.5) * random_direction(random), random);
     if (!grain.shape && kind == 3) continue;  // circles lie across a slit, as a saw cuts them
     const Points line = line_of(grain);
@@ -232,12 +232,12 @@ TEST(Grain, AnOutlineThatIsGivenTwiceOverlaps) {
   for (const GrainShape kind : {GrainShape::ellipse, GrainShape::harmonics, GrainShape::polygon})
     all.push_back(corners_of(random_grain(kind, {{3.0, 2.0}}, random)));
   for (const Points& once : all) {
-    const Aggregate first = grain_of(once);
+    const Grain<2> first = grain_of(once);
     std::vector<Points> again{once, once, once, moved(once, {{1e-7, 0.0}})};
     std::rotate(again[1].begin(), again[1].begin() + 2, again[1].end());
     std::ranges::reverse(again[2]);
     for (const Points& corners : again) {
-      const Aggregate second = grain_of(corners);
+      const Grain<2> second = grain_of(corners);
       EXPECT_TRUE(are_closer(first, second, -kTouching * first.diameter));
       EXPECT_LT(approach(first, second).gap, -0.1 * first.diameter);
     }
@@ -274,8 +274,8 @@ TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
       for (Vec<2>& point : points) point *= scale;
       return points;
     };
-    const Aggregate bar = grain_of(scaled({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}}));
-    Aggregate pole = grain_of(scaled({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}}));
+    const Grain<2> bar = grain_of(scaled({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}}));
+    Grain<2> pole = grain_of(scaled({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}}));
     const Approach<2> near = approach(bar, pole);
     EXPECT_DOUBLE_EQ(near.gap, -2.5 * scale);
     EXPECT_EQ(near.direction, (Vec<2>{{0, 1}}));
@@ -290,9 +290,9 @@ TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
 // Promise: an approach is the way of the second one out of the first, whichever of both has an outline;
 // circles around one centre part along x.
 TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
-  const Aggregate circle{{{0, 0}}, 2.0, 0, 0, nullptr}, beside{{{0, 3}}, 1.0, 0, 0, nullptr};
-  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
-  const Aggregate other = grain_of({{{2, 4}}, {{4, 4}}, {{4, 6}}, {{2, 6}}});
+  const Grain<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr}, beside{{{0, 3}}, 1.0, 0, 0, nullptr};
+  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const Grain<2> other = grain_of({{{2, 4}}, {{4, 4}}, {{4, 6}}, {{2, 6}}});
   const auto expect = [](const Approach<2>& near, double gap, const Vec<2>& direction) {
     EXPECT_NEAR(near.gap, gap, 1e-12);
     EXPECT_NEAR(norm(near.direction - direction), 0.0, 1e-12);
@@ -304,7 +304,7 @@ TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
   expect(approach(box, circle), 1.0, -x);
   expect(approach(box, other), 3.0, y);
   expect(approach(other, box), 3.0, -y);
-  expect(approach(circle, Aggregate{{{0, 0}}, 1.0, 0, 0, nullptr}), -1.5, x);
+  expect(approach(circle, Grain<2>{{{0, 0}}, 1.0, 0, 0, nullptr}), -1.5, x);
   const Grain<3> ball{{{1, 1, 1}}, 2.0, 0, 0, nullptr};
   EXPECT_EQ(approach(ball, ball).gap, -2.0);
   EXPECT_EQ(approach(ball, ball).direction, (Vec<3>{{1, 0, 0}}));
@@ -312,7 +312,7 @@ TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
 
 // Promise: an approach of a grain and a segment is the way of the segment, from its nearest place.
 TEST(Grain, AnApproachOfASegmentIsFromItsNearestPlace) {
-  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
   const auto gap = [&](const Vec<2>& from, const Vec<2>& to) { return approach(box, from, to); };
   EXPECT_NEAR(gap({{3, 3}}, {{3, 5}}).gap, 2.0, 1e-12);  // an end over a side
   EXPECT_NEAR(norm(gap({{3, 3}}, {{3, 5}}).direction - Vec<2>{{0, 1}}), 0.0, 1e-12);
@@ -327,8 +327,8 @@ TEST(Grain, AnApproachOfASegmentIsFromItsNearestPlace) {
 
 // Promise: a place on the surface is held; a segment is closer than a gap up to the gap.
 TEST(Grain, HoldsItsSurface) {
-  const Aggregate circle{{{0, 0}}, 2.0, 0, 0, nullptr};
-  const Aggregate box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const Grain<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr};
+  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
   for (const double inside : {0.0, 0.999, 1.0}) EXPECT_TRUE(holds(circle, {{inside, 0}})) << inside;
   EXPECT_FALSE(holds(circle, {{1.001, 0}}));
   for (const double inside : {2.0, 2.001, 3.0, 4.0}) EXPECT_TRUE(holds(box, {{inside, 0}})) << inside;
@@ -337,7 +337,7 @@ TEST(Grain, HoldsItsSurface) {
   EXPECT_DOUBLE_EQ(distance(circle, {{0, 0.25}}), -0.75);
   EXPECT_DOUBLE_EQ(distance(box, {{3, 2}}), 1.0);
   EXPECT_EQ(place_within(circle), (Vec<2>{{0, 0}}));
-  for (const Aggregate& grain : {circle, box}) {
+  for (const Grain<2>& grain : {circle, box}) {
     const double right = grain.shape ? 4.0 : 1.0;
     const auto is_closer = [&](double x, double gap) { return are_closer(grain, {{x, -3}}, {{x, 3}}, gap); };
     EXPECT_TRUE(is_closer(right + 0.5, 0.51));
@@ -351,7 +351,7 @@ TEST(Grain, HoldsItsSurface) {
   EXPECT_TRUE(are_closer(box, {{2.9, 0}}, {{3.1, 0}}, 0.1));
 }
 
-void expect_apart(const std::vector<Aggregate>& grains, const Room<2>& room, double gap) {
+void expect_apart(const std::vector<Grain<2>>& grains, const Room<2>& room, double gap) {
   for (std::size_t i = 0; i < grains.size(); ++i) {
     EXPECT_TRUE(lies_within(grains[i], room, gap * (1.0 - 1e-9)));
     for (std::size_t j = 0; j < i; ++j) {
@@ -393,7 +393,7 @@ TEST(Grain, PlacedAndGrownGrainsOfAnyFormKeepTheGap) {
         const Region& region = is_pierced ? pierced : plate;
         Random random(4);
         const Room<2> room = room_of_blocks(region);
-        expect_apart(place(draw_grains<2>(p, region.area(), random), room, p, {}, random), room,
+        expect_apart(place(draw_grains<2>(p, region.extent(), random), room, p, {}, random), room,
                      p.minimum_gap);
       }
 }
@@ -402,7 +402,7 @@ TEST(Grain, PlacedAndGrownGrainsOfAnyFormKeepTheGap) {
 TEST(Grain, FibresRunThroughNoHoleAndNoGrain) {
   const Region region = Region::rectangle(0.1, 0.1).with_holes(
       std::array{Hole{"hole", circle_corners({{0.05, 0.05}}, 0.03, 2e-3), true}});
-  const std::vector<Aggregate> grains{
+  const std::vector<Grain<2>> grains{
       grain_of({{{0.02, 0.02}}, {{0.0205, 0.02}}, {{0.0205, 0.08}}, {{0.02, 0.08}}})};
   const FibreParameters p{
       .phase = "steel", .count = 100, .length = 0.05, .minimum_gap = 1e-3, .attempts = 100'000};

@@ -1,18 +1,17 @@
-#include "pyroclast/specimen/metrics.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include "examples.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
 TEST(Metrics, OfTwoCellsWorkedOutByHand) {
   // A 3 x 2 rectangle cut at x = 1.
-  const Tessellation t{{{{0, 0}}, {{1, 0}}, {{3, 0}}, {{3, 2}}, {{1, 2}}, {{0, 2}}},
-                       {{0, 1, 4, 5}, {1, 2, 3, 4}}};
-  const BlockMetrics m = measure(t);
+  const Cells<2> t{{{{0, 0}}, {{1, 0}}, {{3, 0}}, {{3, 2}}, {{1, 2}}, {{0, 2}}},
+                   {{0, 1, 4, 5}, {1, 2, 3, 4}}};
+  const Metrics<2> m = measure(t);
   EXPECT_DOUBLE_EQ(m.mean_edge, (1 + 2 + 1 + 2 + 2 + 2 + 2) / 7.0);
   EXPECT_DOUBLE_EQ(m.shortest_edge, 1);
   EXPECT_EQ(m.shortest_edge_cell, 0);

@@ -109,7 +109,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(NeperTess, ReadsAndScalesToTheSpecimen) {
   const TessFile file(two_cells);
-  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
+  const Cells<2> t = read_neper_tess(file.path(), 0.2, 0.1).cells;
   ASSERT_EQ(t.cells.size(), 2U);
   EXPECT_EQ(t.vertices.size(), 6U);
   EXPECT_TRUE(mismatched_cells(t, Region::rectangle(0.2, 0.1)).empty());
@@ -127,7 +127,7 @@ TEST(NeperTess, CellsWithoutVerticesAreLeftOutAndNumbered) {
   text = replaced(text, "   2 4 2 5 4 3", "   3 0\n     0\n    0 0 0 1\n     0 -1 0 0 0\n   4 4 2 5 4 3");
   const TessFile file(text);
   const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
-  EXPECT_EQ(read.tessellation.cells.size(), 2U);
+  EXPECT_EQ(read.cells.cells.size(), 2U);
   EXPECT_EQ(read.empty, (std::vector<int>{1, 3}));
 }
 
@@ -139,13 +139,13 @@ TEST(NeperTess, AVertexThatRegularisationRepeatsOrDropsIsNoTrouble) {
   text = replaced(text, " **edge\n 7", "   7  1.1 0.9 0    -1\n **edge\n 8");
   text = replaced(text, "   7  2 5 0\n", "   7  2 5 0\n   8  5 7 -1\n");
   const TessFile file(text);
-  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
+  const Cells<2> t = read_neper_tess(file.path(), 0.2, 0.1).cells;
   EXPECT_EQ(t.cells[0].size(), 4U);
   EXPECT_EQ(t.vertices.size(), 6U);
 }
 
 /// Writes a tessellation the way Neper does: twelve decimals, here in millimetres and off the origin.
-std::string as_tess(const Tessellation& t, const std::vector<Vec<2>>& domain) {
+std::string as_tess(const Cells<2>& t, const std::vector<Vec<2>>& domain) {
   const auto point = [](double x, double y) {
     return fmt::format("{:.12f} {:.12f} 0.000000000000", 1e3 * x - 20, 1e3 * y + 7);
   };
@@ -169,7 +169,7 @@ std::string as_tess(const Tessellation& t, const std::vector<Vec<2>>& domain) {
   return text + "***end\n";
 }
 
-std::string as_tess(const Tessellation& t, double width, double height) {
+std::string as_tess(const Cells<2>& t, double width, double height) {
   return as_tess(t, {{{0.0, 0.0}}, {{width, 0.0}}, {{width, height}}, {{0.0, height}}});
 }
 
@@ -178,9 +178,9 @@ TEST(NeperTess, ReadsBackWhatWeWrite) {
   p.count = 500;
   p.shortest_edge = 0.1;
   Random random(1);
-  const Tessellation ours = make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation;
+  const Cells<2> ours = make_blocks(p, Region::rectangle(0.15, 0.3), random).cells;
   const TessFile file(as_tess(ours, 0.15, 0.3));
-  const Tessellation read = read_neper_tess(file.path(), 0.15, 0.3).tessellation;
+  const Cells<2> read = read_neper_tess(file.path(), 0.15, 0.3).cells;
   ASSERT_EQ(read.cells.size(), ours.cells.size());
   std::vector<Vec<2>> a;
   std::vector<Vec<2>> b;
@@ -207,20 +207,20 @@ TEST(NeperTess, OfAnyOutlineItIsThatOfTheSpecimen) {
     p.shortest_edge = 0.1;
     Random random(1);
     const double width = region.box().width();  // of a circle's polygon not quite its diameter
-    const TessFile file(as_tess(make_blocks(p, region, random).tessellation, domain));
-    const Tessellation read = read_neper_tess(file.path(), TessSize{.width = width}).tessellation;
+    const TessFile file(as_tess(make_blocks(p, region, random).cells, domain));
+    const Cells<2> read = read_neper_tess(file.path(), TessSize{.width = width}).cells;
     EXPECT_EQ(read.cells.size(), 400U);
     const Region found = outline_of(read);
-    EXPECT_NEAR(found.area(), region.area(), 1e-9 * region.area());
+    EXPECT_NEAR(found.extent(), region.extent(), 1e-9 * region.extent());
     EXPECT_EQ(found.loops().size(), region.loops().size());
     EXPECT_NEAR(norm(found.box().low), 0.0, 1e-12);
     EXPECT_NEAR(found.box().width(), width, 1e-12);
     SpecimenParameters whole = paper_specimen(1);
     whole.region = found;
     whole.blocks = p;
-    whole.blocks.tessellation = read;
-    const Specimen specimen = make_specimen(whole);
-    EXPECT_EQ(specimen.tessellation.cells.size(), 400U);
+    whole.blocks.cells = read;
+    const Specimen<2> specimen = make_specimen(whole);
+    EXPECT_EQ(specimen.cells.cells.size(), 400U);
     EXPECT_GT(specimen.fraction.at(1), 0.1);
   }
 }
@@ -251,9 +251,9 @@ TEST(NeperTess, ATiltedPlaneIsLaidFlat) {
   for (const auto& [along, up] : {std::pair{x, half * (y + z)}, std::pair{half * (x + z), y}, std::pair{x, z},
                                   std::pair{y, z}, std::pair{half * (x - y), z}}) {
     const TessFile file(turned(two_cells, along, up));
-    const Tessellation flat = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
+    const Cells<2> flat = read_neper_tess(file.path(), 0.2, 0.1).cells;
     const TessFile straight(two_cells);
-    const Tessellation as_it_was = read_neper_tess(straight.path(), 0.2, 0.1).tessellation;
+    const Cells<2> as_it_was = read_neper_tess(straight.path(), 0.2, 0.1).cells;
     ASSERT_EQ(flat.vertices.size(), as_it_was.vertices.size());
     for (std::size_t v = 0; v < flat.vertices.size(); ++v)
       EXPECT_LT(norm(flat.vertices[v] - as_it_was.vertices[v]), 1e-12);  // 12 decimals of a length of 2
@@ -282,7 +282,7 @@ TEST(NeperTess, EmptyCellsAreLeftOut) {
   text = replaced(text, "   2 4 2 5 4 3", "   2 0\n     0\n    0 0 0 0\n     0 0 0 0 0\n   3 4 2 5 4 3");
   const TessFile file(text);
   const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
-  EXPECT_EQ(read.tessellation.cells.size(), 2U);
+  EXPECT_EQ(read.cells.cells.size(), 2U);
   EXPECT_EQ(read.group, (std::vector<int>{1, 3}));
   const TessFile short_face(replaced(text, "   2 0\n", "   2 2 1 2\n"));
   EXPECT_TRUE(says(message([&] { read_neper_tess(short_face.path(), 0.2, 0.1); }),
@@ -298,15 +298,15 @@ TEST(NeperTess, ACellThatBendsInwardsIsCutIntoConvexParts) {
   text = replaced(text, "2 4 2 5 4 3\n     4 7 -4 -3 -2", "2 5 2 7 5 4 3\n     5 7 8 -4 -3 -2");
   const TessFile file(text);
   const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
-  ASSERT_EQ(read.tessellation.cells.size(), 3U);
+  ASSERT_EQ(read.cells.cells.size(), 3U);
   EXPECT_EQ(read.group, (std::vector<int>{8, 9, 9}));
-  EXPECT_NO_THROW(require_valid(read.tessellation, Region::rectangle(0.2, 0.1), "cells"));
-  EXPECT_EQ(read_neper_tess(file.path(), TessSize{.unit = 1e-3}).tessellation.cells.size(), 3U);
+  EXPECT_NO_THROW(require_valid(read.cells, Region::rectangle(0.2, 0.1), "cells"));
+  EXPECT_EQ(read_neper_tess(file.path(), TessSize{.unit = 1e-3}).cells.cells.size(), 3U);
 }
 
 TEST(NeperTess, IsAsLargeAsItsUnitSays) {
   const TessFile file(two_cells);
-  const Tessellation t = read_neper_tess(file.path(), TessSize{.unit = 0.1}).tessellation;
+  const Cells<2> t = read_neper_tess(file.path(), TessSize{.unit = 0.1}).cells;
   EXPECT_DOUBLE_EQ(outline_of(t).box().width(), 0.2);
   EXPECT_DOUBLE_EQ(outline_of(t).box().height(), 0.1);
 }
@@ -320,20 +320,20 @@ TEST(NeperTess, MessagesCountAsTheFileDoes) {
 }
 
 /// The paper's aggregates on 500 blocks that were written to a file and read back.
-Specimen from_tess(double shortest_edge) {
+Specimen<2> from_tess(double shortest_edge) {
   BlockParameters p;
   p.count = 500;
   Random random(1);
-  const TessFile file(as_tess(make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation, 0.15, 0.3));
+  const TessFile file(as_tess(make_blocks(p, Region::rectangle(0.15, 0.3), random).cells, 0.15, 0.3));
   SpecimenParameters parameters = paper_specimen(1);
-  parameters.blocks.tessellation = read_neper_tess(file.path(), 0.15, 0.3).tessellation;
+  parameters.blocks.cells = read_neper_tess(file.path(), 0.15, 0.3).cells;
   parameters.blocks.shortest_edge = shortest_edge;
   return make_specimen(parameters);
 }
 
 TEST(NeperTess, IsRegularisedLikeOurOwn) {
-  const Specimen s = from_tess(0.1);
-  EXPECT_EQ(s.tessellation.cells.size(), 500U);
+  const Specimen<2> s = from_tess(0.1);
+  EXPECT_EQ(s.cells.cells.size(), 500U);
   EXPECT_GT(s.metrics.edges_removed, 0);
   EXPECT_EQ(s.metrics.seeds_redrawn, 0);
   EXPECT_EQ(s.metrics.edges_left_short, 0);
@@ -342,7 +342,7 @@ TEST(NeperTess, IsRegularisedLikeOurOwn) {
 
 // Promise: edges that stay short, since no removal leaves the blocks fit, are told.
 TEST(NeperTess, TellsOfEdgesThatAreLeftShort) {
-  const Specimen s = from_tess(0.5);
+  const Specimen<2> s = from_tess(0.5);
   EXPECT_GT(s.metrics.edges_left_short, 0);
   EXPECT_LT(s.metrics.shortest_edge, 0.5 * s.metrics.mean_edge);
 }

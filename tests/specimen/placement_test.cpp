@@ -11,7 +11,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-std::vector<Aggregate> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
+std::vector<Grain<2>> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
   Random random(seed);
   return place(draw_grains<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
 }
@@ -20,7 +20,7 @@ TEST(Placement, KeepsTheGapBetweenAggregatesAndToTheOutline) {
   const AggregateParameters p = paper_aggregates();
   const double gap = p.minimum_gap * (1 - 1e-9);  // the comparison is one of squares
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::vector<Aggregate> circles = place_paper_aggregates(p, seed);
+    const std::vector<Grain<2>> circles = place_paper_aggregates(p, seed);
     for (std::size_t i = 0; i < circles.size(); ++i) {
       const double radius = circles[i].diameter / 2;
       for (int axis = 0; axis < 2; ++axis) {
@@ -41,7 +41,7 @@ TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
   p.sieves.front() = 1e-3;
   p.minimum_gap = 0;
   Random random(1);
-  const std::vector<Aggregate> grains = draw_grains<2>(p, 0.15 * 0.3, random);
+  const std::vector<Grain<2>> grains = draw_grains<2>(p, 0.15 * 0.3, random);
   ASSERT_GT(grains.size(), 1000U);
   EXPECT_EQ(place(grains, room_in(Region::rectangle(0.15, 0.3)), p, {}, random).size(), grains.size());
 }
@@ -53,7 +53,7 @@ TEST(Placement, GrownGrainsKeepTheGapAndTheirSizes) {
   p.attempts = 100;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Random random(seed);
-    const std::vector<Aggregate> grains = draw_grains<2>(p, 0.15 * 0.3, random);
+    const std::vector<Grain<2>> grains = draw_grains<2>(p, 0.15 * 0.3, random);
     const auto placed = place(grains, room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
     ASSERT_EQ(placed.size(), grains.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -75,8 +75,8 @@ TEST(Placement, GrowsInADiscToo) {
   p.attempts = 50;
   const Region disc = Region::polygon(circle_corners({}, 0.2, 2e-3), {"rim"}, true);
   Random random(1);
-  const auto placed = place(draw_grains<2>(p, disc.area(), random), room_in(disc), p, {}, random);
-  for (const Aggregate& grain : placed)
+  const auto placed = place(draw_grains<2>(p, disc.extent(), random), room_in(disc), p, {}, random);
+  for (const Grain<2>& grain : placed)
     EXPECT_LE(disc.distance(grain.centre), -grain.diameter / 2 - p.minimum_gap + 1e-12);
 }
 
@@ -107,7 +107,7 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
   p.attempts = 100;
   p.place = "mine.toml:12: aggregates";
   Random random(1);
-  const std::vector<Aggregate> grains{
+  const std::vector<Grain<2>> grains{
       {{}, 20e-3}, {{}, 10e-3}, {{}, 50e-3}};  // the last is wider than the specimen
   // pi/4 (20^2 + 10^2) / (40 x 300) = 0.0327
   EXPECT_TRUE(says(
@@ -119,7 +119,7 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
 TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
-  const std::vector<Aggregate> grains{{{}, 30e-3}};
+  const std::vector<Grain<2>> grains{{{}, 30e-3}};
   EXPECT_TRUE(says(message([&] { place(grains, room_in(Region::rectangle(0.02, 0.3)), p, {}, random); }),
                    "after 0 of 1"));
 }

@@ -49,7 +49,7 @@ TEST(Region, DistancesAreNegativeInsideAndGoAroundHoles) {
   EXPECT_DOUBLE_EQ(holed.distance(at(0.3, 0.5)), -0.1);
   EXPECT_DOUBLE_EQ(holed.distance(at(0.9, 0.5)), -0.1);
   EXPECT_DOUBLE_EQ(holed.distance(at(1.3, 1.4)), 0.5);
-  EXPECT_NEAR(holed.area(), 0.96, 1e-15);
+  EXPECT_NEAR(holed.extent(), 0.96, 1e-15);
 }
 
 TEST(Region, SidesKeepTheirNamesWhicheverWayCornersRun) {
@@ -61,7 +61,7 @@ TEST(Region, SidesKeepTheirNamesWhicheverWayCornersRun) {
       sides = {"slope", "base", "wall"};
     }
     const Region region = Region::polygon(corners, sides);
-    EXPECT_DOUBLE_EQ(region.area(), 1.0);
+    EXPECT_DOUBLE_EQ(region.extent(), 1.0);
     EXPECT_EQ(region.sides()[region.side_of(at(0.5, 0), at(1, 0)).value()].name, "base");
     EXPECT_EQ(region.sides()[region.side_of(at(2, 0), at(0, 1)).value()].name, "slope");
     EXPECT_EQ(region.sides()[region.side_of(at(0, 0.2), at(0, 0.3)).value()].name, "wall");
@@ -78,17 +78,17 @@ TEST(Region, ACircleHasItsArea) {
 
 TEST(Region, ANotchWithAWidthIsCutOutAndOneWithoutIsNot) {
   const Region wedge = with_notch(square, at(0.5, 0.0), at(0.5, 0.4), 0.1);
-  EXPECT_NEAR(wedge.area(), 1.0 - 0.5 * 0.1 * 0.4, 1e-12);
+  EXPECT_NEAR(wedge.extent(), 1.0 - 0.5 * 0.1 * 0.4, 1e-12);
   EXPECT_NEAR(wedge.distance(at(0.5, 0.0)), 0.05 * 0.4 / std::hypot(0.4, 0.05), 1e-12);
   EXPECT_EQ(wedge.distance_before_cuts(at(0.5, 0.1)), -0.1);
   EXPECT_EQ(wedge.sides()[wedge.side_of(at(0.55, 0.0), at(0.5, 0.4)).value()].name, "notch");
   EXPECT_EQ(wedge.sides()[wedge.side_of(at(0.6, 0.0), at(0.7, 0.0)).value()].name, "bottom");
   const Region slot = with_notch(square, at(0.5, 0.0), at(0.5, 0.4), 0.1, 0.1);
-  EXPECT_NEAR(slot.area(), 1.0 - 0.1 * 0.3 - 0.5 * 0.1 * 0.1, 1e-12);
+  EXPECT_NEAR(slot.extent(), 1.0 - 0.1 * 0.3 - 0.5 * 0.1 * 0.1, 1e-12);
   EXPECT_NEAR(slot.distance(at(0.5, 0.2)), 0.05, 1e-12);
   EXPECT_EQ(slot.sides()[slot.side_of(at(0.55, 0.1), at(0.55, 0.2)).value()].name, "notch");
   const Region slit = with_notch(square, at(0.5, 0.0), at(0.5, 0.4));
-  EXPECT_EQ(slit.area(), 1.0);
+  EXPECT_EQ(slit.extent(), 1.0);
   EXPECT_EQ(slit.slit_of(at(0.5, 0.1), at(0.5, 0.2)), std::optional(0));
   EXPECT_EQ(slit.slit_of(at(0.5, 0.1), at(0.5, 0.5)), std::nullopt);
 }
@@ -144,7 +144,7 @@ std::vector<Vec<2>> random_polygon(Random& random, double shortest) {
 std::optional<Region> random_body(Random& random, int blocks) {
   const std::vector<Vec<2>> corners = random_polygon(random, 0.03);
   Region region = polygon(corners);
-  const double size = std::sqrt(region.area() / blocks);
+  const double size = std::sqrt(region.extent() / blocks);
   const Vec<2> centre = at(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01));
   const double width = random.uniform(3.0, 5.0) * size;
   const bool is_round = random.uniform() < 0.5;
@@ -173,19 +173,19 @@ BlockParameters of_count(int count) {
   return p;
 }
 
-bool has_vertex(const Tessellation& t, const Vec<2>& corner) {
+bool has_vertex(const Cells<2>& t, const Vec<2>& corner) {
   return std::ranges::find(t.vertices, corner) != t.vertices.end();
 }
 
 /// That the blocks are the body: their area, its corners, every face in two blocks or on the outline.
-void expect_body(const Tessellation& t, const Region& region) {
+void expect_body(const Cells<2>& t, const Region& region) {
   require_valid(t, region, "blocks");
   for (const Piece& piece : region.pieces()) EXPECT_TRUE(has_vertex(t, piece.from));
   double slits = 0.0, outline = 0.0;
-  for (const Edge& e : edges(t)) {
-    const Vec<2>&a = t.vertices[e.v0], &b = t.vertices[e.v1];
-    EXPECT_EQ(e.right < 0, region.side_of(a, b).has_value());
-    if (e.right < 0) outline += norm(b - a);
+  for (const Facet<2>& e : facets(t)) {
+    const Vec<2>&a = t.vertices[e.corners[0]], &b = t.vertices[e.corners[1]];
+    EXPECT_EQ(e.outer < 0, region.side_of(a, b).has_value());
+    if (e.outer < 0) outline += norm(b - a);
     if (region.slit_of(a, b)) slits += norm(b - a);
   }
   double long_slits = 0.0, long_outline = 0.0;
@@ -207,10 +207,10 @@ TEST(Region, RandomPolygonsWithNotchesAndHolesAreCutIntoBlocks) {
     if (!region) continue;
     ++body;
     try {
-      const Blocks blocks = make_blocks(of_count(kBlocks), *region, random);
-      EXPECT_EQ(std::ssize(blocks.tessellation.cells), kBlocks);
-      EXPECT_EQ(blocks.edges_left_short, 0);
-      expect_body(blocks.tessellation, *region);
+      const Blocks<2> blocks = make_blocks(of_count(kBlocks), *region, random);
+      EXPECT_EQ(std::ssize(blocks.cells.cells), kBlocks);
+      EXPECT_EQ(blocks.done.edges_left_short, 0);
+      expect_body(blocks.cells, *region);
       ++made;
     } catch (const Error& error) {
       EXPECT_TRUE(
@@ -234,9 +234,9 @@ TEST(Region, AggregatesKeepAwayFromTheOutlineButNotFromCuts) {
   p.aggregates.fraction = 0.3;
   p.region = with_notch(polygon({at(0, 0), at(0.2, 0), at(0.2, 0.1), at(0.1, 0.1), at(0.1, 0.3), at(0, 0.3)}),
                         at(0, 0.2), at(0.05, 0.2), 0.006);
-  const Specimen specimen = make_specimen(p);
+  const Specimen<2> specimen = make_specimen(p);
   int cut = 0;
-  for (const Aggregate& a : specimen.aggregates) {
+  for (const Grain<2>& a : specimen.stones) {
     EXPECT_LE(p.region.distance_before_cuts(a.centre), -(0.5 * a.diameter + p.aggregates.minimum_gap));
     if (p.region.distance(a.centre) > -0.5 * a.diameter) ++cut;
   }

@@ -6,15 +6,15 @@
 #include "examples.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
-#include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
 /// A 2 x 2 square in four cells that meet at the ends of an edge of length `edge` in the middle.
-Tessellation four_cells(double edge) {
+Cells<2> four_cells(double edge) {
   const double h = edge / 2;
   return {{{{0, 0}},
            {{1, 0}},
@@ -30,18 +30,19 @@ Tessellation four_cells(double edge) {
 }
 
 TEST(Edges, EachOnceWithBothItsCells) {
-  const Tessellation t = four_cells(0.1);
-  const std::vector<Edge> all = edges(t);
+  const Cells<2> t = four_cells(0.1);
+  const std::vector<Facet<2>> all = facets(t);
   int outline = 0;
-  for (const Edge& e : all) {
-    const auto& left = t.cells[static_cast<std::size_t>(e.left)];
-    const auto v0 = std::find(left.begin(), left.end(), e.v0);
+  for (const Facet<2>& e : all) {
+    const auto& left = t.cells[static_cast<std::size_t>(e.inner)];
+    const auto v0 = std::find(left.begin(), left.end(), e.corners[0]);
     ASSERT_NE(v0, left.end());
-    EXPECT_EQ(v0 + 1 == left.end() ? left.front() : *(v0 + 1), e.v1) << "left sees the edge from v0 to v1";
-    if (e.right < 0) {
+    EXPECT_EQ(v0 + 1 == left.end() ? left.front() : *(v0 + 1), e.corners[1])
+        << "left sees the edge from v0 to v1";
+    if (e.outer < 0) {
       ++outline;
     } else {
-      EXPECT_GT(e.right, e.left);
+      EXPECT_GT(e.outer, e.inner);
     }
   }
   EXPECT_EQ(outline, 8);
@@ -49,13 +50,13 @@ TEST(Edges, EachOnceWithBothItsCells) {
 }
 
 TEST(Edges, RefusesCellsThatOverlap) {
-  Tessellation t = four_cells(0.1);
+  Cells<2> t = four_cells(0.1);
   t.cells.push_back({1, 2, 3, 9});
-  EXPECT_TRUE(says(message([&] { edges(t); }), "overlaps"));
+  EXPECT_TRUE(says(message([&] { facets(t); }), "overlaps"));
 }
 
 TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
-  Tessellation t = four_cells(0.1);
+  Cells<2> t = four_cells(0.1);
   const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
   EXPECT_EQ(done.edges_removed, 1);
   EXPECT_EQ(done.edges_left_short, 0);
@@ -66,13 +67,13 @@ TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
 }
 
 TEST(Regularisation, LeavesLongerEdgesAlone) {
-  Tessellation t = four_cells(0.4);
+  Cells<2> t = four_cells(0.4);
   EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.2).edges_removed, 0);
   EXPECT_EQ(t.vertices, four_cells(0.4).vertices);
 }
 
 TEST(Regularisation, KeepsOutlineVerticesOnTheirSide) {
-  Tessellation t = four_cells(0.6);
+  Cells<2> t = four_cells(0.6);
   t.vertices[1] = {{0.05, 0}};  // a short edge from the corner along the bottom
   const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
   // The corner stays in place, the other end moves into it.
@@ -83,8 +84,7 @@ TEST(Regularisation, KeepsOutlineVerticesOnTheirSide) {
 
 TEST(Regularisation, DoesNotRemoveATriangleButNamesIt) {
   // The corner (0, 0) is cut off by a small triangle: its edges are short, and none can go.
-  Tessellation t{{{{0, 0}}, {{0.1, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}, {{0, 0.1}}},
-                 {{0, 1, 5}, {1, 2, 3, 4, 5}}};
+  Cells<2> t{{{{0, 0}}, {{0.1, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}, {{0, 0.1}}}, {{0, 1, 5}, {1, 2, 3, 4, 5}}};
   const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.14);  // shorter than 0.16 is short
   EXPECT_EQ(done.edges_removed, 0);
   EXPECT_EQ(done.edges_left_short, 3);
@@ -94,21 +94,21 @@ TEST(Regularisation, DoesNotRemoveATriangleButNamesIt) {
 
 TEST(Regularisation, NamesTheSmallerNeighbourOfAFlatCorner) {
   // Cell 0 has a corner of nearly 180 degrees where cells 1 and 2 meet.
-  Tessellation t{{{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}, {{2, 2}}, {{0.8, 2}}, {{0, 2}}, {{0.8, 1.001}}},
-                 {{0, 1, 2, 7, 3}, {2, 4, 5, 7}, {3, 7, 5, 6}}};
+  Cells<2> t{{{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}, {{2, 2}}, {{0.8, 2}}, {{0, 2}}, {{0.8, 1.001}}},
+             {{0, 1, 2, 7, 3}, {2, 4, 5, 7}, {3, 7, 5, 6}}};
   EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.1).unfit, std::vector<int>{2});
 }
 
 TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
   Random random(3);
-  Seeds seeds;
+  Seeds<2> seeds;
   for (int i = 0; i < 2000; ++i) {
     const double x = random.uniform();
     seeds.position.push_back({{x, random.uniform()}});
     seeds.radius.push_back(0.01);
   }
-  const Tessellation before = laguerre_tessellation(seeds, Region::rectangle(1, 1)).tessellation;
-  Tessellation after = before;
+  const Cells<2> before = laguerre_cells(seeds, Region::rectangle(1, 1)).cells;
+  Cells<2> after = before;
   EXPECT_GT(regularise(after, Region::rectangle(1, 1), 0.3).edges_removed, 0);
   // The bound on slivers grows with the mean edge, so the one at the start holds throughout.
   const double thinnest = sliver_share * 0.3 * measure(before).mean_edge;

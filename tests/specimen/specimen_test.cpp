@@ -13,14 +13,14 @@ namespace {
 TEST(Specimen, MeetsThePapersRequest) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SpecimenParameters p = paper_specimen(seed);
-    const Specimen s = make_specimen(p);
+    const Specimen<2> s = make_specimen(p);
     // Gradation is off by at most half the smallest aggregate.
     const double smallest =
-        0.25 * std::numbers::pi * p.aggregates.d_min * p.aggregates.d_min / p.region.area();
+        0.25 * std::numbers::pi * p.aggregates.d_min * p.aggregates.d_min / p.region.extent();
     EXPECT_NEAR(s.fraction_placed, 0.34, 0.5 * smallest * (1 + 1e-9));
     // The paper loses 0.03 by superposition; a rule that loses or gains more is another specimen.
     EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.03);
-    EXPECT_EQ(s.tessellation.cells.size(), 5000U);
+    EXPECT_EQ(s.cells.cells.size(), 5000U);
     EXPECT_EQ(s.phase.size(), 5000U);
     EXPECT_GE(s.metrics.shortest_edge, 0.2 * s.metrics.mean_edge * (1 - 1e-12));
     EXPECT_EQ(s.metrics.edges_left_short, 0);
@@ -30,31 +30,31 @@ TEST(Specimen, MeetsThePapersRequest) {
 }
 
 TEST(Specimen, TheSameSeedGivesTheSameSpecimen) {
-  const Specimen a = make_specimen(paper_specimen(11));
-  const Specimen b = make_specimen(paper_specimen(11));
-  const Specimen other = make_specimen(paper_specimen(12));
-  EXPECT_EQ(a.tessellation.vertices, b.tessellation.vertices);
-  EXPECT_EQ(a.tessellation.cells, b.tessellation.cells);
+  const Specimen<2> a = make_specimen(paper_specimen(11));
+  const Specimen<2> b = make_specimen(paper_specimen(11));
+  const Specimen<2> other = make_specimen(paper_specimen(12));
+  EXPECT_EQ(a.cells.vertices, b.cells.vertices);
+  EXPECT_EQ(a.cells.cells, b.cells.cells);
   EXPECT_EQ(a.phase, b.phase);
-  EXPECT_NE(a.tessellation.vertices, other.tessellation.vertices);
+  EXPECT_NE(a.cells.vertices, other.cells.vertices);
 }
 
 TEST(Specimen, AggregatesDoNotDependOnTheBlocks) {
   SpecimenParameters p = paper_specimen(1);
-  const Specimen fine = make_specimen(p);
+  const Specimen<2> fine = make_specimen(p);
   p.blocks.count = 1000;
-  const Specimen coarse = make_specimen(p);
-  ASSERT_EQ(fine.aggregates.size(), coarse.aggregates.size());
-  for (std::size_t i = 0; i < fine.aggregates.size(); ++i) {
-    EXPECT_EQ(fine.aggregates[i].centre, coarse.aggregates[i].centre);
+  const Specimen<2> coarse = make_specimen(p);
+  ASSERT_EQ(fine.stones.size(), coarse.stones.size());
+  for (std::size_t i = 0; i < fine.stones.size(); ++i) {
+    EXPECT_EQ(fine.stones[i].centre, coarse.stones[i].centre);
   }
 }
 
 TEST(Specimen, WithoutAggregatesIsAllMortar) {
   SpecimenParameters p = paper_specimen(1);
   p.aggregates = {};
-  const Specimen s = make_specimen(p);
-  EXPECT_TRUE(s.aggregates.empty());
+  const Specimen<2> s = make_specimen(p);
+  EXPECT_TRUE(s.stones.empty());
   EXPECT_EQ(s.fraction_superposed, 0);
 }
 
@@ -93,12 +93,12 @@ TEST(Specimen, TellsWhenSuperpositionLosesAggregate) {
   p.blocks.count = 500;
   p.superposition = Superposition::area;
   p.covered_fraction = 0.55;
-  const Specimen coarse = make_specimen(p);
+  const Specimen<2> coarse = make_specimen(p);
   EXPECT_LT(coarse.fraction_superposed, 0.9 * coarse.fraction_placed);
   ASSERT_EQ(warnings(coarse).size(), 1U);
   EXPECT_TRUE(says(warnings(coarse).front(), "rule = \"fit\""));
   p.superposition = Superposition::fit;
-  const Specimen fitted = make_specimen(p);
+  const Specimen<2> fitted = make_specimen(p);
   EXPECT_NEAR(fitted.fraction_superposed, fitted.fraction_placed,
               0.5 * 1.0 / 500 * 3);  // half of a large block
   EXPECT_TRUE(warnings(fitted).empty());
@@ -118,7 +118,7 @@ TEST(Specimen, RefusesAtOnceWhatCannotFit) {
 
 TEST(ZoneBlock, FansOutAroundTheCentroid) {
   const std::vector<Vec<2>> cell{{{0, 0}}, {{2, 0}}, {{3, 1}}, {{2, 3}}, {{0, 2}}};
-  const ZonedBlock block = zone_block(cell);
+  const ZonedCell<2> block = zone_block(cell);
   ASSERT_EQ(block.gridpoints.size(), 6U);
   ASSERT_EQ(block.zones.size(), 5U);
   EXPECT_EQ(block.gridpoints.back(), centroid(cell));

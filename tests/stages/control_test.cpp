@@ -19,8 +19,8 @@ constexpr double kYoung = 29.4e9, kStrength = 2.5e6, kEnergy = 60.0;
 
 /// Columns and rows of blocks, the left half of one phase and the right half of another. Rows grow thinner
 /// upwards: the point about which the halves of a beam turn is the last, and its face parts only in part.
-specimen::Specimen grid(double length, double depth, int columns, int rows) {
-  specimen::Tessellation t;
+specimen::Specimen<2> grid(double length, double depth, int columns, int rows) {
+  specimen::Cells<2> t;
   std::vector<int> phase;
   for (int i = 0; i <= columns; ++i)
     for (int j = 0; j <= rows; ++j) {
@@ -36,7 +36,7 @@ specimen::Specimen grid(double length, double depth, int columns, int rows) {
   return specimen::specimen_from({std::move(t), {"aggregate", "mortar"}, std::move(phase)});
 }
 
-specimen::Specimen bar_of_blocks() {
+specimen::Specimen<2> bar_of_blocks() {
   return grid(kLength, kDepth, 20, 1);
 }
 

@@ -152,9 +152,9 @@ TEST(CrackHeat, ContactsPartBelowAConductanceOfTheBlockSize) {
            "conductivity = { table = [[\"20 degC\", \"4 W/(m K)\"], [\"70 degC\", \"1 W/(m K)\"]] }");
   for (const char* count : {"count = 60", "count = 240"}) {
     const auto simulation = make_simulation(read(with(text, "count = 60", count)));
-    const auto& specimen = std::get<specimen::Specimen>(*simulation->specimen());
+    const auto& specimen = std::get<specimen::Specimen<2>>(*simulation->specimen());
     const double conductivity = 4.0 * specimen.fraction[0] + 40.0 * specimen.fraction[1];
-    const double size = std::sqrt(specimen.region.area() / std::stod(std::string(count).substr(8)));
+    const double size = std::sqrt(specimen.outline.extent() / std::stod(std::string(count).substr(8)));
     EXPECT_NEAR(simulation->field().conduction()->gap_law()->split_below, 20.0 * conductivity / size,
                 1e-9 * conductivity / size);
   }

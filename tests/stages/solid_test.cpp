@@ -145,7 +145,7 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
   parameters.blocks.count = 120;
   parameters.superposition = specimen::Superposition::fit;
   const auto specimen =
-      solid::make_specimen(parameters, solid::Prism(section, solid::Prism::Axis::y, kHeight));
+      specimen::make_specimen<3>(parameters, specimen::Prism(section, specimen::Prism::Axis::y, kHeight));
   return make_body(specimen, 1.0, {}, setup.moving);
 }
 

@@ -21,7 +21,6 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/concrete_model.hpp"
-#include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 #include "solid/bodies.hpp"
 
@@ -669,7 +668,7 @@ ModelOf<3> raw_cells(int blocks) {
   p.seed = 1;
   p.blocks.count = blocks;
   p.blocks.radius_spread = 0.3;
-  return make_solid_model(solid::make_specimen(p, solid::cuboid(0.1, 0.1, 0.1)));
+  return make_model(specimen::make_specimen<3>(p, specimen::cuboid(0.1, 0.1, 0.1)));
 }
 
 TEST(Conduction, ASharpFrontInRawCellsStaysWithinItsBounds) {

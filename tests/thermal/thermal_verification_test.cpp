@@ -12,7 +12,7 @@
 #include "convective_wall.hpp"
 #include "known.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
-#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 #include "solid/bodies.hpp"
 
@@ -156,16 +156,16 @@ struct FieldError {
 std::array<FieldError, 2> errors_of_step(bool is_cylinder, int blocks) {
   const double size = std::cbrt((is_cylinder ? 0.25 * pi : 1.0) * std::pow(2.0 * kHalf, 3) / blocks);
   const auto body =
-      is_cylinder ? solid::cylinder(2.0 * kHalf, 2.0 * kHalf,
-                                    static_cast<int>(std::max(24.0, std::ceil(2.0 * pi * kHalf / size))))
-                  : solid::cuboid(2.0 * kHalf, 2.0 * kHalf, 2.0 * kHalf);
+      is_cylinder ? specimen::cylinder(2.0 * kHalf, 2.0 * kHalf,
+                                       static_cast<int>(std::max(24.0, std::ceil(2.0 * pi * kHalf / size))))
+                  : specimen::cuboid(2.0 * kHalf, 2.0 * kHalf, 2.0 * kHalf);
   specimen::SpecimenParameters p;
   p.seed = 1;
   p.blocks.count = blocks;
   p.blocks.radius_spread = 0.3;
   p.blocks.shortest_edge = 0.35;
   p.blocks.largest_bend = pi / 9.0;
-  const ModelOf<3> model = make_solid_model(solid::make_specimen(p, body));
+  const ModelOf<3> model = make_model(specimen::make_specimen<3>(p, body));
   constexpr double initial = 20.0, step = 100.0;
   const auto material = constant_material(1.5, 2.2e6);
   Conduction<3> heat(model, {material, material},  // of mortar, and of stones, of which there are none

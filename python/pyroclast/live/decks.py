@@ -14,7 +14,7 @@ import numpy as np
 from .. import _core
 from ..errors import DeckError, Diagnostic, Error
 from . import functions
-from .specimen import SolidSpecimen, Specimen, wrapped
+from .specimen import Specimen
 from .stages import Stage
 from .units import Quantity, in_si
 
@@ -113,8 +113,7 @@ class Deck:
     dimension is a text with its unit ("150 mm") or a Quantity (`150 * pyroclast.mm`); a bare number is refused. Where
     a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in
     `[[heat.boundaries]]`; what it returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`. The
-    `factor` of a drive is a function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen`
-    or a `pyroclast.SolidSpecimen` too.
+    `factor` of a drive is a function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen` too.
 
     Raises DeckError for a file that is no deck, or holds no TOML.
     """
@@ -133,7 +132,7 @@ class Deck:
         self._laws = [str(folder) for folder in laws]
         self._changes: list[tuple[str, str]] = []
         self._functions: dict[str, functions.Function] = {}
-        self._specimen: tuple[Specimen | SolidSpecimen, functions.Scratch] | None = None
+        self._specimen: tuple[Specimen, functions.Scratch] | None = None
         self._name, self._folder, self._text = "deck", "", ""
         self._is_own = file is None  # the script's, not a file's: what it names, the script names
         if file is not None:
@@ -158,7 +157,7 @@ class Deck:
         plain: list[str] = []
         headed: list[tuple[str, list[Mapping[str, Any]], bool]] = []
         for name, value in tables.items():
-            if isinstance(value, (Specimen, SolidSpecimen)):
+            if isinstance(value, Specimen):
                 self._take(value)
                 headed.append((name, [{"shape": value.shape, "file": _CELLS}], False))
             elif isinstance(value, Mapping):
@@ -190,7 +189,7 @@ class Deck:
         """
         if path in self._functions:
             return self._functions[path]
-        return self._wrapped(path, self._node(path))
+        return self._Specimen(path, self._node(path))
 
     def _node(self, path: str) -> Any:
         """Returns the value at a path as TOML has it. Raises KeyError where there is none."""
@@ -202,12 +201,12 @@ class Deck:
                 raise KeyError(path) from None
         return node
 
-    def _wrapped(self, path: str, node: Any) -> Any:
+    def _Specimen(self, path: str, node: Any) -> Any:
         """Returns a value so that none of its changes is lost: each reaches the deck, or is refused."""
         if isinstance(node, dict):
             return DeckTable(self, path)
         if isinstance(node, list):
-            return tuple(self._wrapped(f"{path}[{i}]", entry) for i, entry in enumerate(node))
+            return tuple(self._Specimen(f"{path}[{i}]", entry) for i, entry in enumerate(node))
         if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)) and _core.is_quantity(node):
             return Quantity(float(match[1]), match[2])
         return node
@@ -227,14 +226,13 @@ class Deck:
             return False
         return True
 
-    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function | Specimen
-                    | SolidSpecimen) -> None:
+    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function | Specimen) -> None:
         """Sets a value; a key or table that is missing is added. A specimen takes the place of all that the deck says
         of it but for the thickness and the matrix.
 
         Raises DeckError for a bare number where a unit is needed, and Error where the deck has no place for the key.
         """
-        if isinstance(value, (Specimen, SolidSpecimen)):
+        if isinstance(value, Specimen):
             self._set_specimen(path, value)
             return
         if callable(value) or isinstance(value, functions.Function):
@@ -289,12 +287,12 @@ class Deck:
         self._rebuild(take_out, path)
         self._functions = moved
 
-    def _set_specimen(self, path: str, specimen: Specimen | SolidSpecimen) -> None:
+    def _set_specimen(self, path: str, specimen: Specimen) -> None:
         if path != "specimen":
             raise Error(f'{path}: a specimen belongs to "specimen"')
 
         def replace(tables: dict[str, Any]) -> None:
-            is_plane = isinstance(specimen, Specimen)
+            is_plane = specimen.dimension == 2
             kept = {key: value for key, value in tables.get("specimen", {}).items() if is_plane and key == "thickness"}
             matrix = tables.get("superposition", {}).get("matrix")
             for name in _MADE_OTHERWISE:
@@ -306,7 +304,7 @@ class Deck:
         self._rebuild(replace, path)
         self._take(specimen)
 
-    def _take(self, specimen: Specimen | SolidSpecimen) -> None:
+    def _take(self, specimen: Specimen) -> None:
         scratch = functions.Scratch()
         specimen.save(Path(scratch.folder) / _CELLS)
         self._specimen = (specimen, scratch)
@@ -325,7 +323,7 @@ class Deck:
         are appended. Returns the deck.
         """
         for name, value in tables.items():
-            if isinstance(value, (Specimen, SolidSpecimen)):
+            if isinstance(value, Specimen):
                 self[name] = value
             elif is_list_of_tables(value):
                 for entry in value:
@@ -367,10 +365,10 @@ class Deck:
         tables = functions.Scratch()
         return _core.check(self._resolved(tables))
 
-    def make_specimen(self, seed: int | None = None) -> Specimen | SolidSpecimen:
+    def make_specimen(self, seed: int | None = None) -> Specimen:
         """Makes the specimen that a run of this deck has, with this seed or the deck's. Raises as `Run`."""
         tables = functions.Scratch()
-        return wrapped(_core.Specimen.of_deck(self._resolved(tables), seed))
+        return Specimen(_core.Specimen.of_deck(self._resolved(tables), seed))
 
     def save(self, file: str | Path) -> None:
         """Writes the deck, and beside it tables of its functions and the blocks of its specimen, as files whose names

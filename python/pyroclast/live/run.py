@@ -25,7 +25,7 @@ from ..libraries import library
 from ..stored.columns import Array, ColumnNames, Columns
 from . import functions
 from .decks import Deck, Value, as_deck, table_text, toml, without_functions
-from .specimen import SolidSpecimen, Specimen, wrapped
+from .specimen import Specimen
 from .stages import Stage
 from .units import Quantity, in_si
 
@@ -680,9 +680,9 @@ class Run:
     # Arrays
 
     @property
-    def specimen(self) -> Specimen | SolidSpecimen:
+    def specimen(self) -> Specimen:
         """Specimen of the run, without bearings. Raises Error where the run took its body from a folder."""
-        return wrapped(self._core.specimen)
+        return Specimen(self._core.specimen)
 
     @property
     def sets(self) -> Sets:

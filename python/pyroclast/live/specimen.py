@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,57 +21,21 @@ if TYPE_CHECKING:
     import meshio
 
 Label = Union[int, str]
-_Core = TypeVar("_Core", _core.Specimen, _core.SolidSpecimen)
 
 _FLAT = 1e-6  # of the size of a mesh: coordinates in single precision are off by up to 6e-8 of it
 _USUAL = (0.01, 10.0)  # width and height of a body, m, as for a deck
 
 
-class _Blocks(Generic[_Core]):
-    """Blocks in the plane or in space: what the core knows of them alike."""
-
-    _core: _Core
-
-    @property
-    def phases(self) -> list[str]:
-        """Names of the phases that blocks can be made of."""
-        return self._core.phases
-
-    @property
-    def phase(self) -> NDArray[np.int32]:
-        """Phase (blocks,) of each block, as indices into `phases`."""
-        return self._core.phase
-
-    @property
-    def stone(self) -> NDArray[np.int32] | None:
-        """Number (blocks,) of the stone of each block, -1: none; None where no stones are known."""
-        return self._core.stone if len(self._core.stone) else None
-
-    @property
-    def block_size(self) -> NDArray[np.float64] | None:
-        """Size (blocks,) that each block was to have, m, as its contact stiffness follows; None where all are alike."""
-        return np.array(self._core.block_size) if self._core.block_size else None
-
-    @property
-    def shares(self) -> dict[str, float]:
-        """Share of the area that each phase takes [1]; in space of the volume."""
-        return dict(zip(self._core.phases, self._core.shares))
-
-    def __repr__(self) -> str:
-        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
-        return f"<{type(self).__name__} of {len(self._core.phase)} blocks: {shares}>"
-
-
-class Specimen(_Blocks[_core.Specimen]):
-    """Blocks, and what each is made of. A deck takes one in the place of what it says of the specimen itself:
+class Specimen:
+    """Blocks in the plane or in space, and what each is made of. A deck takes one in the place of what it says of the
+    specimen itself:
 
         deck["specimen"] = pyroclast.Specimen.from_arrays(vertices, cells, labels)
 
-    Its run keeps the blocks in its folder, so that the deck there gives the same run without the script. Arrays are
-    copies, in m.
+    Its run keeps the blocks in its folder, so that the deck there gives the same run without the script. Arrays, meshes
+    and images make specimens of the plane; `read`, `Deck.make_specimen` and `Run.specimen` give those in space too.
+    Arrays are copies, in m.
     """
-
-    shape = "cells"  #: what a deck calls it
 
     def __init__(self, core: _core.Specimen, agreement: float | None = None):
         self._core = core
@@ -218,10 +182,11 @@ class Specimen(_Blocks[_core.Specimen]):
 
     @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
-        """Reads a specimen from a file as `save` writes it, or with another unit in the name of its vertices
-        (`vertices_mm`).
+        """Reads a specimen from a file as `save` writes it; in the plane the name of its vertices may have another unit
+        (`vertices_mm`). It has no `stones`.
 
-        join: as for `from_arrays`.
+        join: as for `from_arrays`; in space vertices nearer to each other than this length become one, and faces that
+            then have the same corners one face between two blocks.
 
         Raises Error, which names the file.
         """
@@ -230,33 +195,86 @@ class Specimen(_Blocks[_core.Specimen]):
         return cls(made)
 
     def save(self, file: str | Path) -> None:
-        """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "cells"` and `file`."""
+        """Writes the blocks as JSON; a deck reads them by `[specimen] file` and `shape`, as this specimen has it."""
         Path(file).write_text(self._core.text(), encoding="utf-8")
 
     @property
+    def dimension(self) -> int:
+        """2 in the plane, 3 in space."""
+        return self._core.dimension
+
+    @property
+    def shape(self) -> str:
+        """Shape in a deck that reads the file of `save`: `cells` in the plane, `polyhedra` in space."""
+        return "cells" if self.dimension == 2 else "polyhedra"
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of the phases that blocks can be made of."""
+        return self._core.phases
+
+    @property
+    def phase(self) -> NDArray[np.int32]:
+        """Phase (blocks,) of each block, as indices into `phases`."""
+        return self._core.phase
+
+    @property
+    def stone(self) -> NDArray[np.int32] | None:
+        """Number (blocks,) of the stone of each block, -1: none; None where no stones are known."""
+        return self._core.stone if len(self._core.stone) else None
+
+    @property
+    def stones(self) -> NDArray[np.float64]:
+        """Stones (stones, dimension + 1): place of the centre, and diameter, of each as it was placed, m; none where
+        blocks were read."""
+        return self._core.stones
+
+    @property
+    def block_size(self) -> NDArray[np.float64] | None:
+        """Size (blocks,) that each block was to have, m, as its contact stiffness follows; None where all are alike."""
+        return np.array(self._core.block_size) if self._core.block_size else None
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of `extent` that each phase takes [1]."""
+        return dict(zip(self._core.phases, self._core.shares))
+
+    @property
     def vertices(self) -> NDArray[np.float64]:
-        """Vertices (vertices, 2), m."""
+        """Vertices (vertices, dimension), m."""
         return self._core.vertices
 
     @property
     def cells(self) -> list[NDArray[np.int32]]:
-        """Numbers of the vertices of each block, counter-clockwise."""
+        """Numbers of the vertices of each block, counter-clockwise; in space numbers of its `facets`."""
         return self._core.cells
 
     @property
-    def area(self) -> float:
-        """Area, m²."""
-        return self._core.area
+    def facets(self) -> list[NDArray[np.int32]]:
+        """Numbers of the vertices of each facet: of an edge with its first neighbour on the left, in space around a
+        face, counter-clockwise seen from outside of its first neighbour."""
+        return self._core.facets
+
+    @property
+    def neighbours(self) -> NDArray[np.int32]:
+        """Blocks (facets, 2) on both sides of each facet; the second is -1 on the outline."""
+        return self._core.neighbours
 
     @property
     def extent(self) -> float:
-        """The area, m²; of a `SolidSpecimen` the volume, m³."""
-        return self._core.area
+        """Area, m²; in space the volume, m³."""
+        return self._core.extent
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Size of the box around the specimen along each axis, m."""
+        return self._core.size
 
     @property
     def sides(self) -> list[str]:
         """Names of the sides: `bottom`, `right`, `top`, `left` of a rectangle along the axes; of another outline
-        `side_1`, `side_2`, ... from its lowest corner on, counter-clockwise; then `hole_1`, ...
+        `side_1`, `side_2`, ... from its lowest corner on, counter-clockwise; then `hole_1`, ... In space those of the
+        section, then `front` and `back`; of a cylinder `rim`, `bottom`, `top`.
         """
         return self._core.sides
 
@@ -266,109 +284,26 @@ class Specimen(_Blocks[_core.Specimen]):
         return self._agreement
 
     def to_meshio(self) -> meshio.Mesh:
-        """Returns the specimen as polygons in space, z = 0, with the cell data `phase`."""
-        phase, cells = self.phase, self.cells
-        size = np.array([len(cell) for cell in cells])
-        of_size = [np.flatnonzero(size == n) for n in np.unique(size)]
-        points = np.column_stack([self.vertices, np.zeros(len(self.vertices))])
-        polygons = [("polygon", np.array([cells[i] for i in some])) for some in of_size]
-        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
-            points, polygons, cell_data={"phase": [phase[some] for some in of_size]})
-        return mesh
-
-
-class SolidSpecimen(_Blocks[_core.SolidSpecimen]):
-    """Polyhedral blocks in space, and what each is made of, as `Deck.make_specimen` and `Run.specimen` give them. A
-    deck takes one in the place of what it says of the specimen itself:
-
-        deck["specimen"] = pyroclast.SolidSpecimen.read("cylinder.json")
-
-    Arrays are copies, in m.
-    """
-
-    shape = "polyhedra"  #: what a deck calls it
-
-    def __init__(self, core: _core.SolidSpecimen):
-        self._core = core
-
-    @classmethod
-    def read(cls, file: str | Path, join: str | Quantity | None = None) -> SolidSpecimen:
-        """Reads a specimen from a file as `save` writes it; it has no `balls`.
-
-        join: vertices nearer to each other than this length become one, and faces that then have the same corners one
-            face between two blocks ("1 um"); None: blocks share the vertices and faces that the file says.
-
-        Raises Error, which names the file.
+        """Returns the blocks as polygons in space, z = 0, or polyhedra, with the cell data `phase`; meshio writes both
+        as VTU. Blocks stand in the order of their number of vertices.
         """
-        return cls(_core.SolidSpecimen.read(str(file), _join(join)))
-
-    def save(self, file: str | Path) -> None:
-        """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "polyhedra"` and `file`."""
-        Path(file).write_text(self._core.text(), encoding="utf-8")
-
-    @property
-    def vertices(self) -> NDArray[np.float64]:
-        """Vertices (vertices, 3), m."""
-        return self._core.vertices
-
-    @property
-    def faces(self) -> list[NDArray[np.int32]]:
-        """Numbers of the vertices of each face, counter-clockwise seen from outside of its first neighbour."""
-        return self._core.faces
-
-    @property
-    def neighbours(self) -> NDArray[np.int32]:
-        """Blocks (faces, 2) on both sides of each face; the second is -1 on the outline."""
-        return self._core.neighbours
-
-    @property
-    def cells(self) -> list[NDArray[np.int32]]:
-        """Numbers of the faces of each block."""
-        return self._core.cells
-
-    @property
-    def volume(self) -> float:
-        """Volume, m³."""
-        return self._core.volume
-
-    @property
-    def extent(self) -> float:
-        """The volume, m³; of a `Specimen` the area, m²."""
-        return self._core.volume
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Size of the box around the specimen, along x, y and z, m."""
-        return self._core.size
-
-    @property
-    def balls(self) -> NDArray[np.float64]:
-        """Balls (balls, 4): x, y, z and diameter of each aggregate as it was placed, m; none where blocks were read."""
-        return self._core.balls
-
-    @property
-    def sides(self) -> list[str]:
-        """Names of the sides: those of the section, then `front` and `back`; of a cylinder `rim`, `bottom`, `top`."""
-        return self._core.sides
-
-    def to_meshio(self) -> meshio.Mesh:
-        """Returns the specimen as polyhedra, with the cell data `phase`; meshio writes them as VTU. Blocks stand in the
-        order of their number of vertices.
-        """
-        faces, own, phase = self.faces, self.cells, self.phase
+        phase, cells, facets = self.phase, self.cells, self.facets
         by_size: dict[int, list[int]] = {}
-        for block, cell in enumerate(own):
-            by_size.setdefault(len(np.unique(np.concatenate([faces[i] for i in cell]))), []).append(block)
-        cells = [(f"polyhedron{size}", [[faces[i] for i in own[block]] for block in some])
-                 for size, some in sorted(by_size.items())]
+        for block, cell in enumerate(cells):
+            corners = cell if self.dimension == 2 else np.unique(np.concatenate([facets[i] for i in cell]))
+            by_size.setdefault(len(corners), []).append(block)
+        blocks: list[tuple[str, Any]] = [
+            ("polygon", np.array([cells[i] for i in some])) if self.dimension == 2 else
+            (f"polyhedron{size}", [[facets[i] for i in cells[block]] for block in some])
+            for size, some in sorted(by_size.items())]
+        points = np.column_stack([self.vertices, np.zeros((len(self.vertices), 3 - self.dimension))])
         mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
-            self.vertices, cells, cell_data={"phase": [phase[some] for _, some in sorted(by_size.items())]})
+            points, blocks, cell_data={"phase": [phase[some] for _, some in sorted(by_size.items())]})
         return mesh
 
-
-def wrapped(core: _core.Specimen | _core.SolidSpecimen) -> Specimen | SolidSpecimen:
-    """Returns a specimen that was made, in the plane or in space."""
-    return SolidSpecimen(core) if isinstance(core, _core.SolidSpecimen) else Specimen(core)
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())
+        return f"<Specimen of {len(self._core.phase)} blocks: {shares}>"
 
 
 def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
@@ -442,8 +377,8 @@ def _unit_name(unit: str | Quantity) -> str:
 
 def _warn_of_size(made: _core.Specimen, why: str) -> None:
     """Warns the caller's caller of an outline that is not as large as specimens are."""
-    width, height = made.size
-    if min(width, height) < _USUAL[0] or max(width, height) > _USUAL[1]:
+    width, height = made.size[:2]
+    if made.dimension == 2 and (min(width, height) < _USUAL[0] or max(width, height) > _USUAL[1]):
         warnings.warn(f"the outline is {width:.6g} m wide and {height:.6g} m high, but usually it is between "
                       f"{_USUAL[0]:g} and {_USUAL[1]:g} m: {why}", stacklevel=3)
 

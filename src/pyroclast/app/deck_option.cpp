@@ -19,11 +19,12 @@ constexpr double kMilli = 1e3;
 constexpr int kManyBlocks = 20'000;
 
 /// Describes what specimens of the plane and of space have in common.
-/// \param extent  what shares are of, "area" or "volume"
-template <class Specimen>
-std::string describe_phases(const Specimen& s, const char* blocks, std::size_t block_count,
-                            std::size_t stone_count, const char* extent) {
-  std::string text = fmt::format("specimen        {} {}", block_count, blocks);
+template <int Dim>
+std::string describe_phases(const specimen::Specimen<Dim>& s) {
+  const auto [blocks, extent] =
+      Dim == 2 ? std::pair("blocks", "area") : std::pair("blocks in space", "volume");
+  const std::size_t stone_count = s.stones.size();
+  std::string text = fmt::format("specimen        {} {}", s.phase.size(), blocks);
   if (stone_count > 0 || s.fraction_asked > 0.0)
     text += fmt::format(
         ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
@@ -43,9 +44,9 @@ std::string describe_sizes(const std::vector<double>& sizes) {
                      kMilli * largest);
 }
 
-std::string describe_specimen(const specimen::Specimen& s) {
+std::string describe_specimen(const specimen::Specimen<2>& s) {
   const auto& m = s.metrics;
-  std::string text = describe_phases(s, "blocks", s.tessellation.cells.size(), s.aggregates.size(), "area");
+  std::string text = describe_phases(s);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
   text += describe_sizes(s.size);
@@ -59,9 +60,9 @@ std::string describe_specimen(const specimen::Specimen& s) {
   return text;
 }
 
-std::string describe_specimen(const solid::SolidSpecimen& s) {
+std::string describe_specimen(const specimen::Specimen<3>& s) {
   const auto& m = s.metrics;
-  std::string text = describe_phases(s, "blocks in space", s.complex.cells.size(), s.balls.size(), "volume");
+  std::string text = describe_phases(s);
   for (const auto& c : s.classes)
     text += fmt::format(
         "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "

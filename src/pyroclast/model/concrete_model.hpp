@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,10 +43,24 @@ std::vector<Bearing> platens(double thickness);
 ///
 /// Sets of contacts: under the name of a notch without width, the contacts that the notch parts.
 ///
-/// \param thickness   thickness of the specimen, out of plane, m
+/// In space a bearing is a prism over the polygons of the blocks on its side, which must be plane; its sets
+/// are in the order of their gridpoints. An upright cylinder has four quarters of its rim as sets too, see
+/// kQuartersOfRim.
+///
+/// \param thickness   thickness of a specimen in the plane, m; in space not used
 /// \param interfaces  interfaces of the deck, see InterfaceTable
-ModelOf<2> make_concrete_model(const specimen::Specimen& specimen, double thickness,
-                               const std::vector<InterfaceParameters>& interfaces = {},
-                               const std::vector<Bearing>& bearings = {});
+template <int Dim>
+ModelOf<Dim> make_model(const specimen::Specimen<Dim>& specimen, double thickness = 1.0,
+                        const std::vector<InterfaceParameters>& interfaces = {},
+                        const std::vector<Bearing>& bearings = {});
+
+/// Sets of gridpoints of the rim of an upright cylinder: the quarters towards -x and x, -z and z.
+inline constexpr std::array<const char*, 4> kQuartersOfRim{"rim_left", "rim_right", "rim_front", "rim_back"};
+
+/// Adds cells in space to a model as blocks, cell by cell, and joins the faces of neighbours.
+/// \param material           material of each cell, index into Model::material_names
+/// \param interface_between  function from two cells to an index into Model::interface_names
+void add_cells(ModelOf<3>& model, const specimen::Cells<3>& cells, const std::vector<int>& material,
+               const std::function<int(int, int)>& interface_between);
 
 }  // namespace pyroclast

@@ -14,6 +14,7 @@
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
+#include "pyroclast/python/specimens.hpp"
 #include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/stages/possible_columns.hpp"
@@ -396,7 +397,7 @@ void bind_arrays(py::class_<Held>& bound) {
                                  throw Error(
                                      "the body of this run was read from body.h5, which does not hold its "
                                      "specimen; Deck.make_specimen makes it");
-                               return *specimen;
+                               return PythonSpecimen{*specimen};
                              })
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
 }

@@ -40,19 +40,11 @@ std::string gradation_rows(int kind, const std::vector<specimen::Grain<Dim>>& pl
   return rows;
 }
 
-/// Returns the kinds of round stones: the aggregates, and inclusions of that shape.
-std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::SpecimenParameters& asked) {
-  std::vector<const specimen::AggregateParameters*> kinds{&asked.aggregates};
-  for (const auto& inclusions : asked.inclusions)
-    if (const auto* round = std::get_if<specimen::AggregateParameters>(&inclusions)) kinds.push_back(round);
-  return kinds;
-}
-
 template <int Dim>
 std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
                           const specimen::SpecimenParameters& asked) {
   std::string csv = "kind,d_m,asked_percent,placed_percent\n";
-  const auto kinds = kinds_of(asked);
+  const auto kinds = specimen::stone_kinds(asked);
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     std::vector<specimen::Grain<Dim>> placed;
     std::ranges::copy_if(stones, std::back_inserter(placed),
@@ -63,7 +55,7 @@ std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
 }
 
 /// Returns the outlines of all grains; circles among them as polygons of their area.
-std::string outlines_csv(const std::vector<specimen::Aggregate>& grains) {
+std::string outlines_csv(const std::vector<specimen::Grain<2>>& grains) {
   std::string csv = "grain,x_m,y_m,phase\n";
   for (std::size_t i = 0; i < grains.size(); ++i) {
     const auto& [centre, diameter, phase, kind, shape] = grains[i];
@@ -75,13 +67,13 @@ std::string outlines_csv(const std::vector<specimen::Aggregate>& grains) {
 }
 
 /// Returns the fit of each grain: how well its blocks have its shape.
-std::string grain_fit_csv(const specimen::Specimen& s) {
+std::string grain_fit_csv(const specimen::Specimen<2>& s) {
   std::string csv = "diameter_m,area_m2,perimeter_m,blocks,area_of_blocks_m2,interface_m,deviation_m\n";
   const auto fits = specimen::fits_of(s);
   for (std::size_t i = 0; i < fits.size(); ++i)
-    csv += fmt::format("{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g}\n", s.aggregates[i].diameter,
-                       fits[i].area, fits[i].perimeter, fits[i].blocks, fits[i].area_of_blocks,
-                       fits[i].interface, fits[i].deviation);
+    csv += fmt::format("{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g}\n", s.stones[i].diameter, fits[i].area,
+                       fits[i].perimeter, fits[i].blocks, fits[i].area_of_blocks, fits[i].interface,
+                       fits[i].deviation);
   return csv;
 }
 
@@ -101,27 +93,11 @@ void add_stones(Files& files, const std::vector<specimen::Grain<Dim>>& stones,
   if (!stones.empty()) files["gradation.csv"] = gradation_csv(stones, asked);
 }
 
-std::size_t block_count(const specimen::Specimen& s) {
-  return s.tessellation.cells.size();
-}
-
-std::size_t block_count(const solid::SolidSpecimen& s) {
-  return s.complex.cells.size();
-}
-
-std::size_t stone_count(const specimen::Specimen& s) {
-  return s.aggregates.size();
-}
-
-std::size_t stone_count(const solid::SolidSpecimen& s) {
-  return s.balls.size();
-}
-
 /// Adds the numbers that specimens of the plane and of space have.
-template <class Specimen>
-void add_common(nlohmann::ordered_json& json, const Specimen& s) {
-  json["blocks"] = block_count(s);
-  json["aggregates"] = stone_count(s);
+template <int Dim>
+void add_common(nlohmann::ordered_json& json, const specimen::Specimen<Dim>& s) {
+  json["blocks"] = s.phase.size();
+  json["aggregates"] = s.stones.size();
   json["fraction_asked"] = s.fraction_asked;
   json["fraction_placed"] = s.fraction_placed;
   json["fraction_superposed"] = s.fraction_superposed;
@@ -134,10 +110,10 @@ void add_common(nlohmann::ordered_json& json, const Specimen& s) {
   json["largest_block_size_m"] = largest;
 }
 
-void add_made(Files& files, const specimen::Specimen& s, const specimen::SpecimenParameters& asked) {
+void add_made(Files& files, const specimen::Specimen<2>& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
-  json["width_m"] = s.region.box().width();
-  json["height_m"] = s.region.box().height();
+  json["width_m"] = s.outline.box().width();
+  json["height_m"] = s.outline.box().height();
   add_common(json, s);
   json["mean_edge_m"] = s.metrics.mean_edge;
   json["shortest_edge_m"] = s.metrics.shortest_edge;
@@ -146,17 +122,17 @@ void add_made(Files& files, const specimen::Specimen& s, const specimen::Specime
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
   json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
   files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.aggregates, asked);
-  if (!s.grain.empty() && !s.aggregates.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
+  add_stones(files, s.stones, asked);
+  if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 
-void add_made(Files& files, const solid::SolidSpecimen& s, const specimen::SpecimenParameters& asked) {
+void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
-  const Vec<3> size = s.body.high() - s.body.low();
+  const Vec<3> size = s.outline.high() - s.outline.low();
   json["width_m"] = size[0];
   json["height_m"] = size[1];
   json["depth_m"] = size[2];
-  json["volume_m3"] = s.body.volume();
+  json["volume_m3"] = s.outline.extent();
   add_common(json, s);
   json["zones_per_block"] = s.metrics.zones_per_block;
   json["most_corners_of_a_face"] = s.metrics.most_corners;
@@ -166,7 +142,7 @@ void add_made(Files& files, const solid::SolidSpecimen& s, const specimen::Speci
   json["edges_left_short"] = s.metrics.edges_left_short;
   json["largest_bend_deg"] = s.metrics.largest_bend;
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
-  for (const solid::SizeClass& c : s.classes)
+  for (const specimen::SizeClass& c : s.classes)
     json["size_classes"].push_back({{"kind", c.kind},
                                     {"from_m", c.from},
                                     {"to_m", c.to},
@@ -176,7 +152,7 @@ void add_made(Files& files, const solid::SolidSpecimen& s, const specimen::Speci
                                     {"stones", c.stones},
                                     {"without_a_block", c.without_a_block}});
   files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.balls, asked);
+  add_stones(files, s.stones, asked);
 }
 
 }  // namespace

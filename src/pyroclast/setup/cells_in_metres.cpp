@@ -16,11 +16,11 @@ double metres_of(std::string_view unit) {
   return quantity_reader(unit, unit::length)("1");
 }
 
-specimen::Cells cells_in_metres(const std::filesystem::path& file, double join) {
+specimen::GivenCells<2> cells_in_metres(const std::filesystem::path& file, double join) {
   auto [cells, unit] = specimen::read_cells(file);
   try {
     if (const UnitFactors to_m = unit_factors(unit, unit::length); !to_m.is_none()) {
-      for (Vec<2>& v : cells.tessellation.vertices) v = {{to_m(v[0]), to_m(v[1])}};
+      for (Vec<2>& v : cells.cells.vertices) v = {{to_m(v[0]), to_m(v[1])}};
       for (double& size : cells.size) size = to_m(size);
     }
   } catch (const QuantityError& error) {
@@ -32,7 +32,7 @@ specimen::Cells cells_in_metres(const std::filesystem::path& file, double join) 
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.string(), error.what()));
   }
-  specimen::lay_on_sides(cells.tessellation);
+  specimen::lay_on_sides(cells.cells);
   return cells;
 }
 

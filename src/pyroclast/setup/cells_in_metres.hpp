@@ -11,7 +11,7 @@ namespace pyroclast {
 /// the file, also for a unit that is not one of length.
 /// \param join  distance below which vertices are joined, m (`specimen::joined`); 0: none
 /// \return the cells in m
-specimen::Cells cells_in_metres(const std::filesystem::path& file, double join = 0.0);
+specimen::GivenCells<2> cells_in_metres(const std::filesystem::path& file, double join = 0.0);
 
 /// Returns the metres of a unit of length, such as "mm". Throws Error, with the unit, for another unit.
 double metres_of(std::string_view unit);

@@ -138,7 +138,7 @@ std::vector<Vec<2>> corners_of(const Circle& circle, double size, const specimen
 /// Round body of space.
 struct RoundBody {
   Circle circle;
-  solid::Prism::Axis axis;
+  specimen::Prism::Axis axis;
   double length;  ///< m
 };
 
@@ -155,7 +155,7 @@ specimen::Region round_section(const RoundBody& body, const ReadBlocks& read,
     double largest = 0.0;
     for (int i = 0; i < kPlacesAlong; ++i) {
       const double along = (i + 0.5) / kPlacesAlong * body.length;
-      largest = std::max(largest, sizes->at(solid::in_space(place, body.axis, along)));
+      largest = std::max(largest, sizes->at(specimen::in_space(place, body.axis, along)));
     }
     return std::min(largest, longest);
   };
@@ -167,12 +167,12 @@ specimen::Region round_section(const RoundBody& body, const ReadBlocks& read,
 
 /// Returns the body of blocks that were made before. A disc has the seats of bearings, whose ends are corners
 /// of its outline that are there already.
-solid::Prism body_of(const solid::Polyhedra& polyhedra, std::span<const ReadBearing> bearings) {
-  const solid::Prism& body = polyhedra.body;
+specimen::Prism body_of(const specimen::GivenCells<3>& polyhedra, std::span<const ReadBearing> bearings) {
+  const specimen::Prism& body = polyhedra.outline;
   const specimen::Region& section = body.section();
-  if (body.axis() != solid::Prism::Axis::z || !section.sides().front().is_round) return body;
+  if (body.axis() != specimen::Prism::Axis::z || !section.sides().front().is_round) return body;
   const Circle circle{0.5 * (section.box().low + section.box().high),
-                      2.0 * std::sqrt(section.area() / std::numbers::pi)};
+                      2.0 * std::sqrt(section.extent() / std::numbers::pi)};
   return {with_seats(section, std::array{circle}, bearings), body.axis(), body.length()};
 }
 
@@ -184,11 +184,11 @@ std::vector<std::string> side_names(std::size_t count) {
 
 }  // namespace
 
-solid::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
-                        const ReadBlocks& read, std::span<const ReadBearing> bearings,
-                        const specimen::BlockSizes* sizes) {
-  using enum solid::Prism::Axis;
-  const solid::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
+specimen::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
+                           const ReadBlocks& read, std::span<const ReadBearing> bearings,
+                           const specimen::BlockSizes* sizes) {
+  using enum specimen::Prism::Axis;
+  const specimen::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
   if (!s.ok()) return stand_in;
   try {
     if (o.polyhedra) return body_of(*o.polyhedra, bearings);
@@ -213,15 +213,13 @@ solid::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace&
 specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadBlocks& read,
                              std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes) {
   const specimen::BlockParameters& blocks = read.parameters;
-  const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error already
+  const bool is_missing = o.shape == Shape::tessellation && !blocks.cells;  // an error already
   if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
   try {
     if (o.cells)
-      return with_seats(specimen::outline_of(o.cells->tessellation), {}, bearings,
-                        o.cells->tessellation.vertices);
+      return with_seats(specimen::outline_of(o.cells->cells), {}, bearings, o.cells->cells.vertices);
     if (o.shape == Shape::tessellation)
-      return with_seats(specimen::outline_of(*blocks.tessellation), {}, bearings,
-                        blocks.tessellation->vertices);
+      return with_seats(specimen::outline_of(*blocks.cells), {}, bearings, blocks.cells->vertices);
     std::vector<Circle> circles;
     const auto round = [&](const Circle& circle, double size) {
       circles.push_back(circle);
@@ -241,7 +239,7 @@ specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadB
         region =
             region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
     }
-    size = read.size_in(region.area());
+    size = read.size_in(region.extent());
     std::vector<specimen::Hole> holes;
     for (const auto& hole : o.holes)
       holes.push_back(hole.corners.empty()
@@ -265,7 +263,7 @@ specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadB
 }
 
 bool is_outline_known(const Section& root, const AskedSpecimen& specimen) {
-  return root.section("specimen").ok() && (specimen.blocks.count > 0 || specimen.blocks.tessellation);
+  return root.section("specimen").ok() && (specimen.blocks.count > 0 || specimen.blocks.cells);
 }
 
 void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings) {

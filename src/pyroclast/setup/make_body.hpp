@@ -13,9 +13,9 @@ namespace pyroclast {
 
 /// Returns the solid of a deck; a cube stands in for an error.
 /// \param sizes  sizes of blocks where they are finer in parts
-solid::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
-                        const ReadBlocks& read, std::span<const ReadBearing> bearings,
-                        const specimen::BlockSizes* sizes = nullptr);
+specimen::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
+                           const ReadBlocks& read, std::span<const ReadBearing> bearings,
+                           const specimen::BlockSizes* sizes = nullptr);
 
 /// Returns the region of a deck in the plane; a square stands in for an error.
 /// \param sizes  sizes of blocks where they are finer in parts: circles have their sides about as long

@@ -201,23 +201,17 @@ specimen::FinerPiece piece_of(const Vec<2>& from, const Vec<2>& to) {
 /// Adds the pieces of a body's surface that are of a side, or the whole surface, "outline".
 void add_side(const AskedSpecimen& specimen, const std::string& name, specimen::FinerPart& part) {
   const bool is_all = name == "outline";
-  if (specimen.prism) {
-    const solid::Prism& prism = *specimen.prism;
-    for (std::size_t plane = 0; plane < prism.planes().size(); ++plane)
-      for (int side = prism.planes()[plane].side; side >= 0; side = prism.whole_of(side))
-        if (is_all || prism.sides()[side] == name) {
-          part.pieces.push_back(prism.corners_on(plane));
-          break;
-        }
-    return;
-  }
-  const auto& sides = specimen.region.sides();
-  for (const specimen::Piece& piece : specimen.region.pieces())
-    for (int side = piece.side; side >= 0; side = sides[side].part_of)
-      if (is_all || sides[side].name == name) {
-        part.pieces.push_back(piece_of(piece.from, piece.to));
-        break;
-      }
+  const auto& sides = specimen.prism ? specimen.prism->sides() : specimen.region.sides();
+  const auto add = [&](int side, const specimen::FinerPiece& piece) {
+    while (side >= 0 && !is_all && sides[side].name != name) side = sides[side].part_of;
+    if (side >= 0) part.pieces.push_back(piece);
+  };
+  if (specimen.prism)
+    for (std::size_t plane = 0; plane < specimen.prism->planes().size(); ++plane)
+      add(specimen.prism->planes()[plane].side, specimen.prism->corners_on(plane));
+  else
+    for (const specimen::Piece& piece : specimen.region.pieces())
+      add(piece.side, piece_of(piece.from, piece.to));
 }
 
 /// Gives finer blocks the place of a part by its name. A set without a place has that of the set that it lies
@@ -305,7 +299,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
     if (auto tess = read_tessellation(s, file, outline, space)) {
       warn_of_empty_cells(s, tess->empty);
       read_groups(s, *tess, names, is_covered, b);
-      b.tessellation = std::move(tess->tessellation);
+      b.cells = std::move(tess->cells);
     }
     return read;
   }
@@ -356,7 +350,7 @@ bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBea
   };
   if (!all_ok()) return false;
   if (p.prism)
-    find_sizes(blocks, solid::room_in(*p.prism), read.size, b);
+    find_sizes(blocks, specimen::room_in(*p.prism), read.size, b);
   else
     find_sizes(blocks, specimen::room_of_blocks(p.region), read.size, b);
   for (const ReadFiner& finer : read.finer)

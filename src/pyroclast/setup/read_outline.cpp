@@ -7,6 +7,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
+#include "pyroclast/specimen/polyhedra_file.hpp"
 
 namespace pyroclast {
 
@@ -103,8 +104,9 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
     s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::polyhedra) {
     const double join = read_join(s);
-    o.polyhedra = read_blocks_file(
-        s, folder, [join](const std::filesystem::path& file) { return solid::read_polyhedra(file, join); });
+    o.polyhedra = read_blocks_file(s, folder, [join](const std::filesystem::path& file) {
+      return specimen::read_polyhedra(file, join);
+    });
     s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::cylinder) {
     o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");

@@ -9,7 +9,6 @@
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/setup/read_space.hpp"
 #include "pyroclast/simulation/specimen_body.hpp"
-#include "pyroclast/solid/polyhedra.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast {
@@ -28,8 +27,8 @@ struct ReadOutline {
   };
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
-  std::optional<specimen::Cells> cells;
-  std::optional<solid::Polyhedra> polyhedra;
+  std::optional<specimen::GivenCells<2>> cells;
+  std::optional<specimen::GivenCells<3>> polyhedra;
 };
 
 /// Reads the outline in [specimen]. Errors are recorded in the deck.

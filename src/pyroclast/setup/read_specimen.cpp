@@ -49,7 +49,7 @@ void check_matrix(const Section& s, std::string_view key, const std::vector<std:
 /// Gives a specimen whose file was not read the phases that [materials] has, each with stones: default phases
 /// in their place would be second errors.
 void let_materials_stand_in(const Section& root, std::span<const ReadBearing> bearings, AskedSpecimen& p) {
-  specimen::Cells& cells = p.cells.emplace();
+  specimen::GivenCells<2>& cells = p.cells.emplace();
   const Section materials = root.section("materials");
   for (const std::string& name : materials.keys())
     if (materials.is_table(name) && name != "platen" &&
@@ -77,13 +77,13 @@ void read_beside_cells(const Section& root, const Section& s, const DeckSpace& s
     p.region = make_region(s, outline, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
   if (outline.polyhedra) {
-    p.blocks.count = static_cast<int>(outline.polyhedra->complex.cells.size());
+    p.blocks.count = static_cast<int>(outline.polyhedra->cells.cells.size());
     p.blocks.phases = outline.polyhedra->phases;
     check_outline(s, outline, p);
     check_matrix(s, "file", p.blocks.phases, has_matrix, p);
     p.polyhedra = std::move(outline.polyhedra);
   } else if (outline.cells) {
-    p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
+    p.blocks.count = static_cast<int>(outline.cells->cells.cells.size());
     check_outline(s, outline, p);
     check_matrix(s, "file", outline.cells->phases, has_matrix, p);
     p.cells = std::move(outline.cells);
@@ -191,7 +191,7 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
     if (space.is_solid())
       superposition.error(
           "rule", "\"follow\" is for bodies of the plane: blocks of a solid cannot follow grains yet");
-    if (p.blocks.tessellation)
+    if (p.blocks.cells)
       superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");
   }
   if (p.superposition == specimen::Superposition::area)

@@ -21,8 +21,9 @@ constexpr double kInPlane = 1e-9;
 std::vector<Vec<3>> normals_of(const AskedSpecimen& specimen, int side) {
   std::vector<Vec<3>> normals;
   if (specimen.prism) {
-    for (const solid::Plane& plane : specimen.prism->planes())
-      if (plane.side == side || specimen.prism->whole_of(plane.side) == side) normals.push_back(plane.normal);
+    for (const specimen::Plane& plane : specimen.prism->planes())
+      if (plane.side == side || specimen.prism->sides()[plane.side].part_of == side)
+        normals.push_back(plane.normal);
     return normals;
   }
   const auto& sides = specimen.region.sides();

@@ -12,7 +12,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
-#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/setup/effects.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
@@ -126,7 +126,7 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
 }
 
 bool is_cylinder(const AskedSpecimen& specimen) {
-  return specimen.prism && specimen.prism->axis() == solid::Prism::Axis::y;
+  return specimen.prism && specimen.prism->axis() == specimen::Prism::Axis::y;
 }
 
 /// Records an error for each boundary on a side or set that the specimen does not have.

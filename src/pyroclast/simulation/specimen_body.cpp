@@ -8,10 +8,10 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/memory.hpp"
-#include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/model/concrete_model.hpp"
-#include "pyroclast/model/solid_model.hpp"
 #include "pyroclast/simulation/sums.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 
 namespace pyroclast {
 
@@ -29,19 +29,19 @@ bool has_platens(const std::optional<MovingBody>& moving) {
   return moving && std::ranges::any_of(moving->bearings, is_upper);
 }
 
-Press::Specimen between_platens(const specimen::Specimen& specimen, const Model& model) {
-  const specimen::Box& box = specimen.region.box();
+Press::Specimen between_platens(const specimen::Specimen<2>& specimen, const Model& model) {
+  const specimen::Box& box = specimen.outline.box();
   return {kVertical, box.height(), model.thickness * box.width(), {box.width()}};
 }
 
-Press::Specimen between_platens(const solid::SolidSpecimen& specimen, const Model& model) {
-  const solid::Prism& of = specimen.body;
+Press::Specimen between_platens(const specimen::Specimen<3>& specimen, const Model& model) {
+  const specimen::Prism& of = specimen.outline;
   Press::Specimen between;
   between.axis = kVertical;
   between.height = of.high()[kVertical] - of.low()[kVertical];
-  const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
-  for (const solid::CellFace& face : specimen.complex.faces)
-    if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
+  const int top = specimen::find_side(of.sides(), "top");
+  for (const specimen::Facet<3>& face : specimen.cells.faces)
+    if (face.side == top) between.area += norm(specimen::area_vector(specimen.cells, face));
   const auto& [left, right, front, back] = kQuartersOfRim;
   if (!model.sets.contains("left")) between.sides = {{left, right}, {front, back}};
   const auto mean = [&](const std::string& set, int component) {
@@ -55,25 +55,10 @@ Press::Specimen between_platens(const solid::SolidSpecimen& specimen, const Mode
   return between;
 }
 
-ModelOf<2> model_of(const specimen::Specimen& specimen, double thickness,
-                    const std::vector<InterfaceParameters>& interfaces,
-                    const std::vector<Bearing>& bearings) {
-  return make_concrete_model(specimen, thickness, interfaces, bearings);
-}
-
-ModelOf<3> model_of(const solid::SolidSpecimen& specimen, double /*thickness*/,
-                    const std::vector<InterfaceParameters>& interfaces,
-                    const std::vector<Bearing>& bearings) {
-  return make_solid_model(specimen, interfaces, bearings);
-}
-
 }  // namespace
 
 std::vector<std::string> AskedSpecimen::sides() const {
-  if (prism) return prism->sides();
-  std::vector<std::string> names;
-  for (const specimen::Side& side : region.sides()) names.push_back(side.name);
-  return names;
+  return specimen::names_of(prism ? prism->sides() : region.sides());
 }
 
 std::vector<std::string> AskedSpecimen::phases_of_stones() const {
@@ -84,11 +69,11 @@ std::vector<std::string> AskedSpecimen::phases_of_stones() const {
 }
 
 Vec<3> AskedSpecimen::low() const {
-  return prism ? prism->low() : resized<3>(region.box().low);
+  return prism ? prism->low() : resized<3>(region.low());
 }
 
 Vec<3> AskedSpecimen::high() const {
-  return prism ? prism->high() : resized<3>(region.box().high);
+  return prism ? prism->high() : resized<3>(region.high());
 }
 
 double AskedSpecimen::distance(const Vec<3>& point) const {
@@ -96,7 +81,7 @@ double AskedSpecimen::distance(const Vec<3>& point) const {
 }
 
 double AskedSpecimen::extent() const {
-  return prism ? prism->volume() : region.area();
+  return prism ? prism->extent() : region.extent();
 }
 
 double AskedSpecimen::block_size() const {
@@ -132,21 +117,17 @@ MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team, bool 
   if (needed > available)
     throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
                             asked.blocks.count, needed * 1e-9, available * 1e-9));
-  if (asked.polyhedra) return solid::specimen_from(*asked.polyhedra, *asked.prism);
-  if (asked.prism) return solid::make_specimen(asked, *asked.prism, team);
+  if (asked.polyhedra) return specimen::specimen_from<3>(*asked.polyhedra, *asked.prism);
+  if (asked.prism) return specimen::make_specimen<3>(asked, *asked.prism, team);
   return specimen::make_specimen(asked, team);
 }
 
 SpecimenNumbers numbers_of(const MadeSpecimen& specimen) {
   return std::visit(
-      Overloaded{
-          [](const specimen::Specimen& s) -> SpecimenNumbers {
-            return {s.fraction, s.metrics.mean_size, specimen::block_size(s), std::sqrt(s.region.area()), 2};
-          },
-          [](const solid::SolidSpecimen& s) -> SpecimenNumbers {
-            const double size = s.metrics.mean_size;
-            return {s.fraction, size, size, std::cbrt(s.body.volume()), 3};
-          }},
+      []<int Dim>(const specimen::Specimen<Dim>& s) -> SpecimenNumbers {
+        return {s.fraction, s.metrics.mean_size, specimen::block_size(s),
+                specimen::side_of<Dim>(s.outline.extent()), Dim};
+      },
       specimen);
 }
 
@@ -154,8 +135,8 @@ std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness
                                   const std::optional<MovingBody>& moving) {
   return std::visit(
       [&](const auto& s) -> std::unique_ptr<Model> {
-        auto made = moving ? model_of(s, thickness, moving->contacts.interfaces, moving->bearings)
-                           : model_of(s, thickness, {}, {});
+        auto made = moving ? make_model(s, thickness, moving->contacts.interfaces, moving->bearings)
+                           : make_model(s, thickness);
         return std::make_unique<decltype(made)>(std::move(made));
       },
       specimen);
@@ -166,7 +147,8 @@ SpecimenBody make_body(const MadeSpecimen& specimen, double thickness, const std
   SpecimenBody body{make_model(specimen, thickness, moving), numbers_of(specimen), {}, {}, {}};
   if (moving) add_symmetry(*body.model, moving->symmetry);
   add_sets(*body.model, sets);
-  if (const auto* plane = std::get_if<specimen::Specimen>(&specimen)) body.notches = plane->region.notches();
+  if (const auto* plane = std::get_if<specimen::Specimen<2>>(&specimen))
+    body.notches = plane->outline.notches();
   if (has_platens(moving))
     body.between_platens =
         std::visit([&](const auto& s) { return between_platens(s, *body.model); }, specimen);

@@ -12,16 +12,15 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/acting/press.hpp"
 #include "pyroclast/simulation/moving_body.hpp"
-#include "pyroclast/solid/polyhedra.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast {
 
 /// Specimen that is asked for, in the plane or in space.
 struct AskedSpecimen : specimen::SpecimenParameters {
-  std::optional<solid::Prism> prism;  ///< body in space; the region is then empty
+  std::optional<specimen::Prism> prism;  ///< body in space; the region is then empty
   /// Blocks of the body in space, where they were made before; `blocks` then has their number and phases.
-  std::optional<solid::Polyhedra> polyhedra;
+  std::optional<specimen::GivenCells<3>> polyhedra;
 
   int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
   std::vector<std::string> sides() const;          ///< Returns the names of its sides.
@@ -42,7 +41,7 @@ struct AskedSpecimen : specimen::SpecimenParameters {
 };
 
 /// Specimen that was made, in the plane or in space.
-using MadeSpecimen = std::variant<specimen::Specimen, solid::SolidSpecimen>;
+using MadeSpecimen = std::variant<specimen::Specimen<2>, specimen::Specimen<3>>;
 
 /// Returns the names of the phases that its blocks can have.
 const std::vector<std::string>& phases(const MadeSpecimen& specimen);

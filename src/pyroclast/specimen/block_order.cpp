@@ -37,7 +37,7 @@ std::uint32_t square(double x, double length) {
   return static_cast<std::uint32_t>(std::clamp(x / length * curve_side, 0.0, curve_side - 1.0));
 }
 
-std::vector<std::size_t> number_cells(Tessellation& tessellation, const Box& box) {
+std::vector<std::size_t> number_cells(Cells<2>& tessellation, const Box& box) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
@@ -57,7 +57,7 @@ std::vector<std::size_t> number_cells(Tessellation& tessellation, const Box& box
   return before;
 }
 
-void number_vertices(Tessellation& tessellation) {
+void number_vertices(Cells<2>& tessellation) {
   std::vector<int> number(tessellation.vertices.size(), -1);
   std::vector<Vec<2>> vertices;
   vertices.reserve(number.size());
@@ -76,7 +76,7 @@ void number_vertices(Tessellation& tessellation) {
 
 }  // namespace
 
-std::vector<std::size_t> number_along_curve(Tessellation& tessellation, const Box& box) {
+std::vector<std::size_t> number_along_curve(Cells<2>& tessellation, const Box& box) {
   std::vector<std::size_t> before = number_cells(tessellation, box);
   number_vertices(tessellation);
   return before;

@@ -19,8 +19,11 @@
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
+#include "pyroclast/specimen/regularisation_space.hpp"
 #include "pyroclast/specimen/room.hpp"
+#include "pyroclast/specimen/spaced_seeds.hpp"
 #include "pyroclast/specimen/topology.hpp"
 #include "pyroclast/specimen/united_cells.hpp"
 
@@ -31,6 +34,8 @@ namespace {
 /// few dozen for widely spread radii; this many mean that the parameters allow no tessellation without a
 /// short edge.
 constexpr int most_rounds = 60;
+/// Largest number of rounds in space, where seeds that keep their distance need one.
+constexpr int kMostRoundsInSpace = 20;
 /// Number of places tried for a free seed before an Error says that there is none.
 constexpr int kAttempts = 100'000;
 /// Number of places tried before a free seed may come closer to the surface of a grain.
@@ -60,21 +65,17 @@ struct BlocksOfGrain {
   double area = 0.0;  ///< m²
 };
 
-BlockSizes sizes_of(const BlockParameters& parameters, const Region& region) {
-  return {std::sqrt(region.area() / parameters.count), parameters.largest_size, parameters.finer};
-}
-
 /// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
 /// then the free ones.
 class SeedDraw {
  public:
-  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Aggregate> grains,
+  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Grain<2>> grains,
            Random& random)
       : parameters_(parameters),
         region_(region),
         grains_(grains),
         random_(random),
-        sizes_(sizes_of(parameters, region)),
+        sizes_(sizes_of<2>(parameters, region)),
         outline_(region, sizes_) {
     if (!sizes_.is_even()) places_.emplace(room_of_blocks(region), sizes_);
     kept_ = outline_.positions().size();
@@ -129,8 +130,8 @@ class SeedDraw {
     }
     if (!is_off) return false;
     const auto first_free = static_cast<std::ptrdiff_t>(kept_);
-    const Seeds free{{seeds.position.begin() + first_free, seeds.position.end()},
-                     {seeds.radius.begin() + first_free, seeds.radius.end()}};
+    const Seeds<2> free{{seeds.position.begin() + first_free, seeds.position.end()},
+                        {seeds.radius.begin() + first_free, seeds.radius.end()}};
     kept_ = outline_.positions().size();
     seeds.position.resize(kept_);
     seeds.radius.resize(kept_);
@@ -159,7 +160,7 @@ class SeedDraw {
 
   bool is_one_cell(int grain) const { return along_->is_one_cell(grain); }
 
-  Seeds seeds;
+  Seeds<2> seeds;
 
  private:
   /// Calls f(grain, whether the grain is one block) for each block that seeds along grains make: the cells of
@@ -220,7 +221,7 @@ class SeedDraw {
     const auto too_many = [&](double spacing) {
       along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(spacing));
       // area in which blocks of the mean size would be as many
-      double blocks = 0.0, area = region_.area();
+      double blocks = 0.0, area = region_.extent();
       for_each_block(along_->owners(), [&](int grain, bool is_one) {
         ++blocks;
         const double relative = is_one ? sizes_.relative(grains_[grain].centre) : 1.0;
@@ -270,7 +271,7 @@ class SeedDraw {
 
   const BlockParameters& parameters_;
   const Region& region_;
-  std::span<const Aggregate> grains_;
+  std::span<const Grain<2>> grains_;
   Random& random_;
   BlockSizes sizes_;
   std::optional<PlaceDraw<2>> places_;  ///< where blocks are not alike
@@ -294,7 +295,7 @@ std::string side_near(const Region& region, const Vec<2>& point) {
 /// one.
 /// \param grain  grain of each cell; follows
 /// \param seed   seed of each cell; follows
-void unite_small_grains(const SeedDraw& draw, Tessellation& tessellation, std::vector<int>& grain,
+void unite_small_grains(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& grain,
                         std::vector<int>& seed) {
   std::map<int, std::vector<int>> small;
   for (std::size_t c = 0; c < grain.size(); ++c)
@@ -310,40 +311,40 @@ void unite_small_grains(const SeedDraw& draw, Tessellation& tessellation, std::v
   seed.resize(before.size());
 }
 
-std::vector<BlocksOfGrain> blocks_of_grains(const Blocks& blocks, std::size_t grains) {
+std::vector<BlocksOfGrain> blocks_of_grains(const Blocks<2>& blocks, std::size_t grains) {
   std::vector<BlocksOfGrain> result(grains);
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < blocks.grain.size(); ++c) {
     if (blocks.grain[c] < 0) continue;
-    corners(blocks.tessellation, c, polygon);
+    corners(blocks.cells, c, polygon);
     result[blocks.grain[c]].area += area(polygon);
     ++result[blocks.grain[c]].count;
   }
   return result;
 }
 
-Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& region,
-                            std::span<const Aggregate> grains, Random& random, Team* team) {
+Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& region,
+                               std::span<const Grain<2>> grains, Random& random, Team* team) {
   SeedDraw draw(parameters, region, grains, random);
-  Blocks blocks{};
-  std::optional<Blocks> fit;
+  Blocks<2> blocks{};
+  std::optional<Blocks<2>> fit;
   int corrections = 0;
   while (true) {
     ++blocks.rounds;
-    Seeds seeds = draw.seeds;
+    Seeds<2> seeds = draw.seeds;
     for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, region, draw.kept(), team, draw.sizes());
-    LaguerreResult result = laguerre_tessellation(seeds, region, team);
+    Laguerre<2> result = laguerre_cells(seeds, region, team);
     std::vector<int> unfit = std::move(result.broken);
     const bool are_empty = !unfit.empty();
     if (!are_empty) {
       std::vector<int> seed(seeds.position.size());
       std::iota(seed.begin(), seed.end(), 0);
       blocks.grain = draw.owners(seeds.position);
-      if (!grains.empty()) unite_small_grains(draw, result.tessellation, blocks.grain, seed);
-      Regularisation done = regularise(result.tessellation, region, parameters.shortest_edge, draw.sizes());
-      blocks.tessellation = std::move(result.tessellation);
-      blocks.edges_removed = done.edges_removed;
-      blocks.edges_left_short = done.edges_left_short;
+      if (!grains.empty()) unite_small_grains(draw, result.cells, blocks.grain, seed);
+      Regularisation done = regularise(result.cells, region, parameters.shortest_edge, draw.sizes());
+      blocks.cells = std::move(result.cells);
+      blocks.done.edges_removed = done.edges_removed;
+      blocks.done.edges_left_short = done.edges_left_short;
       for (const int cell : done.unfit) unfit.push_back(seed[cell]);
       std::ranges::sort(unfit);
     }
@@ -356,7 +357,7 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
     }
     if (fit && blocks.rounds >= fit->rounds + kRoundsOfCorrection) return std::move(*fit);
     if (blocks.rounds == most_rounds) {
-      if (!blocks.tessellation.cells.empty()) return blocks;
+      if (!blocks.cells.cells.empty()) return blocks;
       const Vec<2> at = seeds.position[static_cast<std::size_t>(unfit.front())];
       throw Error(
           fmt::format("{}no tessellation of {} blocks came about in {} rounds: {} cells stay empty or unfit, "
@@ -367,38 +368,71 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
                       parameters.radius_spread > 0.0 ? ", or blocks more alike (radius_spread)" : ""));
     }
     draw.redraw(unfit, are_empty, blocks.rounds - (fit ? fit->rounds : 0));
-    blocks.seeds_redrawn += static_cast<int>(unfit.size());
+    blocks.done.seeds_redrawn += static_cast<int>(unfit.size());
   }
+}
+
+/// Adds the sizes that blocks were to have, where they are not alike.
+template <int Dim>
+void add_sizes(const BlockSizes& sizes, Blocks<Dim>& blocks) {
+  if (sizes.is_even()) return;
+  for (std::size_t cell = 0; cell < blocks.cells.cells.size(); ++cell)
+    blocks.size.push_back(sizes.at(centroid(blocks.cells, cell)));
 }
 
 }  // namespace
 
-Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team,
-                   std::span<const Aggregate> grains) {
-  Blocks blocks{};
-  if (!parameters.tessellation) {
+Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team,
+                      std::span<const Grain<2>> grains) {
+  Blocks<2> blocks{};
+  if (!parameters.cells) {
     blocks = tessellate_until_fit(parameters, region, grains, random, team);
-    require_valid(blocks.tessellation, region, fmt::format("Tessellation of {} blocks", parameters.count));
+    require_valid(blocks.cells, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
-    blocks.tessellation = *parameters.tessellation;
-    const Regularisation done = regularise(blocks.tessellation, region, parameters.shortest_edge);
-    blocks.edges_removed = done.edges_removed;
-    blocks.edges_left_short = done.edges_left_short;
+    blocks.cells = *parameters.cells;
+    const Regularisation done = regularise(blocks.cells, region, parameters.shortest_edge);
+    blocks.done.edges_removed = done.edges_removed;
+    blocks.done.edges_left_short = done.edges_left_short;
   }
   const std::vector<int> grain = std::exchange(blocks.grain, {});
-  const BlockSizes sizes = sizes_of(parameters, region);
-  for (const std::size_t before : number_along_curve(blocks.tessellation, region.box())) {
+  const BlockSizes sizes = sizes_of<2>(parameters, region);
+  for (const std::size_t before : number_along_curve(blocks.cells, region.box())) {
     if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
     if (!grain.empty()) blocks.grain.push_back(grain[before]);
   }
-  if (!sizes.is_even()) {
-    std::vector<Vec<2>> polygon;
-    for (std::size_t c = 0; c < blocks.tessellation.cells.size(); ++c) {
-      corners(blocks.tessellation, c, polygon);
-      blocks.size.push_back(sizes.at(centroid(polygon)));
-    }
-  }
+  add_sizes(sizes, blocks);
   return blocks;
+}
+
+Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random, Team* team,
+                      std::span<const Grain<3>> /*stones*/) {
+  const BlockSizes sizes = sizes_of<3>(parameters, body);
+  Seeds<3> seeds = spaced_seeds(body, sizes, parameters.count, parameters.radius_spread, random);
+  const std::string what = fmt::format("Tessellation of {} blocks", parameters.count);
+  Blocks<3> blocks;
+  for (; blocks.rounds < kMostRoundsInSpace; ++blocks.rounds) {
+    Laguerre<3> result = laguerre_cells(seeds, body, team);
+    if (!result.broken.empty()) {
+      blocks.done.seeds_redrawn += static_cast<int>(result.broken.size());
+      redraw(seeds, result.broken, body, sizes, random);
+      continue;
+    }
+    require_valid(result.cells, body, what);
+    if (parameters.shortest_edge > 0.0) {
+      const auto regular = regularise(result.cells, body, result.plane,
+                                      {parameters.shortest_edge, parameters.largest_bend}, sizes);
+      blocks.done.vertices_merged = regular.vertices_merged;
+      blocks.done.edges_left_short = regular.edges_left_short;
+      require_valid(result.cells, body, what);
+    }
+    blocks.cells = std::move(result.cells);
+    add_sizes(sizes, blocks);
+    return blocks;
+  }
+  throw Error(fmt::format(
+      "{}no tessellation of {} blocks came about in {} rounds: take blocks that are more "
+      "alike (radius_spread), or another seed",
+      parameters.place.empty() ? "" : parameters.place + ": ", parameters.count, kMostRoundsInSpace));
 }
 
 }  // namespace pyroclast::specimen

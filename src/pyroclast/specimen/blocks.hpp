@@ -9,28 +9,38 @@
 namespace pyroclast::specimen {
 
 /// Blocks of a specimen before superposition.
+template <int Dim>
 struct Blocks {
-  Tessellation tessellation;
+  Cells<Dim> cells;
   /// Phase of each block, index into `BlockParameters::phases`; empty where not known.
   std::vector<int> phase;
-  /// Grain of which each block is, index into the grains, -1: of none; empty where blocks do not follow
-  /// grains.
+  /// Stone of which each block is, index into the stones, -1: of none; empty where blocks do not follow
+  /// stones.
   std::vector<int> grain;
   /// Size that each block was to have, m; empty where blocks are alike.
   std::vector<double> size;
-  int edges_removed, edges_left_short;
-  int seeds_redrawn;
-  int rounds;  ///< number of tessellations made
+  Metrics<Dim> done;  ///< counts of what has been done to the blocks
+  int rounds = 0;     ///< number of tessellations made
 };
 
-/// Draws seeds and tessellates the region, or takes `parameters.tessellation`, and regularises. Seeds whose
+/// Returns the sizes of blocks that are asked for.
+template <int Dim>
+BlockSizes sizes_of(const BlockParameters& parameters, const OutlineOf<Dim>& outline) {
+  return {side_of<Dim>(outline.extent() / parameters.count), parameters.largest_size, parameters.finer};
+}
+
+/// Draws seeds and tessellates the region, or takes `parameters.cells`, and regularises. Seeds whose
 /// block cannot be made fit are drawn anew and the tessellation is made again, until all blocks are fit. The
 /// blocks are numbered by place (number_along_curve), not in the order of the seeds or of
-/// `parameters.tessellation`. Throws Error when the blocks are not valid at the end; it names the side of the
+/// `parameters.cells`. Throws Error when the blocks are not valid at the end; it names the side of the
 /// outline with invalid blocks.
 /// \param team  as for make_specimen
 /// \param grains  grains whose surfaces blocks follow
-Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
-                   Team* team = nullptr, std::span<const Aggregate> grains = {});
+Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
+                      Team* team = nullptr, std::span<const Grain<2>> grains = {});
+/// Draws seeds that keep their distance, tessellates the body and regularises. Seeds whose cells fail are
+/// drawn anew. Blocks of a solid follow no stones yet.
+Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random,
+                      Team* team = nullptr, std::span<const Grain<3>> stones = {});
 
 }  // namespace pyroclast::specimen

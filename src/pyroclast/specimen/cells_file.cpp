@@ -41,20 +41,49 @@ std::string vertices_key(const Json& json) {
   return key;
 }
 
+Json places(const auto& list) {
+  Json all = Json::array();
+  for (const auto& place : list) all.push_back(place.c);
+  return all;
+}
+
+/// Returns the table of a body.
+Json table_of(const Prism& body) {
+  const Region& section = body.section();
+  const Loop& outline = section.loops().front();
+  Json sides = Json::array();
+  for (int side : outline.side) {
+    while (section.sides()[side].part_of >= 0) side = section.sides()[side].part_of;
+    if (section.sides()[side].is_round && !sides.empty()) continue;  // one name for all
+    sides.push_back(section.sides()[side].name);
+  }
+  return {{"axis", body.axis() == Prism::Axis::y ? "y" : "z"},
+          {"length_m", body.length()},
+          {"section_m", places(outline.corners)},
+          {"sides", std::move(sides)}};
+}
+
 }  // namespace
 
-std::string cells_text(const Cells& cells) {
+template <int Dim>
+std::string cells_text(const Specimen<Dim>& specimen) {
   Json json;
-  json["phases"] = cells.phases;
-  Json vertices = Json::array();
-  for (const Vec<2>& v : cells.tessellation.vertices) vertices.push_back({v[0], v[1]});
-  json["vertices_m"] = std::move(vertices);
-  json["cells"] = cells.tessellation.cells;
-  json["phase"] = cells.phase;
-  if (!cells.size.empty()) json["block_size_m"] = cells.size;
-  if (!cells.grain.empty()) json[kStone] = cells.grain;
+  json["phases"] = specimen.phases;
+  if constexpr (Dim == 3) json["body"] = table_of(specimen.outline);
+  json["vertices_m"] = places(specimen.cells.vertices);
+  if constexpr (Dim == 3) {
+    json["faces"] = Json::array();
+    for (const Facet<3>& face : specimen.cells.faces) json["faces"].push_back(face.corners);
+  }
+  json["cells"] = specimen.cells.cells;
+  json["phase"] = specimen.phase;
+  if (!specimen.size.empty()) json[kBlockSizeInMetres] = specimen.size;
+  if (!specimen.grain.empty()) json[kStone] = specimen.grain;
   return json.dump() + "\n";
 }
+
+template std::string cells_text<2>(const Specimen<2>&);
+template std::string cells_text<3>(const Specimen<3>&);
 
 CellsFile read_cells(const std::filesystem::path& file) {
   return cells_from(read_file(file), file.string());
@@ -68,11 +97,10 @@ CellsFile cells_from(const std::string& text, const std::string& name) {
                               json.contains("faces") ? "faces" : "body", kInSpace));
     const std::string key = vertices_key(json);
     file.unit = key.substr(kVertices.size());
-    Cells cells;
+    GivenCells<2> cells;
     cells.phases = list_in(json, "phases", "a name", text_in);
-    cells.tessellation.vertices = list_in(json, key, fmt::format("a place, [x, y] in {}", file.unit), place);
-    cells.tessellation.cells =
-        list_in(json, "cells", "a list of vertices, each by its number from 0", numbers_in);
+    cells.cells.vertices = list_in(json, key, fmt::format("a place, [x, y] in {}", file.unit), place);
+    cells.cells.cells = list_in(json, "cells", "a list of vertices, each by its number from 0", numbers_in);
     cells.phase = list_in(json, "phase", "the number of a phase, from 0", number_in);
     const std::string size = std::string(kBlockSize) + file.unit;
     for (const auto& [list, items] : json.items())

@@ -9,31 +9,29 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/pieces.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/polyhedra_file.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Distance that twelve decimals leave between a vertex and its side, as a share of the body's size: vertices
-/// stay where they are no farther from it.
-constexpr double kExact = 1e-12;
-
 /// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
 /// are not one piece, or parts of the outline meet in one point.
-std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const std::vector<Edge>& edges,
+std::vector<std::vector<int>> loops_of(const Cells<2>& tessellation, const std::vector<Facet<2>>& edges,
                                        const Numbering& numbering) {
   std::vector<int> next(tessellation.vertices.size(), -1);
-  if (const std::string pieces = describe_pieces(tessellation, edges, numbering); !pieces.empty())
+  if (const std::string pieces = describe_pieces<2>(tessellation, edges, numbering); !pieces.empty())
     throw Error(pieces);
-  for (const Edge& e : edges) {
-    if (e.right >= 0) continue;
-    if (next[e.v0] >= 0)
+  for (const Facet<2>& e : edges) {
+    if (e.outer >= 0) continue;
+    if (next[e.corners[0]] >= 0)
       throw Error(fmt::format("parts of the outline meet in one point, ({:.6g}, {:.6g}) m",
-                              tessellation.vertices[e.v0][0], tessellation.vertices[e.v0][1]));
-    next[e.v0] = e.v1;
+                              tessellation.vertices[e.corners[0]][0],
+                              tessellation.vertices[e.corners[0]][1]));
+    next[e.corners[0]] = e.corners[1];
   }
   std::vector<std::vector<int>> loops;
   for (int first = 0; first < static_cast<int>(next.size()); ++first) {
@@ -48,7 +46,7 @@ std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const s
 }
 
 /// Returns the largest distance of a vertex from its side, m (`kOffSide`).
-double slack_of(const Tessellation& tessellation) {
+double slack_of(const Cells<2>& tessellation) {
   double whole = 0.0;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
@@ -158,8 +156,8 @@ void make_upright(std::vector<Vec<2>>& corners, double slack) {
   std::rotate(corners.begin(), corners.end() - static_cast<std::ptrdiff_t>(lowest), corners.end());
 }
 
-void require_cells(const Cells& cells) {
-  const Tessellation& t = cells.tessellation;
+void require_cells(const GivenCells<2>& cells) {
+  const Cells<2>& t = cells.cells;
   require_lists(t.cells.size(), cells.phases, cells.phase, cells.size, cells.grain);
   for (std::size_t c = 0; c < t.cells.size(); ++c) {
     if (t.cells[c].size() < 3)
@@ -178,7 +176,7 @@ void require_cells(const Cells& cells) {
       throw Error(fmt::format("vertex {} (from 0) is not finite", v));
 }
 
-Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge>& edges,
+Region outline_of_loops(const Cells<2>& tessellation, const std::vector<Facet<2>>& edges,
                         const Numbering& numbering) {
   const double slack = slack_of(tessellation);
   std::vector<Vec<2>> outer;
@@ -205,11 +203,11 @@ Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge
 
 }  // namespace
 
-void lay_on_sides(Tessellation& tessellation) {
+void lay_on_sides(Cells<2>& tessellation) {
   auto& at = tessellation.vertices;
   std::vector<std::vector<int>> loops;
   try {
-    loops = loops_of(tessellation, edges(tessellation), {});
+    loops = loops_of(tessellation, facets(tessellation), {});
   } catch (const Error&) {
     return;
   }
@@ -236,8 +234,8 @@ void lay_on_sides(Tessellation& tessellation) {
   }
 }
 
-Region outline_of(const Tessellation& tessellation, const Numbering& numbering) {
-  const std::vector<Edge> all = edges(tessellation, numbering);
+Region outline_of(const Cells<2>& tessellation, const Numbering& numbering) {
+  const std::vector<Facet<2>> all = facets(tessellation, numbering);
   try {
     return outline_of_loops(tessellation, all, numbering);
   } catch (const Error& error) {
@@ -267,41 +265,42 @@ void require_lists(std::size_t cells, const std::vector<std::string>& phases, co
   }
 }
 
-Cells checked(Cells cells) {
+GivenCells<2> checked(GivenCells<2> cells) {
   require_cells(cells);
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < cells.tessellation.cells.size(); ++c) {
-    corners(cells.tessellation, c, polygon);
-    if (area(polygon) < 0.0) std::ranges::reverse(cells.tessellation.cells[c]);
+  for (std::size_t c = 0; c < cells.cells.cells.size(); ++c) {
+    corners(cells.cells, c, polygon);
+    if (area(polygon) < 0.0) std::ranges::reverse(cells.cells.cells[c]);
   }
   return cells;
 }
 
-Specimen specimen_from(Cells cells) {
+Specimen<2> specimen_from(GivenCells<2> cells) {
   cells = checked(std::move(cells));
-  lay_on_sides(cells.tessellation);
-  Region region = outline_of(cells.tessellation);
-  return specimen_from(std::move(cells), std::move(region));
+  lay_on_sides(cells.cells);
+  const Region region = outline_of(cells.cells);
+  return specimen_from(std::move(cells), region);
 }
 
-Specimen specimen_from(Cells cells, Region region) {
-  auto [tessellation, phases, phase, size, grain, origin] = checked(std::move(cells));
-  require_valid(tessellation, region, origin.empty() ? "The cells" : origin);
-  Specimen specimen{};
-  specimen.region = std::move(region);
-  specimen.fraction.assign(phases.size(), 0.0);
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
-    specimen.fraction[phase[c]] += area(polygon) / specimen.region.area();
-  }
-  specimen.metrics = measure(tessellation);
-  specimen.tessellation = std::move(tessellation);
-  specimen.phases = std::move(phases);
-  specimen.phase = std::move(phase);
-  specimen.size = std::move(size);
-  specimen.grain = std::move(grain);
+template <int Dim>
+Specimen<Dim> specimen_from(GivenCells<Dim> given, const OutlineOf<Dim>& outline) {
+  const std::string origin = given.origin.empty() ? "The cells" : given.origin;
+  if constexpr (Dim == 2)
+    given = checked(std::move(given));
+  else
+    find_sides(given.cells, outline);
+  require_valid(given.cells, outline, origin);
+  Specimen<Dim> specimen{.outline = outline,
+                         .cells = std::move(given.cells),
+                         .phases = std::move(given.phases),
+                         .phase = std::move(given.phase),
+                         .grain = std::move(given.grain),
+                         .size = std::move(given.size)};
+  measure(specimen);
   return specimen;
 }
+
+template Specimen<2> specimen_from<2>(GivenCells<2>, const Region&);
+template Specimen<3> specimen_from<3>(GivenCells<3>, const Prism&);
 
 }  // namespace pyroclast::specimen

@@ -14,11 +14,15 @@ namespace pyroclast::specimen {
 /// blocks. Nine digits are a hundred times finer.
 inline constexpr double kOffSide = 1e-4;
 
+/// Distance that twelve decimals, or computing alone, leave between a vertex and its side, as a share of the
+/// body's size: vertices stay where they are no farther from it.
+inline constexpr double kExact = 1e-12;
+
 /// Lays vertices that lie off a straight side of the outline by no more than `kOffSide` onto it: the line
 /// between its corners. Sides of a rectangle become level and upright, and begin at 0 where they nearly do.
 /// Vertices that are off by no more than twelve decimals leave stay; so do all where the cells have no
 /// outline, as `outline_of` tells.
-void lay_on_sides(Tessellation& tessellation);
+void lay_on_sides(Cells<2>& tessellation);
 
 /// Returns the outline of cells: its outer loop and its holes, with straight sides joined from corner to
 /// corner: vertices no farther than `kOffSide` from the line between two others are no corners. Sides of the
@@ -26,7 +30,7 @@ void lay_on_sides(Tessellation& tessellation);
 /// of each hole `hole_1`, ...; those of a rectangle along the axes `bottom`, `right`, `top`, `left`. Throws
 /// Error when the cells are not one piece (`describe_pieces`), or meet in a point alone; the message says
 /// whether vertices could be joined (`describe_joinable`).
-Region outline_of(const Tessellation& tessellation, const Numbering& numbering = {});
+Region outline_of(const Cells<2>& tessellation, const Numbering& numbering = {});
 
 /// Tests the lists that cells bring along, in the plane or in space. Throws Error, naming the cell, counted
 /// from 0, when there are no cells, when a list has another length, and when a cell is of a phase that does
@@ -39,12 +43,14 @@ void require_lists(std::size_t cells, const std::vector<std::string>& phases, co
 
 /// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when a cell names a vertex
 /// that does not exist, and as `require_lists`.
-Cells checked(Cells cells);
+GivenCells<2> checked(GivenCells<2> cells);
 
 /// Makes a specimen of cells that come from elsewhere, in either sense. Throws Error as `checked`, and when a
 /// cell is not convex, or does not fit together with its neighbours.
-Specimen specimen_from(Cells cells);
-/// \param region  outline of the cells, perhaps with patches
-Specimen specimen_from(Cells cells, Region region);
+Specimen<2> specimen_from(GivenCells<2> cells);
+/// Makes a specimen of cells in the plane or in space whose outline, perhaps with patches, is known. Throws
+/// Error as above, in space when the cells do not fill the body.
+template <int Dim>
+Specimen<Dim> specimen_from(GivenCells<Dim> cells, const OutlineOf<Dim>& outline);
 
 }  // namespace pyroclast::specimen

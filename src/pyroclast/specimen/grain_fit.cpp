@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the mean square distance of an edge from the outline of a grain, m²: by Gauss's rule of three
 /// points.
-double mean_square_distance(const Aggregate& grain, const Vec<2>& from, const Vec<2>& to) {
+double mean_square_distance(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to) {
   const std::array<double, 3> at{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
   const std::array<double, 3> weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   double sum = 0.0;
@@ -26,12 +26,12 @@ double mean_square_distance(const Aggregate& grain, const Vec<2>& from, const Ve
 
 }  // namespace
 
-std::vector<GrainFit> fits_of(const Specimen& specimen) {
+std::vector<GrainFit> fits_of(const Specimen<2>& specimen) {
   if (specimen.grain.empty()) return {};
   std::vector<GrainFit> fits;
-  for (const Aggregate& grain : specimen.aggregates)
+  for (const Grain<2>& grain : specimen.stones)
     fits.push_back({extent(grain), grain.shape ? grain.shape->size() : Ball<2>(0.5 * grain.diameter).size()});
-  const Tessellation& tessellation = specimen.tessellation;
+  const Cells<2>& tessellation = specimen.cells;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     if (specimen.grain[c] < 0) continue;
@@ -40,14 +40,14 @@ std::vector<GrainFit> fits_of(const Specimen& specimen) {
     fit.area_of_blocks += area(polygon);
     ++fit.blocks;
   }
-  for (const Edge& edge : edges(tessellation)) {
-    const int left = specimen.grain[edge.left], right = edge.right < 0 ? -1 : specimen.grain[edge.right];
-    if (left == right || edge.right < 0) continue;
-    const Vec<2>&from = tessellation.vertices[edge.v0], &to = tessellation.vertices[edge.v1];
+  for (const Facet<2>& edge : facets(tessellation)) {
+    const int left = specimen.grain[edge.inner], right = edge.outer < 0 ? -1 : specimen.grain[edge.outer];
+    if (left == right || edge.outer < 0) continue;
+    const Vec<2>&from = tessellation.vertices[edge.corners[0]], &to = tessellation.vertices[edge.corners[1]];
     for (const int grain : {left, right}) {
       if (grain < 0) continue;
       fits[grain].interface += norm(to - from);
-      fits[grain].deviation += norm(to - from) * mean_square_distance(specimen.aggregates[grain], from, to);
+      fits[grain].deviation += norm(to - from) * mean_square_distance(specimen.stones[grain], from, to);
     }
   }
   for (GrainFit& fit : fits)

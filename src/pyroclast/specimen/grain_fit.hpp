@@ -17,6 +17,6 @@ struct GrainFit {
 };
 
 /// Returns the fit of each grain; empty where it is not known of which grain blocks are.
-std::vector<GrainFit> fits_of(const Specimen& specimen);
+std::vector<GrainFit> fits_of(const Specimen<2>& specimen);
 
 }  // namespace pyroclast::specimen

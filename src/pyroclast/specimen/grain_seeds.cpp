@@ -51,7 +51,7 @@ double area_of_tangents(const std::vector<SurfacePoint<2>>& points) {
 
 }  // namespace
 
-GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
+GrainSeeds::GrainSeeds(std::span<const Grain<2>> grains, std::span<const Way> ways, const Region& region,
                        const OutlineSeeds& outline, const BlockSizes& sizes)
     : region_(region),
       outline_(outline),
@@ -65,7 +65,7 @@ GrainSeeds::GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> w
   for (const int number : order) follow(number);
 }
 
-GrainSeeds::Followed GrainSeeds::followed(const Aggregate& grain, const Way& way) const {
+GrainSeeds::Followed GrainSeeds::followed(const Grain<2>& grain, const Way& way) const {
   std::shared_ptr<const Surface<2>> shape = grain.shape;
   if (!shape) shape = std::make_shared<Ball<2>>(0.5 * grain.diameter);
   const double radius = std::sqrt(shape->extent() / std::numbers::pi), spacing = sizes_.at(grain.centre);

@@ -32,7 +32,7 @@ class GrainSeeds {
   /// \param ways     ways of each grain
   /// \param outline  seeds that the outline asks for: the others keep away from them
   /// \param sizes    mean distances of seeds: sizes of blocks
-  GrainSeeds(std::span<const Aggregate> grains, std::span<const Way> ways, const Region& region,
+  GrainSeeds(std::span<const Grain<2>> grains, std::span<const Way> ways, const Region& region,
              const OutlineSeeds& outline, const BlockSizes& sizes);
 
   const std::vector<Vec<2>>& positions() const { return positions_; }
@@ -70,7 +70,7 @@ class GrainSeeds {
     int other;    ///< grain at the other side, for which the seed stands too; -1: none
   };
 
-  Followed followed(const Aggregate& grain, const Way& way) const;
+  Followed followed(const Grain<2>& grain, const Way& way) const;
   Surface<2>::Relative spacing_over(const Followed& grain) const;
   void follow(int number);
   Gap gap_from(int number, const Foot& foot) const;

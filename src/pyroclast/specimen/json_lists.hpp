@@ -35,6 +35,9 @@ inline constexpr const char* kInSpace =
     "Blocks in space come by [specimen] shape = \"polyhedra\" and file, which is JSON with their faces (see "
     "docs/do/bodies.md, Blocks made elsewhere)";
 
+/// List of the sizes that blocks were to have, in m.
+inline constexpr const char* kBlockSizeInMetres = "block_size_m";
+
 /// List of the stones of blocks, and words for an item.
 inline constexpr const char* kStone = "stone";
 inline constexpr const char* kStoneItem = "the number of a stone, from 0, or -1 for none";

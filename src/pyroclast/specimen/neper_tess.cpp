@@ -273,7 +273,7 @@ Vec<3> cross_product(const Vec<3>& a, const Vec<3>& b) {
 }
 
 /// Plane in which a tessellation lies, with two directions in it.
-struct Plane {
+struct PlaneOfFile {
   Vec<3> origin, x{{1.0, 0.0, 0.0}}, y{{0.0, 1.0, 0.0}};
 
   Vec<2> flat(const Place& place) const { return {{dot(place.at - origin, x), dot(place.at - origin, y)}}; }
@@ -298,7 +298,7 @@ std::vector<Place> used_places(const File& file) {
 /// Returns the plane of a tessellation: that of its largest face. The plane's x is the file's x as far as it
 /// lies in the plane, or the file's y where x is normal to the plane; its y points to where the file's y
 /// does, or z. Throws Error for a place off the plane.
-Plane plane_of(const Words& words, const File& file) {
+PlaneOfFile plane_of(const Words& words, const File& file) {
   const std::vector<Place> places = used_places(file);
   Vec<3> low = places.front().at, high = low;
   for (const Place& p : places)
@@ -328,7 +328,7 @@ Plane plane_of(const Words& words, const File& file) {
                     fmt::format("({:.8g}, {:.8g}, {:.8g}) lies {:.3g} off the plane of the largest cell; the "
                                 "cells must lie in one plane",
                                 p.at[0], p.at[1], p.at[2], distance));
-  Plane plane{.origin = on_plane};
+  PlaneOfFile plane{.origin = on_plane};
   const auto in_plane = [&](const Vec<3>& direction) { return direction - dot(direction, normal) * normal; };
   const Vec<3> x{{1.0, 0.0, 0.0}}, y{{0.0, 1.0, 0.0}};
   plane.x = norm(in_plane(x)) > kNormal ? in_plane(x) : in_plane(y);
@@ -341,7 +341,7 @@ Plane plane_of(const Words& words, const File& file) {
 
 /// Returns the bounding box of the domain laid flat.
 /// \param is_rectangle  true where the domain must be an upright rectangle; then throws Error for another one
-Bounds bounds_of(const Words& words, const File& file, const Plane& plane, bool is_rectangle) {
+Bounds bounds_of(const Words& words, const File& file, const PlaneOfFile& plane, bool is_rectangle) {
   const auto refuse = [&](std::string_view found) {
     words.fail_at(file.domain.back().line,
                   fmt::format("expected a domain that is an upright rectangle, found {}.", found));
@@ -406,9 +406,9 @@ struct Read {
 
 /// Returns the cells of a file whose domain takes this size, m. A cell that bends inwards, as Neper's
 /// regularisation leaves some, becomes its convex parts.
-Read cells_of(const File& file, const Plane& plane, const Bounds& domain, const Vec<2>& size) {
+Read cells_of(const File& file, const PlaneOfFile& plane, const Bounds& domain, const Vec<2>& size) {
   Read read;
-  Tessellation& result = read.tess.tessellation;
+  Cells<2>& result = read.tess.cells;
   std::vector<int> number(file.vertices.size(), -1);
   std::vector<Vec<2>> polygon;
   for (std::size_t f = 0; f < file.faces.size(); ++f) {
@@ -460,11 +460,11 @@ NeperTess read_neper_tess(const std::filesystem::path& file, double width, doubl
 NeperTess read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
   Words words(stream, name);
   const File file = read(words);
-  const Plane plane = plane_of(words, file);
+  const PlaneOfFile plane = plane_of(words, file);
   const Bounds domain = bounds_of(words, file, plane, true);
   require_aspect_ratio(domain, width, height, name);
   Read result = cells_of(file, plane, domain, {{width, height}});
-  require_valid(result.tess.tessellation, Region::rectangle(width, height), name, result.numbering);
+  require_valid(result.tess.cells, Region::rectangle(width, height), name, result.numbering);
   return std::move(result.tess);
 }
 
@@ -476,14 +476,14 @@ NeperTess read_neper_tess(const std::filesystem::path& file, const TessSize& siz
 NeperTess read_neper_tess(std::istream& stream, const std::string& name, const TessSize& size) {
   Words words(stream, name);
   const File file = read(words);
-  const Plane plane = plane_of(words, file);
+  const PlaneOfFile plane = plane_of(words, file);
   const Bounds domain = bounds_of(words, file, plane, false);
   const Vec<2> in_file = domain.upper - domain.lower;
   if (!(in_file[0] > 0.0 && in_file[1] > 0.0))
     throw Error(fmt::format("{}: the domain is {:.8g} x {:.8g}.", name, in_file[0], in_file[1]));
   Read result =
       cells_of(file, plane, domain, (size.unit > 0.0 ? size.unit : size.width / in_file[0]) * in_file);
-  Tessellation& cells = result.tess.tessellation;
+  Cells<2>& cells = result.tess.cells;
   lay_on_sides(cells);
   try {
     require_valid(cells, outline_of(cells, result.numbering), name, result.numbering);

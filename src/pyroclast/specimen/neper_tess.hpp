@@ -11,7 +11,7 @@ namespace pyroclast::specimen {
 
 /// Cells of a Neper tessellation, and the groups into which its file puts them.
 struct NeperTess {
-  Tessellation tessellation;
+  Cells<2> cells;
   std::vector<int> group;  ///< group of each cell in the file (*group); empty where it has none
   int group_line = 0;      ///< line of the file with *group
   std::vector<int> empty;  ///< numbers of the cells without vertices, from 1, which are left out

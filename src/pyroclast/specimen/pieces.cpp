@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <span>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -20,7 +22,7 @@ namespace pyroclast::specimen {
 namespace {
 
 /// Returns the edges that one cell alone has, each as the cell runs along it.
-std::vector<Edge> free_edges(const Tessellation& tessellation) {
+std::vector<Facet<2>> free_edges(const Cells<2>& tessellation) {
   std::map<std::pair<int, int>, int> count;
   const auto key = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
   const auto for_each = [&](auto f) {
@@ -31,9 +33,9 @@ std::vector<Edge> free_edges(const Tessellation& tessellation) {
     }
   };
   for_each([&](int a, int b, int) { ++count[key(a, b)]; });
-  std::vector<Edge> edges;
+  std::vector<Facet<2>> edges;
   for_each([&](int a, int b, int cell) {
-    if (count[key(a, b)] == 1) edges.push_back({a, b, cell, -1});
+    if (count[key(a, b)] == 1) edges.push_back({{a, b}, cell});
   });
   return edges;
 }
@@ -47,23 +49,24 @@ struct Hanging {
 
 /// Finds the vertices of edges that lie nearer than a distance to another of the edges. Returns them in the
 /// order of the edges and along each.
-std::vector<Hanging> hanging(const Tessellation& tessellation, std::span<const Edge> edges, double distance) {
+std::vector<Hanging> hanging(const Cells<2>& tessellation, std::span<const Facet<2>> edges, double distance) {
   const auto& at = tessellation.vertices;
   std::vector<int> vertices;
-  for (const Edge& e : edges) vertices.push_back(e.v0);
+  for (const Facet<2>& e : edges) vertices.push_back(e.corners[0]);
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   std::ranges::sort(vertices, {}, [&](int v) { return std::pair(at[v][0], v); });
   std::vector<Hanging> found;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Vec<2>&from = at[edges[i].v0], &to = at[edges[i].v1];
+    const Vec<2>&from = at[edges[i].corners[0]], &to = at[edges[i].corners[1]];
     const double length = norm(to - from);
     const std::size_t before = found.size();
     auto v = std::ranges::lower_bound(vertices, std::min(from[0], to[0]) - distance, {},
                                       [&](int number) { return at[number][0]; });
     for (; v != vertices.end() && at[*v][0] <= std::max(from[0], to[0]) + distance; ++v) {
       const double along = dot(at[*v] - from, to - from) / length;
-      if (*v == edges[i].v0 || *v == edges[i].v1 || !(along > distance && length - along > distance))
+      if (*v == edges[i].corners[0] || *v == edges[i].corners[1] ||
+          !(along > distance && length - along > distance))
         continue;
       if (std::abs(cross(at[*v] - from, to - from)) < distance * length)
         found.push_back({i, *v, along / length});
@@ -74,35 +77,44 @@ std::vector<Hanging> hanging(const Tessellation& tessellation, std::span<const E
   return found;
 }
 
-void require_apart(const Cells& cells, const std::vector<int>& first, double distance) {
-  for (std::size_t c = 0; c < cells.tessellation.cells.size(); ++c) {
+/// Throws Error where two corners of an item are as near to each other as vertices that are joined.
+/// \param corners_of  function from an item to its corners
+/// \param item        word for an item, "cell" or "face"
+template <int Dim>
+void require_apart(const Cells<Dim>& cells, const auto& items, auto corners_of, const char* item,
+                   const std::vector<int>& first, double distance) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
     std::vector<int> corners;
-    for (const int v : cells.tessellation.cells[c]) corners.push_back(first[v]);
+    for (const int v : corners_of(items[i])) corners.push_back(first[v]);
     std::ranges::sort(corners);
-    if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end()) {
-      const Vec<2>& at = cells.tessellation.vertices[*twice];
+    if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end())
       throw Error(
-          fmt::format("{} has two corners near ({:.6g}, {:.6g}) m that are nearer to each other than "
-                      "{:.6g} m, by which vertices are joined; join less",
-                      Numbering{}.cell(c), at[0], at[1], distance));
-    }
+          fmt::format("{} {} (from 0) has two corners near ({:.6g}) m that are nearer to each other "
+                      "than {:.6g} m, by which vertices are joined; join less",
+                      item, i, fmt::join(cells.vertices[*twice].c, ", "), distance));
   }
 }
 
-/// Drops vertices that no cell has.
-void drop_unused(Tessellation& tessellation) {
-  std::vector<int> number(tessellation.vertices.size(), -1);
-  for (const auto& cell : tessellation.cells)
-    for (const int v : cell) number[v] = 0;
-  std::vector<Vec<2>> vertices;
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] == 0) {
-      number[v] = static_cast<int>(vertices.size());
-      vertices.push_back(tessellation.vertices[v]);
-    }
-  for (auto& cell : tessellation.cells)
-    for (int& v : cell) v = number[v];
-  tessellation.vertices = std::move(vertices);
+/// Returns the corners of a face from the lowest on, towards the lower of its neighbours: the same for two
+/// faces that have the same corners in turn.
+std::vector<int> from_lowest(std::vector<int> corners) {
+  std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
+  if (corners.back() < corners[1]) std::reverse(corners.begin() + 1, corners.end());
+  return corners;
+}
+
+/// Returns for each face the first one with the same corners in turn, or the face itself.
+/// \param first  vertex that stands for each vertex
+std::vector<int> first_alike(const Cells<3>& cells, const std::vector<int>& first) {
+  std::map<std::vector<int>, int> known;
+  std::vector<int> alike;
+  for (const Facet<3>& face : cells.faces) {
+    std::vector<int> corners;
+    for (const int v : face.corners) corners.push_back(first[v]);
+    alike.push_back(
+        known.emplace(from_lowest(std::move(corners)), static_cast<int>(alike.size())).first->second);
+  }
+  return alike;
 }
 
 }  // namespace
@@ -145,30 +157,28 @@ std::vector<int> pieces_of(std::size_t cells, std::span<const std::pair<int, int
   return piece;
 }
 
-std::string describe_pieces(const std::vector<int>& piece, const char* shared,
-                            const std::function<std::string(int)>& cell) {
-  std::map<int, int> cells;
-  for (const int p : piece) ++cells[p];
-  if (cells.size() < 2) return {};
-  const auto smallest = std::ranges::min_element(cells, {}, [](const auto& p) { return p.second; });
-  return fmt::format(
-      "the cells are {} pieces that have no {} in common, and must be one: {} is of a piece of {} cell{}",
-      cells.size(), shared, cell(smallest->first), smallest->second, smallest->second == 1 ? "" : "s");
-}
-
-std::string describe_pieces(const Tessellation& tessellation, std::span<const Edge> edges,
+template <int Dim>
+std::string describe_pieces(const Cells<Dim>& cells, std::span<const Facet<Dim>> facets,
                             const Numbering& numbering) {
   std::vector<std::pair<int, int>> neighbours;
-  for (const Edge& e : edges) neighbours.emplace_back(e.left, e.right);
-  return describe_pieces(pieces_of(tessellation.cells.size(), neighbours), "edge", [&](int cell) {
-    std::vector<Vec<2>> polygon;
-    corners(tessellation, cell, polygon);
-    const Vec<2> at = centroid(polygon);
-    return fmt::format("{} at ({:.6g}, {:.6g}) m", numbering.cell(cell), at[0], at[1]);
-  });
+  for (const Facet<Dim>& facet : facets) neighbours.emplace_back(facet.inner, facet.outer);
+  const std::vector<int> piece = pieces_of(cells.cells.size(), neighbours);
+  std::map<int, int> count;
+  for (const int p : piece) ++count[p];
+  if (count.size() < 2) return {};
+  const auto smallest = std::ranges::min_element(count, {}, [](const auto& p) { return p.second; });
+  const auto cell = static_cast<std::size_t>(smallest->first);
+  return fmt::format(
+      "the cells are {} pieces that have no {} in common, and must be one: {} at ({:.6g}) m is "
+      "of a piece of {} cell{}",
+      count.size(), Dim == 2 ? "edge" : "face", numbering.cell(cell),
+      fmt::join(centroid(cells, cell).c, ", "), smallest->second, smallest->second == 1 ? "" : "s");
 }
 
-std::string describe_joinable(const Tessellation& tessellation) {
+template std::string describe_pieces<2>(const Cells<2>&, std::span<const Facet<2>>, const Numbering&);
+template std::string describe_pieces<3>(const Cells<3>&, std::span<const Facet<3>>, const Numbering&);
+
+std::string describe_joinable(const Cells<2>& tessellation) {
   const Box box = box_of(tessellation.vertices);
   const double near = kCoincide * std::max(box.width(), box.height());
   if (!(near > 0.0)) return {};
@@ -176,7 +186,7 @@ std::string describe_joinable(const Tessellation& tessellation) {
   std::ptrdiff_t coincide = 0;
   for (int v = 0; v < static_cast<int>(first.size()); ++v)
     if (first[v] != v) ++coincide;
-  Tessellation merged = tessellation;
+  Cells<2> merged = tessellation;
   for (auto& cell : merged.cells)
     for (int& v : cell) v = first[v];
   const std::size_t hang = hanging(merged, free_edges(merged), near).size();
@@ -189,30 +199,67 @@ std::string describe_joinable(const Tessellation& tessellation) {
       hang == 1 ? "1 lies" : fmt::format("{} lie", hang), near);
 }
 
-Cells joined(Cells cells, double distance) {
+GivenCells<2> joined(GivenCells<2> cells, double distance) {
   if (!(distance > 0.0)) return cells;
-  Tessellation& t = cells.tessellation;
+  Cells<2>& t = cells.cells;
   const std::vector<int> first = first_near<2>(t.vertices, distance);
-  require_apart(cells, first, distance);
+  require_apart(t, t.cells, std::identity(), "cell", first, distance);
   for (auto& cell : t.cells)
     for (int& v : cell) v = first[v];
-  const std::vector<Edge> edges = free_edges(t);
+  const std::vector<Facet<2>> edges = free_edges(t);
   std::vector<bool> is_moved(t.vertices.size(), false);
   const std::vector<Hanging> found = hanging(t, edges, distance);
   for (const Hanging& h : found) {
     if (is_moved[h.vertex]) continue;
-    const Vec<2>&from = t.vertices[edges[h.edge].v0], &to = t.vertices[edges[h.edge].v1];
+    const Vec<2>&from = t.vertices[edges[h.edge].corners[0]], &to = t.vertices[edges[h.edge].corners[1]];
     t.vertices[h.vertex] = from + h.share * (to - from);
     is_moved[h.vertex] = true;
   }
   // from the last to the first, so that each goes right behind the first end of its edge
   for (auto h = found.rbegin(); h != found.rend(); ++h) {
-    auto& cell = t.cells[edges[h->edge].left];
+    auto& cell = t.cells[edges[h->edge].inner];
     if (std::ranges::find(cell, h->vertex) != cell.end()) continue;
-    cell.insert(std::ranges::find(cell, edges[h->edge].v0) + 1, h->vertex);
+    cell.insert(std::ranges::find(cell, edges[h->edge].corners[0]) + 1, h->vertex);
   }
   drop_unused(t);
   return cells;
+}
+
+std::vector<int> join(Cells<3>& cells, double distance) {
+  const std::vector<int> first = first_near<3>(cells.vertices, distance);
+  require_apart(cells, cells.faces, std::mem_fn(&Facet<3>::corners), "face", first, distance);
+  const std::vector<int> alike = first_alike(cells, first);
+  for (Facet<3>& face : cells.faces)
+    for (int& v : face.corners) v = first[v];
+  for (auto& cell : cells.cells)
+    for (int& face : cell) face = alike[face];
+  return drop_unused(cells);
+}
+
+std::string describe_joinable(const Cells<3>& cells) {
+  Vec<3> low = cells.vertices.front(), high = low;
+  for (const Vec<3>& v : cells.vertices)
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], v[d]);
+      high[d] = std::max(high[d], v[d]);
+    }
+  const Vec<3> size = high - low;
+  const double near = kCoincide * std::max({size[0], size[1], size[2]});
+  if (!(near > 0.0)) return {};
+  const std::vector<int> first = first_near<3>(cells.vertices, near);
+  const auto repeats = [](const std::vector<int>& of) {
+    std::ptrdiff_t count = 0;
+    for (int i = 0; i < static_cast<int>(of.size()); ++i) count += of[i] != i ? 1 : 0;
+    return count;
+  };
+  const std::ptrdiff_t vertices = repeats(first), faces = repeats(first_alike(cells, first));
+  if (vertices == 0 && faces == 0) return "; no vertices coincide, and no face has the corners of another";
+  const std::string coincide =
+      fmt::format("; {} vert{} with others", vertices, vertices == 1 ? "ex coincides" : "ices coincide");
+  if (faces == 0)
+    return coincide + ", but no face has the corners of another then: neighbours must share whole faces";
+  return fmt::format("{}, and {} the corners of another: join = \"{:.3g} m\" joins them", coincide,
+                     faces == 1 ? "1 face has" : fmt::format("{} faces have", faces), near);
 }
 
 }  // namespace pyroclast::specimen

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,22 +21,16 @@ std::vector<int> first_near(std::span<const Vec<Dim>> vertices, double distance)
 /// \param neighbours  pairs of cells that share an edge, in space a face; a pair with -1 joins nothing
 std::vector<int> pieces_of(std::size_t cells, std::span<const std::pair<int, int>> neighbours);
 
-/// Describes pieces of cells: their number, one cell of the smallest and its place. Empty where the cells are
-/// one piece.
-/// \param piece   number of the piece of each cell
-/// \param shared  word for the parts that neighbours share, "edge" or "face"
-/// \param cell    function that names a cell and its place
-std::string describe_pieces(const std::vector<int>& piece, const char* shared,
-                            const std::function<std::string(int)>& cell);
-
-/// Describes cells of the plane that are not joined by edges.
-/// \param edges  edges of the tessellation
-std::string describe_pieces(const Tessellation& tessellation, std::span<const Edge> edges,
-                            const Numbering& numbering);
+/// Describes pieces of cells that are not joined by facets: their number, one cell of the smallest and its
+/// place. Empty where the cells are one piece.
+/// \param facets  facets of the cells
+template <int Dim>
+std::string describe_pieces(const Cells<Dim>& cells, std::span<const Facet<Dim>> facets,
+                            const Numbering& numbering = {});
 
 /// Says how many vertices coincide and how many lie in edges of cells that do not have them as corners, and
 /// by which distance `joined` joins them. The text goes behind another sentence.
-std::string describe_joinable(const Tessellation& tessellation);
+std::string describe_joinable(const Cells<2>& tessellation);
 
 /// Joins cells that lie beside each other and do not share vertices.
 ///
@@ -45,6 +38,17 @@ std::string describe_joinable(const Tessellation& tessellation);
 /// than `distance` to an edge of a cell, and not at its ends, is moved onto the edge and becomes a corner of
 /// the cell. Vertices that no cell has any more are dropped. Throws Error, naming the cell, where two corners
 /// of a cell are as near to each other.
-Cells joined(Cells cells, double distance);
+GivenCells<2> joined(GivenCells<2> cells, double distance);
+
+/// Joins cells: vertices nearer to each other than `distance` (m) become the first of them, and faces that
+/// then have the same corners in turn, in either sense, the first of them. Vertices and faces that no cell
+/// has any more are dropped. Throws Error, naming the face, where two corners of a face are as near to each
+/// other. \param complex  cells whose faces have corners, and no neighbours yet \return the number that each
+/// face had
+std::vector<int> join(Cells<3>& cells, double distance);
+
+/// Says how many vertices coincide, how many faces then have the corners of another, and by which distance
+/// `join` joins them. The text goes behind another sentence.
+std::string describe_joinable(const Cells<3>& cells);
 
 }  // namespace pyroclast::specimen

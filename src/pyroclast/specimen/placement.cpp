@@ -154,7 +154,7 @@ void require_placed(double placed, double asked, const AggregateParameters& para
 }
 
 std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
-                                std::span<const Aggregate> standing, Random& random) {
+                                std::span<const Grain<2>> standing, Random& random) {
   const auto fits = [&](const Fibre& fibre) {
     for (const Vec<2>& end : {fibre.from, fibre.to})
       if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
@@ -163,7 +163,7 @@ std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
              cross_each_other(fibre.from, fibre.to, piece.from, piece.to);
     };
     return std::ranges::none_of(region.pieces_before_cuts(), meets) &&
-           std::ranges::none_of(standing, [&](const Aggregate& a) {
+           std::ranges::none_of(standing, [&](const Grain<2>& a) {
              return are_closer(a, fibre.from, fibre.to, p.minimum_gap);
            });
   };

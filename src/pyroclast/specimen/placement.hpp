@@ -34,6 +34,6 @@ void require_placed(double placed, double asked, const AggregateParameters& para
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.
 std::vector<Fibre> place_fibres(const FibreParameters& parameters, const Region& region,
-                                std::span<const Aggregate> standing, Random& random);
+                                std::span<const Grain<2>> standing, Random& random);
 
 }  // namespace pyroclast::specimen

@@ -155,6 +155,17 @@ std::optional<LineSet> both(const LineSet& a, const LineSet& b) {
   return result;
 }
 
+std::vector<std::string> names_of(std::span<const Side> sides) {
+  std::vector<std::string> names;
+  for (const Side& side : sides) names.push_back(side.name);
+  return names;
+}
+
+int find_side(std::span<const Side> sides, std::string_view name) {
+  const auto found = std::ranges::find(sides, name, &Side::name);
+  return found == sides.end() ? -1 : static_cast<int>(found - sides.begin());
+}
+
 Box box_of(std::span<const Vec<2>> points) {
   Box box{points.front(), points.front()};
   for (const Vec<2>& p : points)

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,11 @@ struct Side {
   bool is_cut = false;    ///< true for a side of a notch
   int part_of = -1;       ///< side of which it is a stretch, see Patch
 };
+
+/// Returns the names of sides.
+std::vector<std::string> names_of(std::span<const Side> sides);
+/// Returns the place of the side of a name; -1 where there is none.
+int find_side(std::span<const Side> sides, std::string_view name);
 
 /// Straight piece of an outline, walked with the body on its left.
 struct Piece {
@@ -120,7 +126,9 @@ class Region {
   const std::vector<Piece>& pieces() const { return pieces_; }
   const std::vector<Notch>& notches() const { return notches_; }
   const Box& box() const { return box_; }
-  double area() const { return area_; }  ///< Returns the area, m².
+  const Vec<2>& low() const { return box_.low; }    ///< Returns the lower corner of the box, m.
+  const Vec<2>& high() const { return box_.high; }  ///< Returns the upper corner, m.
+  double extent() const { return area_; }           ///< Returns the area, m².
   /// Tells whether the region is a rectangle along the axes without holes or notches, with its lower left
   /// corner at 0.
   bool is_rectangle() const { return is_rectangle_; }

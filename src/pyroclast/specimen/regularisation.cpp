@@ -32,11 +32,11 @@ Shape shape_of(Corners polygon) {
 
 class Regulariser {
  public:
-  Regulariser(Tessellation& tessellation, const Region& region, double shortest_edge, const BlockSizes& sizes)
+  Regulariser(Cells<2>& tessellation, const Region& region, double shortest_edge, const BlockSizes& sizes)
       : tessellation_(tessellation),
         share_(shortest_edge),
         sizes_(sizes),
-        edges_(edges(tessellation)),
+        edges_(facets(tessellation)),
         kept_(tessellation.vertices.size()),
         around_(tessellation.vertices.size()) {
     std::iota(kept_.begin(), kept_.end(), 0);
@@ -48,13 +48,13 @@ class Regulariser {
 
   Regularisation run() {
     int removed = 0;
-    std::vector<Edge> left = short_edges();
+    std::vector<Facet<2>> left = short_edges();
     // Each pass raises the mean edge a little and may shorten edges beside a merge, so passes go on until
     // one finds nothing to do.
     for (bool changed = !left.empty(); changed;) {
       changed = false;
-      for (const Edge& edge : left) {
-        if (merge(edge.v0, edge.v1)) {
+      for (const Facet<2>& edge : left) {
+        if (merge(edge.corners[0], edge.corners[1])) {
           ++removed;
           changed = true;
         }
@@ -62,7 +62,7 @@ class Regulariser {
       if (changed) left = short_edges();
     }
     std::vector<int> unfit = unfit_cells(left);
-    drop_unused_vertices();
+    drop_unused(tessellation_);
     return {removed, static_cast<int>(left.size()), std::move(unfit)};
   }
 
@@ -78,13 +78,14 @@ class Regulariser {
 
   /// Sets the limits from the mean of the edges as they are now. Returns the edges that are too short,
   /// shortest first.
-  std::vector<Edge> short_edges() {
+  std::vector<Facet<2>> short_edges() {
     follow_merges();
     std::vector<double> length;  // over the relative size of the blocks there
     length.reserve(edges_.size());
     double sum = 0.0, relative = 0.0;
-    for (const Edge& e : edges_) {
-      const double all = norm(at(e.v1) - at(e.v0)), size = relative_at(e.v0, e.v1);
+    for (const Facet<2>& e : edges_) {
+      const double all = norm(at(e.corners[1]) - at(e.corners[0])),
+                   size = relative_at(e.corners[0], e.corners[1]);
       length.push_back(all / size);
       sum += all;
       relative += size;
@@ -98,7 +99,7 @@ class Regulariser {
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t i, std::size_t j) { return length[i] < length[j]; });
-    std::vector<Edge> found;
+    std::vector<Facet<2>> found;
     found.reserve(order.size());
     for (const std::size_t i : order) found.push_back(edges_[i]);
     return found;
@@ -106,11 +107,11 @@ class Regulariser {
 
   /// Gives edges the vertices that merges have left as their ends, and drops edges whose ends are merged.
   void follow_merges() {
-    for (Edge& e : edges_) {
-      e.v0 = kept(e.v0);
-      e.v1 = kept(e.v1);
+    for (Facet<2>& e : edges_) {
+      e.corners[0] = kept(e.corners[0]);
+      e.corners[1] = kept(e.corners[1]);
     }
-    std::erase_if(edges_, [](const Edge& e) { return e.v0 == e.v1; });
+    std::erase_if(edges_, [](const Facet<2>& e) { return e.corners[0] == e.corners[1]; });
   }
 
   /// Returns the vertex that stands for `v` after all merges.
@@ -201,22 +202,8 @@ class Regulariser {
     cells_around(a) = touched_;
   }
 
-  void drop_unused_vertices() {
-    std::vector<int> number(tessellation_.vertices.size(), -1);
-    std::vector<Vec<2>> used;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (around_[v].empty()) continue;
-      number[v] = static_cast<int>(used.size());
-      used.push_back(tessellation_.vertices[v]);
-    }
-    for (auto& vertices : tessellation_.cells) {
-      for (int& v : vertices) v = number[static_cast<std::size_t>(v)];
-    }
-    tessellation_.vertices = std::move(used);
-  }
-
   /// Returns the cells whose seeds stand in the way of fit blocks.
-  std::vector<int> unfit_cells(const std::vector<Edge>& left_short) {
+  std::vector<int> unfit_cells(const std::vector<Facet<2>>& left_short) {
     areas_.clear();
     std::vector<int> unfit;
     std::vector<std::size_t> flat;
@@ -231,8 +218,8 @@ class Regulariser {
     for (const std::size_t c : flat) {
       for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));
     }
-    for (const Edge& e : left_short) {
-      unfit.push_back(e.right < 0 || area_of(e.left) < area_of(e.right) ? e.left : e.right);
+    for (const Facet<2>& e : left_short) {
+      unfit.push_back(e.outer < 0 || area_of(e.inner) < area_of(e.outer) ? e.inner : e.outer);
     }
     std::sort(unfit.begin(), unfit.end());
     unfit.erase(std::unique(unfit.begin(), unfit.end()), unfit.end());
@@ -260,11 +247,11 @@ class Regulariser {
 
   double area_of(int c) const { return areas_[static_cast<std::size_t>(c)]; }
 
-  Tessellation& tessellation_;
+  Cells<2>& tessellation_;
   double share_;
   const BlockSizes& sizes_;
   double shortest_ = 0.0, thinnest_ = 0.0;  ///< limits where blocks have their mean size, m
-  std::vector<Edge> edges_;
+  std::vector<Facet<2>> edges_;
   std::vector<int> kept_;                 ///< vertex into which each one was merged, or itself
   std::vector<LineSet> lines_;            ///< lines of the region on which each vertex lies
   std::vector<std::vector<int>> around_;  ///< cells around each vertex, ascending; empty: merged away
@@ -276,7 +263,7 @@ class Regulariser {
 
 }  // namespace
 
-Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge,
+Regularisation regularise(Cells<2>& tessellation, const Region& region, double shortest_edge,
                           const BlockSizes& sizes) {
   return Regulariser(tessellation, region, shortest_edge, sizes).run();
 }

@@ -29,7 +29,7 @@ struct Regularisation {
 /// before. Vertices on the outline or a slit stay on it; its corners and tips stay. The tessellation must be
 /// valid and remains so.
 /// \param sizes  sizes of the blocks: where blocks are finer, an edge may be shorter in proportion
-Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge,
+Regularisation regularise(Cells<2>& tessellation, const Region& region, double shortest_edge,
                           const BlockSizes& sizes = BlockSizes(1.0));
 
 }  // namespace pyroclast::specimen

@@ -7,7 +7,7 @@ namespace pyroclast::specimen {
 namespace {
 
 Room<2> room_with(const Region& region, std::function<double(const Vec<2>&)> distance) {
-  Room<2> room{region.box().low, region.box().high, region.area(), {}};
+  Room<2> room{region.box().low, region.box().high, region.extent(), {}};
   if (!region.is_rectangle()) room.distance = std::move(distance);
   return room;
 }

@@ -17,7 +17,6 @@
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
-#include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/superposition.hpp"
@@ -30,6 +29,8 @@ namespace {
 constexpr std::string_view kOnlyCircles = ": notches cut through circles alone, so an outline must end there";
 /// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
+/// Diameter, in block sizes, below which a stone in space is too small for its shape to mean anything.
+constexpr double kSmallestStone = 2.0;
 
 void require(bool condition, std::string_view what, double value, std::string_view allowed) {
   if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
@@ -70,10 +71,10 @@ void require_valid(const BlockParameters& p) {
           "0 to 0.5 of the mean edge");
   require(p.largest_bend >= 0.0 && p.largest_bend <= kMostBend, "The largest bend", p.largest_bend,
           "0 to pi / 6");
-  if (p.tessellation && !p.phases.empty() && p.phase.size() != p.tessellation->cells.size())
+  if (p.cells && !p.phases.empty() && p.phase.size() != p.cells->cells.size())
     throw Error(fmt::format("The phases of {} blocks are known; allowed are the phases of all {}.",
-                            p.phase.size(), p.tessellation->cells.size()));
-  if (p.tessellation) return;
+                            p.phase.size(), p.cells->cells.size()));
+  if (p.cells) return;
   require(p.count >= 1, "The number of blocks", p.count, "1 or more");
   require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,
           "0 to below 1");
@@ -99,7 +100,7 @@ namespace {
 
 /// Returns the end of a message that names the side or notch on which a grain with an outline lies; empty
 /// where it lies on none.
-std::string side_under(const Aggregate& grain, const Region& region, double tolerance) {
+std::string side_under(const Grain<2>& grain, const Region& region, double tolerance) {
   if (!grain.shape) return {};
   const auto told = [&](const Side& side, const Vec<2>& from, const Vec<2>& to) {
     if (!are_closer(grain, from, to, -tolerance)) return std::string();
@@ -115,11 +116,11 @@ std::string side_under(const Aggregate& grain, const Region& region, double tole
 }
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
-void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
-  const Room<2> of_circles = room_in(p.region), of_outlines = room_of_blocks(p.region);
-  GrainGrid<2> grid(p.region.box().low, p.region.box().high, 2.0 * asked.d_min);
-  for (const Aggregate& circle : specimen.aggregates) grid.insert(circle);
-  std::vector<Aggregate> circles;
+void add_listed(const AggregateParameters& asked, int kind, Specimen<2>& specimen) {
+  const Room<2> of_circles = room_in(specimen.outline), of_outlines = room_of_blocks(specimen.outline);
+  GrainGrid<2> grid(specimen.outline.box().low, specimen.outline.box().high, 2.0 * asked.d_min);
+  for (const Grain<2>& circle : specimen.stones) grid.insert(circle);
+  std::vector<Grain<2>> circles;
   for (const Stone& stone : asked.stones) {
     const double tolerance = kTouching * stone.diameter;
     const auto fail = [&](std::string_view what) {
@@ -127,49 +128,106 @@ void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, i
                               stone.place, 1e3 * stone.diameter, 1e3 * stone.centre[0], 1e3 * stone.centre[1],
                               what));
     };
-    const Aggregate circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
-                           stone.shape};
+    const Grain<2> circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
+                          stone.shape};
     if (!lies_within(circle, stone.shape ? of_outlines : of_circles, -tolerance))
-      fail("does not lie in the specimen, all of it" + side_under(circle, p.region, tolerance));
+      fail("does not lie in the specimen, all of it" + side_under(circle, specimen.outline, tolerance));
     if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
     grid.insert(circle);
     circles.push_back(circle);
   }
   std::stable_sort(circles.begin(), circles.end(),
-                   [](const Aggregate& a, const Aggregate& b) { return a.diameter > b.diameter; });
-  specimen.aggregates.insert(specimen.aggregates.end(), circles.begin(), circles.end());
+                   [](const Grain<2>& a, const Grain<2>& b) { return a.diameter > b.diameter; });
+  specimen.stones.insert(specimen.stones.end(), circles.begin(), circles.end());
 }
 
-/// Adds circles of one kind to those that the specimen has.
-void add_aggregates(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Random& random,
-                    Specimen& specimen) {
+/// Adds stones of one kind to those that the specimen has.
+template <int Dim>
+void add_stones(const AggregateParameters& asked, int kind, Random& random, Specimen<Dim>& specimen) {
   specimen.fraction_asked += asked.fraction;
-  if (!asked.stones.empty()) return add_stones(p, asked, kind, specimen);
-  if (asked.fraction == 0.0) return;
-  const bool are_round = asked.shape.kind == GrainShape::circle;
-  draw_and_place(are_round ? room_in(p.region) : room_of_blocks(p.region), asked,
-                 place_in(specimen.phases, asked.phase), kind, random, specimen.aggregates);
+  const int phase = asked.stones.empty() ? place_in(specimen.phases, asked.phase) : -1;
+  if constexpr (Dim == 2) {
+    if (!asked.stones.empty()) return add_listed(asked, kind, specimen);
+    if (asked.fraction > 0.0 && asked.shape.kind != GrainShape::circle)
+      return draw_and_place(room_of_blocks(specimen.outline), asked, phase, kind, random, specimen.stones);
+  }
+  if (asked.fraction > 0.0)
+    draw_and_place(room_in(specimen.outline), asked, phase, kind, random, specimen.stones);
 }
 
-void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random& random,
-                Specimen& specimen) {
-  for (Fibre& fibre : place_fibres(kind, p.region, specimen.aggregates, random)) {
+void add_fibres(const FibreParameters& kind, Random& random, Specimen<2>& specimen) {
+  for (Fibre& fibre : place_fibres(kind, specimen.outline, specimen.stones, random)) {
     fibre.phase = place_in(specimen.phases, kind.phase);
     specimen.fibres.push_back(fibre);
   }
 }
 
-/// Returns the share of the specimen's area that blocks take for which `counts(phase)` holds.
-template <class Counts>
-double fraction_of(const Specimen& specimen, Counts counts) {
+/// Adds all stones, and in the plane fibres, kind by kind in the order of the parameters.
+template <int Dim>
+void add_inclusions(const SpecimenParameters& p, Random& random, Specimen<Dim>& specimen) {
+  int kind = 0;
+  add_stones(p.aggregates, kind, random, specimen);
+  for (const Inclusions& inclusions : p.inclusions)
+    if (const auto* stones = std::get_if<AggregateParameters>(&inclusions))
+      add_stones(*stones, ++kind, random, specimen);
+    else if constexpr (Dim == 2)
+      add_fibres(std::get<FibreParameters>(inclusions), random, specimen);
+  specimen.fraction_placed =
+      extent_of(std::span<const Grain<Dim>>(specimen.stones)) / specimen.outline.extent();
+  const auto kinds = stone_kinds(p);
+  const auto with_largest = std::ranges::max_element(
+      kinds, {}, [](const auto* asked) { return asked->fraction > 0.0 ? asked->d_min : 0.0; });
+  require_placed(specimen.fraction_placed, specimen.fraction_asked, **with_largest);
+}
+
+/// Returns the share of the specimen that blocks take which are not of the matrix.
+template <int Dim>
+double share_beside_matrix(const Specimen<Dim>& specimen) {
   double sum = 0.0;
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < specimen.phase.size(); ++c) {
-    if (!counts(specimen.phase[c])) continue;
-    corners(specimen.tessellation, c, polygon);
-    sum += area(polygon);
+  for (std::size_t cell = 0; cell < specimen.phase.size(); ++cell)
+    if (specimen.phase[cell] != specimen.matrix) sum += extent(specimen.cells, cell);
+  return sum / specimen.outline.extent();
+}
+
+/// Throws Error for what a solid cannot have yet.
+void require_of_space(const SpecimenParameters& p) {
+  if (p.cells || p.blocks.cells || !p.blocks.phases.empty())
+    throw Error("a solid cannot be made of cells of a plane");
+  if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
+  if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
+  for (const auto* const kind : stone_kinds(p))
+    if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
+}
+
+/// Returns the size classes of all kinds: the intervals between their sieves.
+std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>& specimen) {
+  const auto kinds = stone_kinds(p);
+  const double whole = specimen.outline.extent();
+  std::vector<double> superposed(specimen.stones.size());
+  for (std::size_t cell = 0; cell < specimen.grain.size(); ++cell)
+    if (const int grain = specimen.grain[cell]; grain >= 0)
+      superposed[grain] += extent(specimen.cells, cell) / whole;
+  std::vector<SizeClass> classes;
+  for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
+    const auto& asked = *kinds[kind];
+    if (asked.fraction == 0.0) continue;
+    for (std::size_t i = 1; i < asked.sieves.size(); ++i) {
+      const double from = asked.sieves[i - 1], to = asked.sieves[i];
+      SizeClass& its = classes.emplace_back(SizeClass{.kind = kind, .from = from, .to = to});
+      its.asked = asked.fraction * (passing(asked, to) - passing(asked, from));
+      const bool is_last = i + 1 == asked.sieves.size();
+      for (std::size_t b = 0; b < specimen.stones.size(); ++b) {
+        const Grain<3>& ball = specimen.stones[b];
+        if (ball.kind != kind || ball.diameter < from || (is_last ? ball.diameter > to : ball.diameter >= to))
+          continue;
+        ++its.stones;
+        its.placed += extent(ball) / whole;
+        its.superposed += superposed[b];
+        if (superposed[b] == 0.0) ++its.without_a_block;
+      }
+    }
   }
-  return sum / specimen.region.area();
+  return classes;
 }
 
 void add_once(const std::string& name, std::vector<std::string>& names) {
@@ -184,8 +242,11 @@ void add_phases_of(const AggregateParameters& kind, std::vector<std::string>& na
 
 }  // namespace
 
-double block_size(const Specimen& specimen) {
-  return std::sqrt(specimen.region.area() / static_cast<double>(specimen.tessellation.cells.size()));
+std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& parameters) {
+  std::vector<const AggregateParameters*> kinds{&parameters.aggregates};
+  for (const Inclusions& inclusions : parameters.inclusions)
+    if (const auto* stones = std::get_if<AggregateParameters>(&inclusions)) kinds.push_back(stones);
+  return kinds;
 }
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
@@ -207,9 +268,7 @@ std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) 
     return phases_of_stones(cells->phases, cells->phase, cells->grain);
   if (!parameters.blocks.phases.empty()) return {};
   std::vector<std::string> names;
-  add_phases_of(parameters.aggregates, names);
-  for (const Inclusions& kind : parameters.inclusions)
-    if (const auto* circles = std::get_if<AggregateParameters>(&kind)) add_phases_of(*circles, names);
+  for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
   return names;
 }
 
@@ -221,9 +280,9 @@ std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases
   return names;
 }
 
-std::vector<std::string> warnings(const Specimen& s) {
+std::vector<std::string> warnings(const Specimen<2>& s) {
   if (s.fraction_placed == 0.0) return {};
-  const double change = s.fraction_of_circles / s.fraction_placed - 1.0;
+  const double change = s.fraction_of_stones / s.fraction_placed - 1.0;
   if (std::abs(change) <= kSmallChange) return {};
   // blocks that follow grains have no covered fraction
   const char* const remedy =
@@ -231,71 +290,100 @@ std::vector<std::string> warnings(const Specimen& s) {
   return {
       fmt::format("aggregates take {:.3f} of the specimen as blocks, {:.0f} % {} than the {:.3f} that were "
                   "placed: blocks of {:.1f} mm are too large for them; {}",
-                  s.fraction_of_circles, 100.0 * std::abs(change), change < 0.0 ? "less" : "more",
+                  s.fraction_of_stones, 100.0 * std::abs(change), change < 0.0 ? "less" : "more",
                   s.fraction_placed, 1e3 * s.metrics.mean_size, remedy)};
 }
 
-Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
-  if (parameters.cells) {
-    Specimen specimen = specimen_from(*parameters.cells, parameters.region);
-    specimen.matrix = place_in(specimen.phases, parameters.matrix);
-    return specimen;
-  }
-  require(parameters.region.area() > 0.0, "The area of the specimen", parameters.region.area(),
-          "a positive area");
-  require_valid(parameters);
+std::vector<std::string> warnings(const Specimen<3>& s) {
+  std::vector<std::string> lines;
+  if (s.small_stones > 0)
+    lines.push_back(fmt::format(
+        "{} of {} stones are smaller than {:g} blocks{}: such a stone is one or a few blocks, whatever its "
+        "shape",
+        s.small_stones, s.stones.size(), kSmallestStone,
+        s.size.empty() ? fmt::format(" of {:.1f} mm", 1e3 * s.metrics.mean_size) : " there"));
+  int without = 0;
+  for (const SizeClass& c : s.classes) without += c.without_a_block;
+  if (without > 0)
+    lines.push_back(
+        fmt::format("{} of {} stones have no block of their own: more blocks are needed, or a larger "
+                    "[aggregates] d_min",
+                    without, s.stones.size()));
+  return lines;
+}
+
+template <int Dim>
+void measure(Specimen<Dim>& s, const Metrics<Dim>& done) {
+  // areas are summed, and shares of volume: so the committed references are rounded
+  const double whole = s.outline.extent(), unit = Dim == 2 ? 1.0 : whole;
+  s.fraction.assign(s.phases.size(), 0.0);
+  for (std::size_t cell = 0; cell < s.phase.size(); ++cell)
+    s.fraction[s.phase[cell]] += extent(s.cells, cell) / unit;
+  for (double& share : s.fraction) share /= whole / unit;
+  if constexpr (Dim == 2)
+    s.metrics = measure(s.cells, done);
+  else
+    s.metrics = measure(s.cells, s.outline, done);
+}
+
+template <int Dim>
+Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& outline, Team* team) {
+  if constexpr (Dim == 3) require_of_space(p);
+  require(outline.extent() > 0.0, Dim == 2 ? "The area of the specimen" : "The volume of the specimen",
+          outline.extent(), Dim == 2 ? "a positive area" : "a positive volume");
+  require_valid(p);
   // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
   // where they are.
-  Random aggregate_random(2 * parameters.seed);
-  Random block_random(2 * parameters.seed + 1);
-  const double specimen_area = parameters.region.area();
+  Random aggregate_random(2 * p.seed), block_random(2 * p.seed + 1);
+  Specimen<Dim> specimen{.outline = outline, .phases = phases(p)};
+  add_inclusions(p, aggregate_random, specimen);
 
-  Specimen specimen{};
-  specimen.region = parameters.region;
-  specimen.phases = phases(parameters);
-  int kind = 0;
-  add_aggregates(parameters, parameters.aggregates, kind, aggregate_random, specimen);
-  for (const Inclusions& inclusions : parameters.inclusions)
-    if (const auto* circles = std::get_if<AggregateParameters>(&inclusions))
-      add_aggregates(parameters, *circles, ++kind, aggregate_random, specimen);
-    else
-      add_fibres(parameters, std::get<FibreParameters>(inclusions), aggregate_random, specimen);
-  specimen.fraction_placed = extent_of(std::span<const Aggregate>(specimen.aggregates)) / specimen_area;
-  require_placed(specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates);
-
-  const bool follows = parameters.superposition == Superposition::follow;
-  const std::span<const Aggregate> followed =
-      follows ? std::span<const Aggregate>(specimen.aggregates) : std::span<const Aggregate>();
-  Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team, followed);
-  specimen.tessellation = std::move(blocks.tessellation);
+  const std::span<const Grain<Dim>> stones(specimen.stones);
+  const bool follows = p.superposition == Superposition::follow;
+  Blocks<Dim> blocks =
+      make_blocks(p.blocks, outline, block_random, team, follows ? stones : std::span<const Grain<Dim>>());
+  specimen.cells = std::move(blocks.cells);
   specimen.size = std::move(blocks.size);
   if (blocks.phase.empty()) {
-    const int matrix = specimen.matrix = place_in(specimen.phases, parameters.matrix);
+    const int matrix = specimen.matrix = place_in(specimen.phases, p.matrix);
     if (follows) {
       specimen.grain = std::move(blocks.grain);
-      specimen.grain.resize(specimen.tessellation.cells.size(), -1);
+      specimen.grain.resize(specimen.cells.cells.size(), -1);
       for (const int grain : specimen.grain)
-        specimen.phase.push_back(grain < 0 ? matrix : specimen.aggregates[grain].phase);
+        specimen.phase.push_back(grain < 0 ? matrix : specimen.stones[grain].phase);
     } else {
-      Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+      Superposed superposed = superpose<Dim>(specimen.cells, outline, stones, p, matrix);
       specimen.covered_fraction = superposed.covered_fraction;
       specimen.phase = std::move(superposed.phase);
       specimen.grain = std::move(superposed.grain);
     }
-    specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
-    superpose(specimen.tessellation, specimen.fibres, specimen.phase, specimen.grain);
-    specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
+    specimen.fraction_of_stones = share_beside_matrix(specimen);
+    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.grain);
+    specimen.fraction_superposed = share_beside_matrix(specimen);
   } else {
     specimen.phase = std::move(blocks.phase);
   }
-  for (int phase = 0; phase < static_cast<int>(specimen.phases.size()); ++phase)
-    specimen.fraction.push_back(fraction_of(specimen, [&](int p) { return p == phase; }));
-
-  specimen.metrics = measure(specimen.tessellation);
-  specimen.metrics.edges_removed = blocks.edges_removed;
-  specimen.metrics.edges_left_short = blocks.edges_left_short;
-  specimen.metrics.seeds_redrawn = blocks.seeds_redrawn;
+  if constexpr (Dim == 3) {
+    const BlockSizes sizes = sizes_of<3>(p.blocks, outline);
+    specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Grain<3>& stone) {
+      return stone.diameter < kSmallestStone * sizes.at(stone.centre);
+    }));
+    specimen.classes = classes_of(p, specimen);
+  }
+  measure(specimen, blocks.done);
   return specimen;
 }
+
+Specimen<2> make_specimen(const SpecimenParameters& parameters, Team* team) {
+  if (!parameters.cells) return make_specimen<2>(parameters, parameters.region, team);
+  Specimen<2> specimen = specimen_from(*parameters.cells, parameters.region);
+  specimen.matrix = place_in(specimen.phases, parameters.matrix);
+  return specimen;
+}
+
+template void measure<2>(Specimen<2>&, const Metrics<2>&);
+template void measure<3>(Specimen<3>&, const Metrics<3>&);
+template Specimen<2> make_specimen<2>(const SpecimenParameters&, const Region&, Team*);
+template Specimen<3> make_specimen<3>(const SpecimenParameters&, const Prism&, Team*);
 
 }  // namespace pyroclast::specimen

@@ -12,6 +12,7 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/specimen/block_sizes.hpp"
+#include "pyroclast/specimen/cells.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/surface.hpp"
 
@@ -30,7 +31,6 @@ struct Grain {
   int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are grains, in turn
   std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
-using Aggregate = Grain<2>;
 
 /// Straight fibre as placed: the blocks that it crosses become its phase.
 struct Fibre {
@@ -109,21 +109,6 @@ enum class Superposition : std::uint8_t {
   follow     ///< nothing is superposed: blocks follow the surfaces of grains, by mirrored seeds
 };
 
-/// Convex cells that tile a region exactly; neighbours share vertices.
-struct Tessellation {
-  std::vector<Vec<2>> vertices;         ///< m
-  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
-};
-
-/// Numbering of the cells of a tessellation in messages.
-struct Numbering {
-  std::vector<int>
-      in_file;  ///< number of each cell in a file that counts from 1; empty: numbers from 0, as they stand
-
-  /// Returns the name of a cell, "cell 3 (from 0)", "cell 4 (from 1)".
-  std::string cell(std::size_t number) const;
-};
-
 /// Largest bend that may be allowed to the faces between blocks of a solid, rad: triangles of a face that is
 /// bent by more look different ways.
 inline constexpr double kMostBend = std::numbers::pi / 6.0;
@@ -137,13 +122,13 @@ struct BlockParameters {
   /// Spread of the Laguerre radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0,
   /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;
-  int relaxation = 0;  ///< Lloyd iterations; 0 leaves the seeds at random
+  int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
   double largest_bend = 0.0;   ///< of a face between blocks of a solid, in [0, kMostBend], rad
   /// Tessellation of the region, made elsewhere and still to be regularised; then only `shortest_edge`
   /// counts.
-  std::optional<Tessellation> tessellation;
-  /// Names of the phases of the cells of `tessellation`, where they are known; `phase` holds the index of
+  std::optional<Cells<2>> cells;
+  /// Names of the phases of these cells, where they are known; `phase` holds the index of
   /// each cell into them. Then nothing is superposed.
   std::vector<std::string> phases = {};
   std::vector<int> phase = {};
@@ -151,8 +136,9 @@ struct BlockParameters {
 };
 
 /// Blocks that are made elsewhere.
-struct Cells {
-  Tessellation tessellation;
+template <int Dim>
+struct GivenCells {
+  Cells<Dim> cells;
   std::vector<std::string> phases;  ///< phases that the blocks can have
   std::vector<int> phase;           ///< phase of each block, index into `phases`
   /// Size that each block was to have, in the unit of the vertices, as Specimen has it; empty where blocks
@@ -160,13 +146,14 @@ struct Cells {
   std::vector<double> size = {};
   std::vector<int> grain = {};  ///< number of the stone of each block; -1: none. Empty where none are known
   std::string origin = {};      ///< text that begins messages, such as the name of a file; may be empty
+  OutlineOf<Dim> outline = {};  ///< body of blocks in space; that of blocks in the plane is not read
 };
 
 struct SpecimenParameters {
   Region region;
   /// Cells of the whole specimen, whose outline is the region; then only the matrix counts of the members
   /// below.
-  std::optional<Cells> cells;
+  std::optional<GivenCells<2>> cells;
   std::uint64_t seed = 0;
   std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
   AggregateParameters aggregates;
@@ -180,6 +167,9 @@ struct SpecimenParameters {
 /// Throws Error when a parameter other than the region is out of range.
 void require_valid(const SpecimenParameters& parameters);
 
+/// Returns the kinds of stones: the aggregates, then the inclusions that are stones.
+std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& parameters);
+
 /// Returns the names of the phases that the blocks can have: those of cells, of the blocks' own phases, or
 /// aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
@@ -190,51 +180,80 @@ std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters);
 std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
                                           const std::vector<int>& phase, const std::vector<int>& grain);
 
-/// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
-struct Edge {
-  int v0, v1;
-  int left;
-  int right;  ///< other cell, or -1 on the outline
+/// Quality of blocks in the plane or in space; lengths in m.
+struct CommonMetrics {
+  double mean_size = 0.0;        ///< root of the mean area, cube root of the mean volume: the block size
+  double shortest_edge = 0.0;    ///< shortest edge of any block
+  double zones_per_block = 0.0;  ///< mean number of zones
+  int edges_left_short = 0;      ///< edges left by regularisation that are shorter than asked for
+  int seeds_redrawn = 0;         ///< seeds drawn anew because their cell could not be made valid
 };
 
-/// Returns the edges of a tessellation, each once, in the order in which the cells meet them. Throws Error
-/// when an edge belongs to more than two cells or two cells see it in the same sense.
-std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbering = {});
+template <int Dim>
+struct Metrics;
 
-/// Quality of the blocks; lengths in m.
-struct BlockMetrics {
-  double mean_edge, shortest_edge;
-  int shortest_edge_cell;
-  Vec<2> shortest_edge_at;
-  /// Edges removed by regularisation, and edges left that are shorter than asked for.
-  int edges_removed, edges_left_short;
-  int seeds_redrawn;      ///< seeds drawn anew because their cell could not be made valid
-  double smallest_angle;  ///< smallest angle of any zone, degrees
-  int smallest_angle_cell;
-  double mean_size;        ///< sqrt(mean area), the block size
-  double zones_per_block;  ///< mean number of zones
+/// Quality of blocks in the plane.
+template <>
+struct Metrics<2> : CommonMetrics {
+  double mean_edge = 0.0;
+  int shortest_edge_cell = -1;
+  Vec<2> shortest_edge_at{};
+  int edges_removed = 0;        ///< edges removed by regularisation
+  double smallest_angle = 0.0;  ///< smallest angle of any zone, degrees
+  int smallest_angle_cell = -1;
 };
 
-/// Meso-scale specimen: blocks, their phases, and the outcome of the request.
+/// Quality of blocks in space.
+template <>
+struct Metrics<3> : CommonMetrics {
+  double lowest_zone = 0.0;   ///< least height of any zone over one of its faces
+  int lowest_zone_cell = -1;  ///< cell of this zone
+  int most_corners = 0;       ///< most corners of a face between blocks
+  double largest_bend = 0.0;  ///< largest bend of a face, see bend(); degrees
+  int vertices_merged = 0;    ///< vertices that became one with another
+};
+
+/// Measures blocks.
+/// \param done  metrics that say what has been done to the blocks, which stays in the result
+Metrics<2> measure(const Cells<2>& cells, const Metrics<2>& done = {});
+Metrics<3> measure(const Cells<3>& cells, const Prism& body, const Metrics<3>& done = {});
+
+/// Stones of a range of sizes: what was asked for, and what became of it. Shares are of the extent of the
+/// specimen.
+struct SizeClass {
+  int kind = 0;     ///< as of a stone
+  double from, to;  ///< diameters, m
+  double asked = 0.0;
+  double placed = 0.0;
+  double superposed = 0.0;
+  int stones = 0;
+  int without_a_block = 0;  ///< stones to which no block belongs
+};
+
+/// Meso-scale specimen: blocks, their phases, and the outcome of the request. Shares are of its area, in
+/// space of its volume.
+template <int Dim>
 struct Specimen {
-  Region region;
-  Tessellation tessellation;
-  std::vector<std::string> phases;  ///< phases that blocks can have
-  int matrix = -1;                  ///< index into `phases`; -1: not known
-  std::vector<int> phase;           ///< phase of each cell, index into `phases`
-  /// Grain of which each cell is, index into `aggregates` where these are known; -1: of none. May be empty
-  /// where cells are made elsewhere.
-  std::vector<int> grain;
+  OutlineOf<Dim> outline = {};
+  Cells<Dim> cells = {};
+  std::vector<std::string> phases = {};  ///< phases that blocks can have
+  int matrix = -1;                       ///< index into `phases`; -1: not known
+  std::vector<int> phase = {};           ///< phase of each cell, index into `phases`
+  /// Stone of which each cell is, index into `stones` where these are known; -1: of none. May be empty where
+  /// cells are made elsewhere.
+  std::vector<int> grain = {};
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
-  std::vector<double> size;
-  std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
-  std::vector<Fibre> fibres;          ///< fibres as placed
-  /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.
-  double fraction_asked, fraction_placed, fraction_superposed;
-  double fraction_of_circles;    ///< superposed fraction before fibres were superposed
-  double covered_fraction;       ///< fraction of a block above which it became aggregate
-  std::vector<double> fraction;  ///< area of the blocks of each phase over that of the specimen
-  BlockMetrics metrics;
+  std::vector<double> size = {};
+  std::vector<Grain<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
+  std::vector<Fibre> fibres = {};       ///< fibres as placed
+  /// Share of stones asked for and placed, and of blocks that are not matrix.
+  double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
+  double fraction_of_stones = 0.0;      ///< superposed share before fibres were superposed
+  double covered_fraction = 0.0;        ///< share of a block above which it became aggregate
+  std::vector<double> fraction = {};    ///< share of the blocks of each phase
+  std::vector<SizeClass> classes = {};  ///< size classes in space; not counted in the plane
+  int small_stones = 0;  ///< stones in space that are smaller than two of the blocks around them
+  Metrics<Dim> metrics = {};
 };
 
 /// Makes a specimen of cells as they are, or by gradation, placement, tessellation, regularisation and
@@ -244,22 +263,24 @@ struct Specimen {
 /// tessellation can be made.
 /// \param team  team that shares the cells of the tessellation out; without a team the calling thread works
 ///              alone
-Specimen make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
+template <int Dim>
+Specimen<Dim> make_specimen(const SpecimenParameters& parameters, const OutlineOf<Dim>& outline,
+                            Team* team = nullptr);
+/// Makes a specimen of the parameters' region, or of their cells as they are.
+Specimen<2> make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
+
+/// Measures a specimen whose cells and their phases are known: adds the shares of phases and the metrics.
+template <int Dim>
+void measure(Specimen<Dim>& specimen, const Metrics<Dim>& done = {});
+
+/// Returns the block size as a deck foresees it, m: of the mean extent.
+template <int Dim>
+double block_size(const Specimen<Dim>& specimen) {
+  return side_of<Dim>(specimen.outline.extent() / static_cast<double>(specimen.cells.cells.size()));
+}
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.
-std::vector<std::string> warnings(const Specimen& specimen);
-
-/// Returns the block size as a deck foresees it: square root of the specimen's area over the number of
-/// blocks, m.
-double block_size(const Specimen& specimen);
-
-/// Block cut into zones.
-struct ZonedBlock {
-  std::vector<Vec<2>> gridpoints;         ///< the cell's vertices in its order, then interior points; m
-  std::vector<std::array<int, 3>> zones;  ///< counter-clockwise gridpoint indices
-};
-
-/// Cuts a convex cell (corners counter-clockwise, m) into triangles around its centroid, one for each edge.
-ZonedBlock zone_block(const std::vector<Vec<2>>& corners);
+std::vector<std::string> warnings(const Specimen<2>& specimen);
+std::vector<std::string> warnings(const Specimen<3>& specimen);
 
 }  // namespace pyroclast::specimen

@@ -3,67 +3,108 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
+#include <numeric>
 
 #include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Calls f(corners, numbers of the grains nearby) for each cell and returns the value for each.
+/// Calls f(vertex) for the vertices of a cell; those of its faces come several times.
 template <class F>
-auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> grains,
-                   F&& f) {
-  const GrainGrid<2> grid(box.low, box.high, grains);
-  std::vector<int> numbers;
-  std::vector<decltype(f(Corners{}, numbers))> result;
+void for_each_corner(const Cells<2>& cells, std::size_t cell, F f) {
+  for (const int v : cells.cells[cell]) f(cells.vertices[v]);
+}
+
+template <class F>
+void for_each_corner(const Cells<3>& cells, std::size_t cell, F f) {
+  for (const int face : cells.cells[cell])
+    for (const int v : cells.faces[face].corners) f(cells.vertices[v]);
+}
+
+/// Returns what a cell and a stone have in common, m².
+double common(const Cells<2>& cells, std::size_t cell, const Grain<2>& stone) {
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
-    const Box around = box_of(polygon);
-    grid.collect(around.low, around.high, numbers);
-    result.push_back(f(Corners(polygon), numbers));
-  }
-  return result;
+  corners(cells, cell, polygon);
+  return stone.shape ? common_area(polygon, corners_of(stone))
+                     : common_area(polygon, stone.centre, 0.5 * stone.diameter);
 }
 
-Cover cover_of(Corners polygon, std::span<const Aggregate> grains, const std::vector<int>& numbers) {
-  constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
-  double covered = 0.0, most_of_one = 0.0;
-  std::map<int, double> by_phase;
-  Cover cover;
-  for (const int number : numbers) {
-    const Aggregate& a = grains[number];
-    const double common =
-        a.shape ? common_area(polygon, corners_of(a)) : common_area(polygon, a.centre, 0.5 * a.diameter);
-    covered += common;
-    by_phase[a.phase] += common;
-    if (common <= most_of_one) continue;
-    most_of_one = common;
-    cover.grain = number;
-  }
-  double most = 0.0;
-  for (const auto& [phase, area] : by_phase)
-    if (area > most) {
-      most = area;
-      cover.phase = phase;
-    }
-  const double share = covered / area(polygon);
-  cover.share = share < rounding ? 0.0 : std::min(share, 1.0);
-  return cover;
+/// Returns what a cell and a ball have in common, m³.
+double common(const Cells<3>& cells, std::size_t cell, const Grain<3>& stone) {
+  return common_volume(cells, cell, stone.centre, 0.5 * stone.diameter);
 }
 
-/// Returns the grain in which the centroid of each cell lies, -1: in none.
-std::vector<int> grains_at_centroids(const Tessellation& tessellation, const Box& box,
-                                     std::span<const Aggregate> grains) {
-  return for_each_cell(tessellation, box, grains, [&](Corners polygon, const std::vector<int>& numbers) {
-    const Vec<2> centre = centroid(polygon);
-    const auto around =
-        std::ranges::find_if(numbers, [&](int number) { return holds(grains[number], centre); });
-    return around == numbers.end() ? -1 : *around;
-  });
+bool holds(const Grain<3>& stone, const Vec<3>& place) {
+  return norm(place - stone.centre) <= 0.5 * stone.diameter;
+}
+
+/// Returns the stone in which the centroid of each cell lies, -1: in none.
+template <int Dim>
+std::vector<int> stones_at_centroids(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
+                                     std::span<const Grain<Dim>> stones) {
+  const GrainGrid<Dim> grid(outline.low(), outline.high(), stones);
+  std::vector<int> grain, nearby;
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
+    const Vec<Dim> centre = centroid(cells, cell);
+    grid.collect(centre, centre, nearby);
+    const auto around = std::ranges::find_if(nearby, [&](int stone) { return holds(stones[stone], centre); });
+    grain.push_back(around == nearby.end() ? -1 : *around);
+  }
+  return grain;
+}
+
+/// Gives each stone, the largest first, the cell of which it covers most and that none took before, while
+/// that brings the extent of the cells nearer to that of the stones.
+/// \param missing  extent of the stones that no cell has; follows
+template <int Dim>
+void give_each_its_cell(const Cells<Dim>& cells, std::span<const Grain<Dim>> stones,
+                        std::span<const CommonPart> parts, double& missing, Superposed& result) {
+  std::vector<std::vector<CommonPart>> of_stone(stones.size());
+  for (const CommonPart& part : parts) of_stone[part.grain].push_back(part);
+  std::vector<int> order(stones.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater<>(), [&](int stone) { return stones[stone].diameter; });
+  for (const int stone : order) {
+    std::ranges::stable_sort(of_stone[stone], std::greater<>(), &CommonPart::extent);
+    const auto free = std::ranges::find_if(
+        of_stone[stone], [&](const CommonPart& part) { return result.grain[part.cell] < 0; });
+    if (free == of_stone[stone].end()) continue;
+    const double taken = extent(cells, static_cast<std::size_t>(free->cell));
+    if (0.5 * taken >= missing) break;
+    missing -= taken;
+    result.grain[free->cell] = stone;
+    result.phase[free->cell] = stones[stone].phase;
+  }
+}
+
+/// Finds the share above which covered cells are aggregate, so that their extent comes as near as it can to
+/// that of the stones.
+template <int Dim>
+void fit(const Cells<Dim>& cells, std::span<const Grain<Dim>> stones, std::span<const CommonPart> parts,
+         std::span<const Cover> covers, Superposed& result) {
+  double missing = extent_of(stones);
+  if constexpr (Dim == 3) give_each_its_cell(cells, stones, parts, missing, result);
+  struct Candidate {
+    double share, extent;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t cell = 0; cell < covers.size(); ++cell)
+    if (result.grain[cell] < 0) candidates.push_back({covers[cell].share, extent(cells, cell)});
+  std::ranges::sort(candidates, std::greater<>(), &Candidate::share);
+  std::size_t taken = 0;
+  for (; taken < candidates.size() && 0.5 * candidates[taken].extent < missing; ++taken)
+    missing -= candidates[taken].extent;
+  result.covered_fraction = 0.0;
+  if (taken == 0)
+    result.covered_fraction = std::nextafter(1.0, 0.0);
+  else if (taken < candidates.size())
+    result.covered_fraction = 0.5 * (candidates[taken - 1].share + candidates[taken].share);
 }
 
 /// Tells whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
@@ -86,60 +127,94 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
 
 }  // namespace
 
-std::vector<Cover> covers_of(const Tessellation& tessellation, const Box& box,
-                             std::span<const Aggregate> aggregates) {
-  return for_each_cell(tessellation, box, aggregates, [&](Corners polygon, const std::vector<int>& numbers) {
-    return cover_of(polygon, aggregates, numbers);
-  });
-}
-
-double fitting_fraction(const Tessellation& tessellation, std::span<const Cover> covers,
-                        std::span<const Aggregate> aggregates) {
-  struct Cell {
-    double covered, area;
-  };
-  std::vector<Cell> cells;
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < covers.size(); ++c) {
-    corners(tessellation, c, polygon);
-    cells.push_back({covers[c].share, area(polygon)});
+template <int Dim>
+std::vector<CommonPart> common_parts(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
+                                     std::span<const Grain<Dim>> stones) {
+  const GrainGrid<Dim> grid(outline.low(), outline.high(), stones);
+  std::vector<CommonPart> parts;
+  std::vector<int> nearby;
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
+    Vec<Dim> lower, upper;
+    lower.c.fill(std::numeric_limits<double>::infinity());
+    upper.c.fill(-std::numeric_limits<double>::infinity());
+    for_each_corner(cells, cell, [&](const Vec<Dim>& at) {
+      for (int d = 0; d < Dim; ++d) {
+        lower[d] = std::min(lower[d], at[d]);
+        upper[d] = std::max(upper[d], at[d]);
+      }
+    });
+    grid.collect(lower, upper, nearby);
+    for (const int stone : nearby)
+      if (const double its = common(cells, cell, stones[stone]); its > 0.0)
+        parts.push_back({static_cast<int>(cell), stone, its});
   }
-  std::ranges::sort(cells, std::greater<>(), &Cell::covered);
-  double missing = extent_of(aggregates);
-  // cells become aggregate, the most covered first, while that brings their area nearer to that of the
-  // circles
-  std::size_t taken = 0;
-  for (; taken < cells.size() && 0.5 * cells[taken].area < missing; ++taken) missing -= cells[taken].area;
-  if (taken == 0) return std::nextafter(1.0, 0.0);
-  if (taken == cells.size()) return 0.0;
-  return 0.5 * (cells[taken - 1].covered + cells[taken].covered);
+  return parts;
 }
 
-Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
-                     const SpecimenParameters& parameters, int matrix) {
-  const Box& box = parameters.region.box();
-  Superposed result{.covered_fraction = parameters.covered_fraction};
+template <int Dim>
+std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart> parts,
+                             std::span<const Grain<Dim>> stones) {
+  constexpr double kRounding = 1e-12;  // left by stones that do not touch the cell
+  std::vector<Cover> covers(cells.cells.size());
+  for (auto part = parts.begin(); part != parts.end();) {
+    const int cell = part->cell;
+    double covered = 0.0, most_of_one = 0.0, most = 0.0;
+    std::map<int, double> by_phase;
+    Cover& cover = covers[cell];
+    for (; part != parts.end() && part->cell == cell; ++part) {
+      covered += part->extent;
+      by_phase[stones[part->grain].phase] += part->extent;
+      if (part->extent <= most_of_one) continue;
+      most_of_one = part->extent;
+      cover.grain = part->grain;
+    }
+    for (const auto& [phase, its] : by_phase)
+      if (its > most) {
+        most = its;
+        cover.phase = phase;
+      }
+    const double share = covered / extent(cells, static_cast<std::size_t>(cell));
+    cover.share = share < kRounding ? 0.0 : std::min(share, 1.0);
+  }
+  return covers;
+}
+
+template <int Dim>
+Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
+                     std::span<const Grain<Dim>> stones, const SpecimenParameters& parameters, int matrix) {
+  const std::size_t count = cells.cells.size();
+  Superposed result{std::vector<int>(count, matrix), std::vector<int>(count, -1),
+                    parameters.covered_fraction};
   if (parameters.superposition == Superposition::centroid) {
-    result.grain = grains_at_centroids(tessellation, box, aggregates);
-    for (const int grain : result.grain) result.phase.push_back(grain < 0 ? matrix : aggregates[grain].phase);
+    result.grain = stones_at_centroids(cells, outline, stones);
+    for (std::size_t cell = 0; cell < count; ++cell)
+      if (result.grain[cell] >= 0) result.phase[cell] = stones[result.grain[cell]].phase;
     return result;
   }
-  const std::vector<Cover> covers = covers_of(tessellation, box, aggregates);
-  if (parameters.superposition == Superposition::fit)
-    result.covered_fraction = fitting_fraction(tessellation, covers, aggregates);
-  for (const Cover& cover : covers) {
-    const bool is_covered = cover.share > result.covered_fraction;
-    result.phase.push_back(is_covered ? cover.phase : matrix);
-    result.grain.push_back(is_covered ? cover.grain : -1);
+  const std::vector<CommonPart> parts = common_parts(cells, outline, stones);
+  const std::vector<Cover> covers = covers_of<Dim>(cells, parts, stones);
+  if (parameters.superposition == Superposition::fit) fit<Dim>(cells, stones, parts, covers, result);
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    if (result.grain[cell] >= 0 || !(covers[cell].share > result.covered_fraction)) continue;
+    result.phase[cell] = covers[cell].phase;
+    result.grain[cell] = covers[cell].grain;
   }
   return result;
 }
 
-void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase,
+template std::vector<CommonPart> common_parts<2>(const Cells<2>&, const Region&, std::span<const Grain<2>>);
+template std::vector<Cover> covers_of<2>(const Cells<2>&, std::span<const CommonPart>,
+                                         std::span<const Grain<2>>);
+template Superposed superpose<2>(const Cells<2>&, const Region&, std::span<const Grain<2>>,
+                                 const SpecimenParameters&, int);
+template Superposed superpose<3>(const Cells<3>&, const Prism&, std::span<const Grain<3>>,
+                                 const SpecimenParameters&, int);
+
+void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
                std::vector<int>& grain) {
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    corners(cells, c, polygon);
     for (const Fibre& fibre : fibres)
       if (crosses(polygon, fibre)) {
         phase[c] = fibre.phase;

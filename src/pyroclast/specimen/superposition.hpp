@@ -7,38 +7,50 @@
 
 namespace pyroclast::specimen {
 
-/// Cover of a cell by circles.
+/// Cover of a cell by stones.
 struct Cover {
-  /// Share of the cell's area, by all circles together, in [0, 1]; exact where these do not overlap.
+  /// Share of the cell, by all stones together, in [0, 1]; exact where these do not overlap.
   double share = 0.0;
-  int phase = -1;  ///< phase of the grains that cover most of the cell; -1 where none does
-  int grain = -1;  ///< grain that covers most of the cell; -1 where none does
+  int phase = -1;  ///< phase of the stones that cover most of the cell; -1 where none does
+  int grain = -1;  ///< stone that covers most of the cell; -1 where none does
 };
+
+/// What a cell and a stone have in common.
+struct CommonPart {
+  int cell;
+  int grain;
+  double extent;  ///< m², in space m³
+};
+
+/// Returns the parts that cells have in common with stones, cell by cell.
+template <int Dim>
+std::vector<CommonPart> common_parts(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
+                                     std::span<const Grain<Dim>> stones);
 
 /// Returns the cover of each cell.
-std::vector<Cover> covers_of(const Tessellation& tessellation, const Box& box,
-                             std::span<const Aggregate> aggregates);
+/// \param parts  parts that the cells have in common with these stones
+template <int Dim>
+std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart> parts,
+                             std::span<const Grain<Dim>> stones);
 
-/// Returns the covered fraction above which cells are aggregate so that their area comes as near as it can to
-/// that of the circles, see Superposition::fit.
-/// \param covers  cover of each cell by these circles
-double fitting_fraction(const Tessellation& tessellation, std::span<const Cover> covers,
-                        std::span<const Aggregate> aggregates);
-
-/// Result of superposing circles on a tessellation.
+/// Result of superposing stones on cells.
 struct Superposed {
-  /// Phase of each cell: that of the circles which cover most of it, or the matrix.
+  /// Phase of each cell: that of the stones which cover most of it, or the matrix.
   std::vector<int> phase = {};
-  std::vector<int> grain = {};    ///< grain of which each cell is, index into the grains; -1: of none
-  double covered_fraction = 0.0;  ///< fraction above which a cell is of the circles, as stated or as it fits
+  std::vector<int> grain = {};    ///< stone of which each cell is, index into the stones; -1: of none
+  double covered_fraction = 0.0;  ///< share above which a cell is of the stones, as stated or as it fits
 };
 
-/// Superposes circles by `parameters.superposition`; the rule of the centroid needs no covered fraction.
-Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
-                     const SpecimenParameters& parameters, int matrix);
+/// Superposes stones by `parameters.superposition`; the rule of the centroid needs no covered fraction. By
+/// the rule `fit` the cells that are covered most become aggregate, while that brings their extent nearer to
+/// that of the stones; in space each stone, the largest first, takes one cell before: the one of which it
+/// covers most and that no larger stone took.
+template <int Dim>
+Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
+                     std::span<const Grain<Dim>> stones, const SpecimenParameters& parameters, int matrix);
 
 /// Gives the cells that a fibre crosses its phase; they are of no grain then.
-void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase,
+void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
                std::vector<int>& grain);
 
 }  // namespace pyroclast::specimen

@@ -38,7 +38,7 @@ class DirectedEdges {
     int cell;
   };
 
-  explicit DirectedEdges(const Tessellation& tessellation) : first_(tessellation.vertices.size() + 1, 0) {
+  explicit DirectedEdges(const Cells<2>& tessellation) : first_(tessellation.vertices.size() + 1, 0) {
     std::size_t total = 0;
     for (const auto& cell : tessellation.cells) {
       total += cell.size();
@@ -71,6 +71,25 @@ class DirectedEdges {
   std::vector<Entry> entries_;
 };
 
+/// Keeps the items that are used, and renumbers them in `lists`. Returns the number that each had.
+template <class T, class Numbers>
+std::vector<int> keep_used(std::vector<T>& items, Numbers& lists, auto numbers_of) {
+  std::vector<int> number(items.size(), -1), former;
+  for (const auto& list : lists)
+    for (const int i : numbers_of(list)) number[i] = 0;
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(kept.size());
+    former.push_back(static_cast<int>(i));
+    kept.push_back(std::move(items[i]));
+  }
+  for (auto& list : lists)
+    for (int& i : numbers_of(list)) i = number[i];
+  items = std::move(kept);
+  return former;
+}
+
 }  // namespace
 
 std::string Numbering::cell(std::size_t number) const {
@@ -78,15 +97,40 @@ std::string Numbering::cell(std::size_t number) const {
                          : fmt::format("cell {} (from 1)", in_file[number]);
 }
 
-void corners(const Tessellation& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
+void corners(const Cells<2>& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
   result.clear();
   for (const int v : tessellation.cells[cell])
     result.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
 }
 
-std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbering) {
+void drop_unused(Cells<2>& cells) {
+  keep_used(
+      cells.vertices, cells.cells, [](auto& cell) -> auto& { return cell; });
+}
+
+std::vector<int> drop_unused(Cells<3>& cells) {
+  const auto former = keep_used(
+      cells.faces, cells.cells, [](auto& cell) -> auto& { return cell; });
+  keep_used(
+      cells.vertices, cells.faces, [](auto& face) -> auto& { return face.corners; });
+  return former;
+}
+
+double extent(const Cells<2>& cells, std::size_t cell) {
+  std::vector<Vec<2>> polygon;
+  corners(cells, cell, polygon);
+  return area(polygon);
+}
+
+Vec<2> centroid(const Cells<2>& cells, std::size_t cell) {
+  std::vector<Vec<2>> polygon;
+  corners(cells, cell, polygon);
+  return centroid(polygon);
+}
+
+std::vector<Facet<2>> facets(const Cells<2>& tessellation, const Numbering& numbering) {
   const DirectedEdges directed(tessellation);
-  std::vector<Edge> result;
+  std::vector<Facet<2>> result;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     const auto& cell = tessellation.cells[c];
     for (std::size_t i = 0; i < cell.size(); ++i) {
@@ -101,13 +145,13 @@ std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbe
             numbering.cell(c), from[0], from[1], to[0], to[1]));
       }
       const int left = static_cast<int>(c);
-      if (other < 0 || other > left) result.push_back({v0, v1, left, other});
+      if (other < 0 || other > left) result.push_back({{v0, v1}, left, other});
     }
   }
   return result;
 }
 
-std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region& region) {
+std::vector<int> mismatched_cells(const Cells<2>& tessellation, const Region& region) {
   const DirectedEdges directed(tessellation);
   std::vector<LineSet> on;
   for (const Vec<2>& p : tessellation.vertices) on.push_back(region.lines_at(p));
@@ -127,7 +171,7 @@ std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region
   return result;
 }
 
-void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin,
+void require_valid(const Cells<2>& tessellation, const Region& region, const std::string& origin,
                    const Numbering& numbering) {
   const std::vector<int> mismatched = mismatched_cells(tessellation, region);
   if (!mismatched.empty()) {
@@ -139,7 +183,7 @@ void require_valid(const Tessellation& tessellation, const Region& region, const
                     at[0], at[1]));
   }
   double total = 0.0;
-  const double slack = kOffSide * std::sqrt(region.area() / static_cast<double>(tessellation.cells.size()));
+  const double slack = kOffSide * std::sqrt(region.extent() / static_cast<double>(tessellation.cells.size()));
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
@@ -150,10 +194,10 @@ void require_valid(const Tessellation& tessellation, const Region& region, const
                               numbering.cell(c), polygon.front()[0], polygon.front()[1]));
     }
   }
-  if (std::abs(total - region.area()) > kAreaError * region.area())
+  if (std::abs(total - region.extent()) > kAreaError * region.extent())
     throw Error(fmt::format(
         "{}: the cells cover {:.12g} m^2, the body has {:.12g} m^2; both may differ by {:g} of it.", origin,
-        total, region.area(), kAreaError));
+        total, region.extent(), kAreaError));
 }
 
 }  // namespace pyroclast::specimen

@@ -16,7 +16,7 @@ using Cell = std::vector<int>;  // vertices, counter-clockwise
 
 class Uniter {
  public:
-  explicit Uniter(Tessellation& tessellation)
+  explicit Uniter(Cells<2>& tessellation)
       : tessellation_(tessellation), around_(tessellation.vertices.size()) {
     for (std::size_t c = 0; c < tessellation.cells.size(); ++c)
       for (const int v : tessellation.cells[c]) around_[v].insert(static_cast<int>(c));
@@ -61,7 +61,7 @@ class Uniter {
   /// Leaves out empty cells and vertices without a cell. Returns the former number of each cell.
   std::vector<int> tidy() {
     std::vector<int> former, number(tessellation_.vertices.size(), -1);
-    Tessellation tidied;
+    Cells<2> tidied;
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       if (tessellation_.cells[c].empty()) continue;
       former.push_back(static_cast<int>(c));
@@ -124,13 +124,13 @@ class Uniter {
     return area(polygon) > 0.0 && largest_angle(polygon) <= largest_block_angle * std::numbers::pi / 180.0;
   }
 
-  Tessellation& tessellation_;
+  Cells<2>& tessellation_;
   std::vector<std::set<int>> around_;  ///< cells of each vertex
 };
 
 }  // namespace
 
-std::vector<int> unite(Tessellation& tessellation, const std::vector<std::vector<int>>& groups) {
+std::vector<int> unite(Cells<2>& tessellation, const std::vector<std::vector<int>>& groups) {
   Uniter uniter(tessellation);
   for (const auto& group : groups)
     if (group.size() > 1) uniter.unite(group);

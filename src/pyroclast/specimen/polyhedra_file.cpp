@@ -1,4 +1,4 @@
-#include "pyroclast/solid/polyhedra.hpp"
+#include "pyroclast/specimen/polyhedra_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,32 +6,24 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
-#include "pyroclast/solid/pieces.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/json_lists.hpp"
+#include "pyroclast/specimen/pieces.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 namespace {
 
-using specimen::Json;
-using specimen::list_in;
-
-/// Distance that computing alone may leave between a vertex and its side, as a share of the body's size:
-/// vertices stay where they are no farther from it.
-constexpr double kExact = 1e-12;
 /// Sine of the angle between two planes of the body below which a vertex on both has no place of its own.
 constexpr double kParallel = 1e-4;
-
-/// Name of the list of the sizes that cells were to have.
-constexpr const char* kBlockSize = "block_size_m";
 
 /// Reads the coordinates of a place; throws Json::exception for another number of them.
 template <int Count>
@@ -45,14 +37,14 @@ Vec<Count> place_in_list(const Json& item) {
 constexpr double kFarthest = 10.0;
 
 /// Returns the size of a block in a body, m.
-double block_size(double volume, const Complex& complex) {
-  return std::cbrt(volume / static_cast<double>(complex.cells.size()));
+double block_size(double volume, const Cells<3>& cells) {
+  return std::cbrt(volume / static_cast<double>(cells.cells.size()));
 }
 
 /// Lays corners of a section that jut into the body by no more than `slack` (m) onto the line between their
 /// neighbours.
 void straighten(std::vector<Vec<2>>& section, double slack) {
-  const double sense = specimen::area(section) < 0.0 ? -1.0 : 1.0;
+  const double sense = area(section) < 0.0 ? -1.0 : 1.0;
   const std::size_t n = section.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<2>&from = section[(i + n - 1) % n], &to = section[(i + 1) % n];
@@ -63,10 +55,10 @@ void straighten(std::vector<Vec<2>>& section, double slack) {
   }
 }
 
-Prism body_in(const Json& json, const Complex& complex) {
+Prism body_in(const Json& json, const Cells<3>& cells) {
   const auto found = json.find("body");
   if (found == json.end() || !found->is_object()) throw Error("there is no table \"body\"");
-  const auto sides = list_in(*found, "sides", "a name", specimen::text_in);
+  const auto sides = list_in(*found, "sides", "a name", text_in);
   auto corners = list_in(*found, "section_m", "a place, [x, y] in m", place_in_list<2>);
   const Json axis = found->value("axis", Json()), length = found->value("length_m", Json());
   if (axis != "y" && axis != "z") throw Error(R"(body: "axis" must be "y" or "z")");
@@ -78,9 +70,8 @@ Prism body_in(const Json& json, const Complex& complex) {
         sides.begin() + static_cast<std::ptrdiff_t>(i))
       throw Error(fmt::format("body: two sides are called \"{}\"", sides[i]));
   if (corners.size() >= 3)
-    straighten(corners, specimen::kOffSide *
-                            block_size(std::abs(specimen::area(corners)) * length.get<double>(), complex));
-  auto section = specimen::Region::polygon(std::move(corners), sides, sides.size() == 1);
+    straighten(corners, kOffSide * block_size(std::abs(area(corners)) * length.get<double>(), cells));
+  auto section = Region::polygon(std::move(corners), sides, sides.size() == 1);
   return {std::move(section), axis == "y" ? Prism::Axis::y : Prism::Axis::z, length.get<double>()};
 }
 
@@ -108,11 +99,11 @@ void require_numbers(const std::vector<std::vector<int>>& lists, const char* ite
 
 /// Tells for each face of a cell whether it goes counter-clockwise seen from outside. A face that shares an
 /// edge with one before walks it the other way; then the volume tells in which sense all go.
-std::vector<bool> outward_faces(const Complex& complex, std::size_t cell) {
-  const auto& faces = complex.cells[cell];
+std::vector<bool> outward_faces(const Cells<3>& cells, std::size_t cell) {
+  const auto& faces = cells.cells[cell];
   std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, bool>>> at_edge;  // face, walks it upwards
   const auto for_each_edge = [&](std::size_t i, auto f) {
-    const auto& loop = complex.faces[faces[i]].corners;
+    const auto& loop = cells.faces[faces[i]].corners;
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const int from = loop[k], to = loop[(k + 1) % loop.size()];
       f(at_edge[std::minmax(from, to)], from < to);
@@ -136,12 +127,12 @@ std::vector<bool> outward_faces(const Complex& complex, std::size_t cell) {
     });
   }
   double filled = 0.0;
-  const Vec<3>& origin = complex.vertices[complex.faces[faces[0]].corners[0]];
+  const Vec<3>& origin = cells.vertices[cells.faces[faces[0]].corners[0]];
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto& loop = complex.faces[faces[i]].corners;
+    const auto& loop = cells.faces[faces[i]].corners;
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec<3> a = complex.vertices[loop[0]] - origin, b = complex.vertices[loop[k]] - origin,
-                   c = complex.vertices[loop[k + 1]] - origin;
+      const Vec<3> a = cells.vertices[loop[0]] - origin, b = cells.vertices[loop[k]] - origin,
+                   c = cells.vertices[loop[k + 1]] - origin;
       filled += dot(a, cross(b, c)) * (is_outward[i] ? 1.0 : -1.0);
     }
   }
@@ -151,48 +142,42 @@ std::vector<bool> outward_faces(const Complex& complex, std::size_t cell) {
 
 /// Finds the cells on both sides of each face, and turns the faces of the surface outwards.
 /// \param number  number of each face in the file
-void find_neighbours(Complex& complex, const std::vector<int>& number) {
-  std::vector<std::vector<std::pair<int, bool>>> cells_of(complex.faces.size());
-  for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
-    const auto is_outward = outward_faces(complex, cell);
+void find_neighbours(Cells<3>& cells, const std::vector<int>& number) {
+  std::vector<std::vector<std::pair<int, bool>>> cells_of(cells.faces.size());
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
+    const auto is_outward = outward_faces(cells, cell);
     for (std::size_t i = 0; i < is_outward.size(); ++i)
-      cells_of[complex.cells[cell][i]].emplace_back(static_cast<int>(cell), is_outward[i]);
+      cells_of[cells.cells[cell][i]].emplace_back(static_cast<int>(cell), is_outward[i]);
   }
-  for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-    CellFace& face = complex.faces[f];
-    const auto& cells = cells_of[f];
-    if (cells.empty() || cells.size() > 2)
+  for (std::size_t f = 0; f < cells.faces.size(); ++f) {
+    Facet<3>& face = cells.faces[f];
+    const auto& its_cells = cells_of[f];
+    if (its_cells.empty() || its_cells.size() > 2)
       throw Error(
-          fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", number[f], cells.size()));
-    const auto [first, is_of_first] = cells[0];
-    if (cells.size() == 1) {
+          fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", number[f], its_cells.size()));
+    const auto [first, is_of_first] = its_cells[0];
+    if (its_cells.size() == 1) {
       face.inner = first;
       if (!is_of_first) std::reverse(face.corners.begin() + 1, face.corners.end());
     } else {
-      face.inner = cells[is_of_first ? 0 : 1].first;
-      face.outer = cells[is_of_first ? 1 : 0].first;
+      face.inner = its_cells[is_of_first ? 0 : 1].first;
+      face.outer = its_cells[is_of_first ? 1 : 0].first;
     }
   }
 }
 
 /// Finds the plane of the body nearest to all corners of a face. Returns it, and the corner farthest from it.
-std::pair<const Plane*, int> plane_of(const CellFace& face, const Complex& complex, const Prism& body) {
+std::pair<const Plane*, int> plane_of(const Facet<3>& face, const Cells<3>& cells, const Prism& body) {
   std::pair<const Plane*, int> found{};
   double nearest = std::numeric_limits<double>::infinity();
   for (const Plane& plane : body.planes()) {
-    const auto off = [&](int v) { return std::abs(plane.distance(complex.vertices[v])); };
+    const auto off = [&](int v) { return std::abs(plane.distance(cells.vertices[v])); };
     const int farthest = *std::ranges::max_element(face.corners, {}, off);
     if (off(farthest) >= nearest) continue;
     nearest = off(farthest);
     found = {&plane, farthest};
   }
   return found;
-}
-
-/// Finds the side of the body on which each face of the surface lies.
-void find_sides(Complex& complex, const Prism& body) {
-  for (CellFace& face : complex.faces)
-    if (face.outer < 0) face.side = plane_of(face, complex, body).first->side;
 }
 
 /// Returns a place laid onto some planes, in turn.
@@ -217,121 +202,85 @@ Vec<3> laid_on(const std::vector<const Plane*>& planes, Vec<3> place, double sla
 /// Lays vertices that are off by rounding onto the sides of their faces. Throws Error where a face of the
 /// surface lies on no side.
 /// \param number  number of each face in the file
-void lay_on_sides(Complex& complex, const Prism& body, const std::vector<int>& number) {
-  const double slack = specimen::kOffSide * block_size(body.volume(), complex),
+void lay_on_sides(Cells<3>& cells, const Prism& body, const std::vector<int>& number) {
+  const double slack = kOffSide * block_size(body.extent(), cells),
                exact = kExact * norm(body.high() - body.low());
-  std::vector<std::vector<const Plane*>> planes(complex.vertices.size());
-  for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-    const CellFace& face = complex.faces[f];
+  std::vector<std::vector<const Plane*>> planes(cells.vertices.size());
+  for (std::size_t f = 0; f < cells.faces.size(); ++f) {
+    const Facet<3>& face = cells.faces[f];
     if (face.outer >= 0) continue;
-    const auto [plane, farthest] = plane_of(face, complex, body);
-    const Vec<3>& at = complex.vertices[farthest];
+    const auto [plane, farthest] = plane_of(face, cells, body);
+    const Vec<3>& at = cells.vertices[farthest];
     if (const double off = std::abs(plane->distance(at)); off > slack)
       throw Error(fmt::format(
           "face {} (from 0), of cell {} alone, lies on no side of the body: its corner ({:.6g}, "
           "{:.6g}, {:.6g}) m is {:.3g} m off \"{}\", the nearest; {:.3g} m is allowed, {:g} of a block",
-          number[f], face.inner, at[0], at[1], at[2], off, body.sides()[plane->side], slack,
-          specimen::kOffSide));
+          number[f], face.inner, at[0], at[1], at[2], off, body.sides()[plane->side].name, slack, kOffSide));
     for (const int v : face.corners)
       if (std::ranges::find(planes[v], plane) == planes[v].end()) planes[v].push_back(plane);
   }
   for (std::size_t v = 0; v < planes.size(); ++v) {
-    const Vec<3> laid = laid_on(planes[v], complex.vertices[v], kFarthest * slack);
-    if (norm(laid - complex.vertices[v]) > exact) complex.vertices[v] = laid;
+    const Vec<3> laid = laid_on(planes[v], cells.vertices[v], kFarthest * slack);
+    if (norm(laid - cells.vertices[v]) > exact) cells.vertices[v] = laid;
   }
 }
 
 }  // namespace
 
-std::string polyhedra_text(const SolidSpecimen& specimen) {
-  const auto places = [](const auto& list) {
-    Json all = Json::array();
-    for (const auto& place : list) all.push_back(place.c);
-    return all;
-  };
-  const specimen::Region& section = specimen.body.section();
-  const specimen::Loop& outline = section.loops().front();
-  Json sides = Json::array();
-  for (int side : outline.side) {
-    while (section.sides()[side].part_of >= 0) side = section.sides()[side].part_of;
-    if (section.sides()[side].is_round && !sides.empty()) continue;  // one name for all
-    sides.push_back(section.sides()[side].name);
-  }
-  Json json;
-  json["phases"] = specimen.phases;
-  json["body"] = {{"axis", specimen.body.axis() == Prism::Axis::y ? "y" : "z"},
-                  {"length_m", specimen.body.length()},
-                  {"section_m", places(outline.corners)},
-                  {"sides", std::move(sides)}};
-  json["vertices_m"] = places(specimen.complex.vertices);
-  json["faces"] = Json::array();
-  for (const CellFace& face : specimen.complex.faces) json["faces"].push_back(face.corners);
-  json["cells"] = specimen.complex.cells;
-  json["phase"] = specimen.phase;
-  if (!specimen.size.empty()) json[kBlockSize] = specimen.size;
-  if (!specimen.grain.empty()) json[specimen::kStone] = specimen.grain;
-  return json.dump() + "\n";
+void find_sides(Cells<3>& cells, const Prism& body) {
+  for (Facet<3>& face : cells.faces)
+    if (face.outer < 0) face.side = plane_of(face, cells, body).first->side;
 }
 
-Polyhedra read_polyhedra(const std::filesystem::path& file, double join) {
+bool are_in_space(const std::string& text) {
+  return std::ranges::any_of(std::array{"\"faces\"", "\"body\""}, [&](std::string_view key) {
+    for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1))
+      if (const std::size_t next = text.find_first_not_of(" \t\r\n", at + key.size());
+          next != std::string::npos && text[next] == ':')
+        return true;  // a key and no value
+    return false;
+  });
+}
+
+GivenCells<3> read_polyhedra(const std::filesystem::path& file, double join) {
   return polyhedra_from(read_file(file), file.string(), join);
 }
 
-Polyhedra polyhedra_from(const std::string& text, const std::string& name, double join) {
-  Polyhedra read;
+GivenCells<3> polyhedra_from(const std::string& text, const std::string& name, double join) {
+  GivenCells<3> read;
   read.origin = name;
-  specimen::read_table(text, name, [&read, join](const Json& json) {
+  read_table(text, name, [&read, join](const Json& json) {
     if (!json.contains("faces") && !json.contains("body") && json.contains("cells"))
       throw Error(
           "holds cells of the plane, without \"faces\" and \"body\", and is read as blocks in space. Cells "
           "of "
           "the plane come by [specimen] shape = \"cells\"");
-    read.phases = list_in(json, "phases", "a name", specimen::text_in);
-    Complex& complex = read.complex;
-    complex.vertices = list_in(json, "vertices_m", "a place, [x, y, z] in m", place_in_list<3>);
-    const auto corners =
-        list_in(json, "faces", "a list of vertices, each by its number from 0", specimen::numbers_in);
-    complex.cells =
-        list_in(json, "cells", "a list of faces, each by its number from 0", specimen::numbers_in);
-    read.phase = list_in(json, "phase", "the number of a phase, from 0", specimen::number_in);
-    if (json.contains(kBlockSize)) read.size = list_in(json, kBlockSize, "a size in m", specimen::real_in);
-    if (json.contains(specimen::kStone))
-      read.grain = list_in(json, specimen::kStone, specimen::kStoneItem, specimen::number_or_none_in);
-    specimen::require_lists(complex.cells.size(), read.phases, read.phase, read.size, read.grain);
-    require_numbers(corners, "face", 3, {"vertex", "vertices"}, complex.vertices.size());
-    require_numbers(complex.cells, "cell", 4, {"face", "faces"}, corners.size());
-    for (const auto& of_face : corners) complex.faces.push_back({.corners = of_face});
-    read.body = body_in(json, complex);
-    std::vector<int> number(complex.faces.size());
+    read.phases = list_in(json, "phases", "a name", text_in);
+    Cells<3>& cells = read.cells;
+    cells.vertices = list_in(json, "vertices_m", "a place, [x, y, z] in m", place_in_list<3>);
+    const auto corners = list_in(json, "faces", "a list of vertices, each by its number from 0", numbers_in);
+    cells.cells = list_in(json, "cells", "a list of faces, each by its number from 0", numbers_in);
+    read.phase = list_in(json, "phase", "the number of a phase, from 0", number_in);
+    if (json.contains(kBlockSizeInMetres))
+      read.size = list_in(json, kBlockSizeInMetres, "a size in m", real_in);
+    if (json.contains(kStone)) read.grain = list_in(json, kStone, kStoneItem, number_or_none_in);
+    require_lists(cells.cells.size(), read.phases, read.phase, read.size, read.grain);
+    require_numbers(corners, "face", 3, {"vertex", "vertices"}, cells.vertices.size());
+    require_numbers(cells.cells, "cell", 4, {"face", "faces"}, corners.size());
+    for (const auto& of_face : corners) cells.faces.push_back({.corners = of_face});
+    read.outline = body_in(json, cells);
+    std::vector<int> number(cells.faces.size());
     std::iota(number.begin(), number.end(), 0);
-    if (join > 0.0) number = solid::join(complex, join);
-    find_neighbours(complex, number);
+    if (join > 0.0) number = specimen::join(cells, join);
+    find_neighbours(cells, number);
     try {
-      if (const std::string pieces = describe_pieces(complex); !pieces.empty()) throw Error(pieces);
-      lay_on_sides(complex, read.body, number);
+      if (const std::string pieces = describe_pieces<3>(cells, cells.faces); !pieces.empty()) throw Error(pieces);
+      lay_on_sides(cells, read.outline, number);
     } catch (const Error& error) {
-      throw Error(error.what() + describe_joinable(complex));
+      throw Error(error.what() + describe_joinable(cells));
     }
   });
   return read;
 }
 
-SolidSpecimen specimen_from(Polyhedra polyhedra, const Prism& body) {
-  const std::string what = polyhedra.origin.empty() ? "The blocks" : polyhedra.origin;
-  SolidSpecimen specimen;
-  specimen.body = body;
-  specimen.complex = std::move(polyhedra.complex);
-  find_sides(specimen.complex, body);
-  require_valid(specimen.complex, body, what);
-  specimen.phases = std::move(polyhedra.phases);
-  specimen.phase = std::move(polyhedra.phase);
-  specimen.size = std::move(polyhedra.size);
-  specimen.grain = std::move(polyhedra.grain);
-  specimen.fraction.assign(specimen.phases.size(), 0.0);
-  for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell)
-    specimen.fraction[specimen.phase[cell]] += volume(specimen.complex, cell) / body.volume();
-  specimen.metrics = measure(specimen.complex, body);
-  return specimen;
-}
-
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

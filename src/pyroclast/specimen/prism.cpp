@@ -1,4 +1,4 @@
-#include "pyroclast/solid/prism.hpp"
+#include "pyroclast/specimen/prism.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "pyroclast/base/error.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 namespace {
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double kStraight = 1e-9;
 
 /// Throws Error unless a section is convex and whole.
-void require_convex(const specimen::Region& section) {
+void require_convex(const Region& section) {
   if (section.loops().size() > 1) throw Error("a solid cannot have holes yet");
   if (!section.notches().empty()) throw Error("a solid cannot have notches or slits yet");
   const auto& pieces = section.pieces();
@@ -33,9 +33,9 @@ void require_convex(const specimen::Region& section) {
 
 }  // namespace
 
-Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
+Prism::Prism(Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
   require_convex(section_);
-  for (const auto& side : section_.sides()) sides_.push_back(side.name);
+  sides_ = section_.sides();
   for (const auto& [from, to, side] : section_.pieces()) {
     const Vec<2> along = to - from;
     const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
@@ -43,15 +43,15 @@ Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std:
   }
   const int first_end = static_cast<int>(sides_.size());
   for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"}) {
-    if (std::ranges::find(sides_, end) != sides_.end())
+    if (find_side(sides_, end) >= 0)
       throw Error(fmt::format("a side of the section has the name of an end of the prism, \"{}\"", end));
-    sides_.emplace_back(end);
+    sides_.push_back({end});
   }
   planes_.push_back({in_space({}, axis_, -1.0), 0.0, first_end});
   planes_.push_back({in_space({}, axis_, 1.0), length, first_end + 1});
   low_ = in_space(section_.box().low, axis_, 0.0);
   high_ = in_space(section_.box().high, axis_, length);
-  volume_ = section_.area() * length;
+  volume_ = section_.extent() * length;
 }
 
 Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along) {
@@ -73,14 +73,14 @@ std::vector<Vec<3>> Prism::corners_on(std::size_t plane) const {
             in_space(from, axis_, length())};
   }
   std::vector<Vec<3>> corners;
-  for (const specimen::Piece& piece : pieces)
+  for (const Piece& piece : pieces)
     corners.push_back(in_space(piece.from, axis_, plane == pieces.size() ? 0.0 : length()));
   return corners;
 }
 
-specimen::Room<3> room_in(const Prism& body) {
-  return {body.low(), body.high(), body.volume(),
+Room<3> room_in(const Prism& body) {
+  return {body.low(), body.high(), body.extent(),
           [&body](const Vec<3>& point) { return body.distance(point); }};
 }
 
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "pyroclast/solid/complex.hpp"
 #include "pyroclast/specimen/block_sizes.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 /// Asked of the regularisation of cells.
 struct RegularCells {
@@ -27,8 +27,7 @@ struct RegularisedCells {
 /// shortest edges first, then face by face and vertex by vertex.
 /// \param plane  plane of the body on which each face lies; -1 within it
 /// \param sizes  sizes of blocks: edges and ways are measured by the size of the blocks there
-RegularisedCells regularise(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                            const RegularCells& asked,
-                            const specimen::BlockSizes& sizes = specimen::BlockSizes(1.0));
+RegularisedCells regularise(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
+                            const RegularCells& asked, const BlockSizes& sizes = BlockSizes(1.0));
 
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

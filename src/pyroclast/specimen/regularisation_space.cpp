@@ -1,4 +1,4 @@
-#include "pyroclast/solid/regularisation.hpp"
+#include "pyroclast/specimen/regularisation_space.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,9 @@
 #include <utility>
 
 #include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/specimen/topology.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 namespace {
 
@@ -28,35 +29,35 @@ constexpr double kAcross = 0.3;
 /// Share of its flatness by which a fan must be better than another, beyond rounding.
 constexpr double kRounding = 1e-9;
 
-/// Edge of a complex that is too short.
+/// Edge of cells that is too short.
 struct ShortEdge {
   std::array<int, 2> ends;  ///< vertices, ascending
   double length;            ///< over the relative size of the blocks there, m
 };
 
-/// Complex whose vertices merge and move. Faces that have vanished have no corners until `clean`.
+/// Cells whose vertices merge and move. Faces that have vanished have no corners until `drop_unused`.
 class CellRegulariser {
  public:
-  CellRegulariser(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                  const RegularCells& asked, const specimen::BlockSizes& sizes)
-      : complex_(complex),
+  CellRegulariser(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
+                  const RegularCells& asked, const BlockSizes& sizes)
+      : complex_(cells),
         body_(body),
         asked_(asked),
-        size_(std::cbrt(body.volume() / static_cast<double>(complex.cells.size()))),
-        planes_(complex.vertices.size()),
-        faces_at_(complex.vertices.size()) {
-    for (const Vec<3>& place : complex.vertices) {
+        size_(std::cbrt(body.extent() / static_cast<double>(cells.cells.size()))),
+        planes_(cells.vertices.size()),
+        faces_at_(cells.vertices.size()) {
+    for (const Vec<3>& place : cells.vertices) {
       relative_.push_back(sizes.relative(place));
       way_.push_back(kFirstWay * size_ * relative_.back());
     }
-    for (std::size_t f = 0; f < complex.faces.size(); ++f)
-      for (const int v : complex.faces[f].corners) {
+    for (std::size_t f = 0; f < cells.faces.size(); ++f)
+      for (const int v : cells.faces[f].corners) {
         faces_at_[v].push_back(static_cast<int>(f));
         if (plane[f] >= 0) planes_[v].push_back(plane[f]);
       }
     for (auto& planes : planes_) sort_unique(planes);
-    for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
-      size_of_cell_.push_back(size_ * mean_relative(complex.cells[cell]));
+    for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
+      size_of_cell_.push_back(size_ * mean_relative(cells.cells[cell]));
       flatness_.push_back(flatness_of(static_cast<int>(cell)));
     }
   }
@@ -71,7 +72,7 @@ class CellRegulariser {
       }
     }
     done.edges_left_short = static_cast<int>(short_edges().size());
-    clean();
+    drop_unused(complex_);
     return done;
   }
 
@@ -84,7 +85,7 @@ class CellRegulariser {
       const int before = gone;
       for (const ShortEdge& edge : short_edges())
         if (merge({edge.ends.begin(), edge.ends.end()})) ++gone;
-      for (const CellFace& face : complex_.faces) {
+      for (const Facet<3>& face : complex_.faces) {
         if (!is_small(face.corners)) continue;
         const std::vector<int> corners = face.corners;
         if (merge(corners)) gone += static_cast<int>(corners.size()) - 1;
@@ -98,7 +99,7 @@ class CellRegulariser {
   /// shortest first.
   std::vector<ShortEdge> short_edges() {
     std::vector<std::array<int, 2>> edges;
-    for (const CellFace& face : complex_.faces)
+    for (const Facet<3>& face : complex_.faces)
       for (std::size_t i = 0; i < face.corners.size(); ++i) {
         const auto [low, high] = std::minmax(face.corners[i], face.corners[(i + 1) % face.corners.size()]);
         edges.push_back({low, high});
@@ -153,7 +154,7 @@ class CellRegulariser {
     planes_[kept] = planes;
     for (const int v : group) faces_at_[v].clear();
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (const CellFace& face = complex_.faces[faces[i]]; face.corners.empty()) {
+      if (const Facet<3>& face = complex_.faces[faces[i]]; face.corners.empty()) {
         std::erase(complex_.cells[face.inner], faces[i]);
         if (face.outer >= 0) std::erase(complex_.cells[face.outer], faces[i]);
         for (const int v : before[i]) std::erase(faces_at_[v], faces[i]);
@@ -246,18 +247,18 @@ class CellRegulariser {
     return true;
   }
 
-  bool turn_to_fan_allowed(CellFace& face) const {
+  bool turn_to_fan_allowed(Facet<3>& face) const {
     if (face.corners.empty()) return true;
     return turn_to_best_fan(complex_.vertices, face.corners,
                             face.outer < 0 ? std::numeric_limits<double>::infinity() : asked_.largest_bend);
   }
 
-  bool is_bent_too_far(const CellFace& face) const {
+  bool is_bent_too_far(const Facet<3>& face) const {
     return face.outer >= 0 && bend(complex_.vertices, face.corners) > asked_.largest_bend;
   }
 
   /// Turns a face to the fan that makes zones roundest.
-  void turn(CellFace& face) {
+  void turn(Facet<3>& face) {
     auto& loop = face.corners;
     if (loop.size() < 4) return;
     std::vector<int> cells{face.inner};
@@ -367,31 +368,9 @@ class CellRegulariser {
     for (std::size_t i = 0; i < faces.size(); ++i) complex_.faces[faces[i]].corners = loops[i];
   }
 
-  /// Takes out the vertices and faces that have gone.
-  void clean() {
-    std::vector<int> vertex(complex_.vertices.size(), -1), number(complex_.faces.size(), -1);
-    std::vector<Vec<3>> vertices;
-    std::vector<CellFace> faces;
-    for (std::size_t v = 0; v < vertex.size(); ++v)
-      if (!faces_at_[v].empty()) {
-        vertex[v] = static_cast<int>(vertices.size());
-        vertices.push_back(complex_.vertices[v]);
-      }
-    for (std::size_t f = 0; f < number.size(); ++f)
-      if (!complex_.faces[f].corners.empty()) {
-        number[f] = static_cast<int>(faces.size());
-        faces.push_back(std::move(complex_.faces[f]));
-        for (int& v : faces.back().corners) v = vertex[v];
-      }
-    for (auto& cell : complex_.cells)
-      for (int& f : cell) f = number[f];
-    complex_.vertices = std::move(vertices);
-    complex_.faces = std::move(faces);
-  }
-
   const Vec<3>& at(int v) const { return complex_.vertices[v]; }
 
-  Complex& complex_;
+  Cells<3>& complex_;
   const Prism& body_;
   RegularCells asked_;
   double size_;                             ///< mean of the blocks, m
@@ -407,9 +386,9 @@ class CellRegulariser {
 
 }  // namespace
 
-RegularisedCells regularise(Complex& complex, const Prism& body, const std::vector<int>& plane,
-                            const RegularCells& asked, const specimen::BlockSizes& sizes) {
-  return CellRegulariser(complex, body, plane, asked, sizes).run();
+RegularisedCells regularise(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
+                            const RegularCells& asked, const BlockSizes& sizes) {
+  return CellRegulariser(cells, body, plane, asked, sizes).run();
 }
 
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

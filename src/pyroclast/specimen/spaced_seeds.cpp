@@ -1,4 +1,4 @@
-#include "pyroclast/solid/seeds.hpp"
+#include "pyroclast/specimen/spaced_seeds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/grain_grid.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 namespace {
 
@@ -26,7 +26,7 @@ constexpr int kMostTries = 1'000'000;
 /// Draws seeds that keep their distance: balls that may touch.
 class SpacedSeedDraw {
  public:
-  SpacedSeedDraw(const Prism& body, const specimen::BlockSizes& sizes, Random& random)
+  SpacedSeedDraw(const Prism& body, const BlockSizes& sizes, Random& random)
       : body_(body), sizes_(sizes), random_(random), grid_(body.low(), body.high(), distance(sizes.mean())) {
     if (!sizes.is_even()) places_.emplace(room_in(body), sizes);
   }
@@ -55,10 +55,10 @@ class SpacedSeedDraw {
   }
 
   const Prism& body_;
-  const specimen::BlockSizes& sizes_;
+  const BlockSizes& sizes_;
   Random& random_;
-  std::optional<specimen::PlaceDraw<3>> places_;  ///< where blocks are not alike
-  specimen::GrainGrid<3> grid_;
+  std::optional<PlaceDraw<3>> places_;  ///< where blocks are not alike
+  GrainGrid<3> grid_;
 };
 
 /// Returns the place of a point along Morton's curve (G. M. Morton, IBM, 1966): the bits of its coordinates,
@@ -78,10 +78,9 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Prism& body) {
 
 }  // namespace
 
-SolidSeeds spaced_seeds(const Prism& body, const specimen::BlockSizes& sizes, int count, double spread,
-                        Random& random) {
+Seeds<3> spaced_seeds(const Prism& body, const BlockSizes& sizes, int count, double spread, Random& random) {
   SpacedSeedDraw draw(body, sizes, random);
-  SolidSeeds seeds;
+  Seeds<3> seeds;
   auto& places = seeds.position;
   for (int i = 0; i < count; ++i) places.push_back(draw.draw());
   std::ranges::sort(places, {}, [&](const Vec<3>& p) { return place_on_curve(p, body); });
@@ -90,12 +89,12 @@ SolidSeeds spaced_seeds(const Prism& body, const specimen::BlockSizes& sizes, in
   return seeds;
 }
 
-SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random) {
-  return spaced_seeds(body, specimen::BlockSizes(std::cbrt(body.volume() / count)), count, spread, random);
+Seeds<3> spaced_seeds(const Prism& body, int count, double spread, Random& random) {
+  return spaced_seeds(body, BlockSizes(std::cbrt(body.extent() / count)), count, spread, random);
 }
 
-void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body,
-            const specimen::BlockSizes& sizes, Random& random) {
+void redraw(Seeds<3>& seeds, const std::vector<int>& which, const Prism& body, const BlockSizes& sizes,
+            Random& random) {
   SpacedSeedDraw draw(body, sizes, random);
   for (std::size_t i = 0; i < seeds.position.size(); ++i)
     if (!std::ranges::binary_search(which, static_cast<int>(i))) draw.add(seeds.position[i]);
@@ -107,4 +106,4 @@ void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body,
   }
 }
 
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

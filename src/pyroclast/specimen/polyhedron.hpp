@@ -1,39 +1,20 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "pyroclast/base/vec.hpp"
-#include "pyroclast/solid/prism.hpp"
+#include "pyroclast/specimen/cells.hpp"
 
 /// Polyhedral cells that fill a body.
-namespace pyroclast::solid {
-
-/// Face of one cell, or between two.
-struct CellFace {
-  /// Vertices, counter-clockwise seen from outside of `inner`. Zones meet the face in the triangles of the
-  /// fan from the first one.
-  std::vector<int> corners;
-  int inner = -1;  ///< cell
-  int outer = -1;  ///< other cell; -1 on the surface of the body
-  int side = -1;   ///< side of the body on which the face lies; -1 within the body
-};
-
-/// Cells that fill a body; neighbours share faces, faces share vertices.
-struct Complex {
-  std::vector<Vec<3>> vertices;  ///< m
-  std::vector<CellFace> faces;
-  std::vector<std::vector<int>> cells;  ///< faces of each cell
-};
+namespace pyroclast::specimen {
 
 /// Calls `f(a, b, c)` for the triangles of a cell's faces, with their vertices counter-clockwise seen from
 /// outside of the cell.
 template <class F>
-void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
-  for (const int number : complex.cells[cell]) {
-    const CellFace& face = complex.faces[number];
+void for_each_triangle(const Cells<3>& cells, std::size_t cell, F f) {
+  for (const int number : cells.cells[cell]) {
+    const Facet<3>& face = cells.faces[number];
     const auto& corner = face.corners;
     const bool is_inner = face.inner == static_cast<int>(cell);
     for (std::size_t i = 1; i + 1 < corner.size(); ++i)
@@ -43,7 +24,7 @@ void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
 
 /// Returns the vector of a face's area, m²: out of the cell `inner`, as long as the area is large. On a bent
 /// face it is that of its mean plane.
-Vec<3> area_vector(const Complex& complex, const CellFace& face);
+Vec<3> area_vector(const Cells<3>& cells, const Facet<3>& face);
 
 /// Returns the bend of a face, rad: the largest angle between a triangle of its fan and its mean plane.
 /// \param at       places of vertices
@@ -58,24 +39,14 @@ bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, 
 /// is the radius of the ball in the zone; infinite where a zone has no volume. Stiffness, and with it the
 /// mass of density scaling, goes with volume / r^2; the steps of real mass and of heat with the least r. The
 /// fourth power stands between both.
-double flatness(const Complex& complex, std::size_t cell, double size);
+double flatness(const Cells<3>& cells, std::size_t cell, double size);
 
-/// Returns the volume of a cell, m³.
-double volume(const Complex& complex, std::size_t cell);
+/// Returns the volume that a cell has in common with a ball, m³. Exact up to rounding.
+double common_volume(const Cells<3>& cells, std::size_t cell, const Vec<3>& centre, double radius);
 
 /// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
 /// each vertex of a face stands once on it, each zone of a cell has a volume, and the volumes of all cells
 /// fill that of the body to 1e-9.
-void require_valid(const Complex& complex, const Prism& body, const std::string& what);
+void require_valid(const Cells<3>& cells, const Prism& body, const std::string& what);
 
-/// Cell cut into zones.
-struct ZonedCell {
-  std::vector<int> vertices;              ///< vertices of the cell, in the order in which its faces meet them
-  std::vector<Vec<3>> gridpoints;         ///< places of the vertices, then the centroid; m
-  std::vector<std::array<int, 4>> zones;  ///< gridpoints, positively oriented, the centroid last
-};
-
-/// Cuts a cell into tetrahedra around its centroid, one for each triangle of the fans of its faces.
-ZonedCell zone_cell(const Complex& complex, std::size_t cell);
-
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen

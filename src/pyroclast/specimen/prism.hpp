@@ -7,7 +7,7 @@
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/room.hpp"
 
-namespace pyroclast::solid {
+namespace pyroclast::specimen {
 
 /// Plane that bounds a body: the body lies where dot(normal, x) <= offset.
 struct Plane {
@@ -29,30 +29,25 @@ class Prism {
   /// the sides `front`, z = 0, and `back`. Along y the first coordinate of the section is z, the second is x;
   /// its ends are `bottom`, y = 0, and `top`. Throws Error unless the section is convex, without holes and
   /// notches, and has no side with the name of an end.
-  Prism(specimen::Region section, Axis axis, double length);
+  Prism(Region section, Axis axis, double length);
 
-  const std::vector<std::string>& sides() const { return sides_; }
-  /// Returns the side of which a side is a patch, such as the rim of a seat; -1 where it is whole.
-  int whole_of(int side) const {
-    const auto& of_section = section_.sides();
-    return side < static_cast<int>(of_section.size()) ? of_section[side].part_of : -1;
-  }
+  const std::vector<Side>& sides() const { return sides_; }
   const std::vector<Plane>& planes() const { return planes_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
   /// Returns the corners around the face on a plane, m.
   std::vector<Vec<3>> corners_on(std::size_t plane) const;
   double length() const { return planes_.back().offset; }  ///< Returns the length along the axis, m.
-  double volume() const { return volume_; }                ///< Returns the volume, m³.
-  const specimen::Region& section() const { return section_; }
+  double extent() const { return volume_; }                ///< Returns the volume, m³.
+  const Region& section() const { return section_; }
   Axis axis() const { return axis_; }
   /// Returns the distance from the nearest of the planes, m, negative within the body.
   double distance(const Vec<3>& point) const;
 
  private:
-  specimen::Region section_;
+  Region section_;
   Axis axis_ = Axis::z;
-  std::vector<std::string> sides_;
+  std::vector<Side> sides_;
   std::vector<Plane> planes_;
   Vec<3> low_{}, high_{};
   double volume_ = 0.0;
@@ -63,6 +58,6 @@ class Prism {
 Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along);
 
 /// Returns the room in a body, which must outlive it.
-specimen::Room<3> room_in(const Prism& body);
+Room<3> room_in(const Prism& body);
 
-}  // namespace pyroclast::solid
+}  // namespace pyroclast::specimen
