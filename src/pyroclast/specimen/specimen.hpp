@@ -252,7 +252,7 @@ struct Specimen {
   double covered_fraction = 0.0;        ///< share of a block above which it became aggregate
   std::vector<double> fraction = {};    ///< share of the blocks of each phase
   std::vector<SizeClass> classes = {};  ///< size classes in space; not counted in the plane
-  int small_stones = 0;  ///< stones in space that are smaller than two of the blocks around them
+  int small_stones = 0;  ///< stones in space that are smaller than three of the blocks around them
   Metrics<Dim> metrics = {};
 };
 

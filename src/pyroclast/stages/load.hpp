@@ -15,7 +15,7 @@ class Load : public Stage {
     std::optional<double> level;    ///< stress over f_c, where the deck gives it so
     double strength = 0.0;          ///< f_c of `level`, Pa
     std::string strength_of;        ///< owner of that f_c
-    std::filesystem::path run;      ///< run that measured it, or its summary; else empty
+    std::filesystem::path run = {};  ///< run that measured it, or its summary; else empty
     double ramp_time = 0.0;         ///< time over which the force is brought up, s
     double unbalanced_ratio = 0.0;  ///< unbalanced ratio below which the body is at rest
     std::int64_t most_steps = 0;    ///< most steps after the ramp; then the stage gives up, and says so
