@@ -189,7 +189,7 @@ class Deck:
         """
         if path in self._functions:
             return self._functions[path]
-        return self._Specimen(path, self._node(path))
+        return self._wrapped(path, self._node(path))
 
     def _node(self, path: str) -> Any:
         """Returns the value at a path as TOML has it. Raises KeyError where there is none."""
@@ -201,12 +201,12 @@ class Deck:
                 raise KeyError(path) from None
         return node
 
-    def _Specimen(self, path: str, node: Any) -> Any:
+    def _wrapped(self, path: str, node: Any) -> Any:
         """Returns a value so that none of its changes is lost: each reaches the deck, or is refused."""
         if isinstance(node, dict):
             return DeckTable(self, path)
         if isinstance(node, list):
-            return tuple(self._Specimen(f"{path}[{i}]", entry) for i, entry in enumerate(node))
+            return tuple(self._wrapped(f"{path}[{i}]", entry) for i, entry in enumerate(node))
         if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)) and _core.is_quantity(node):
             return Quantity(float(match[1]), match[2])
         return node
