@@ -310,6 +310,11 @@ class StrengthOfARun(unittest.TestCase):
         self.assertNotIn(another, told("same.toml"))
         self.assertIn(another + "specimen.seed was 1, and is 2 here", told("same.toml", "--seed", "2"))
         self.assertIn(another, told("hot.toml"))
+        kept = self.folder / "cold/deck.toml"
+        text = kept.read_text()
+        self.addCleanup(kept.write_text, text)
+        kept.write_text("colour = 1\n" + text)  # of a program with other keys
+        self.assertIn("f_c of the run cold, whose body cannot be compared: cold/deck.toml:1", told("same.toml"))
 
     def test_a_run_without_one_is_refused_with_its_reason(self):
         self.run_deck(CASES / "starter.toml", *self.SMALL, "--set", "stages[1].velocity=4 mm/s", "--set",

@@ -99,23 +99,30 @@ void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   }
 }
 
-/// Warns of loads that are shares of the strength which another body had.
-void warn_of_other_bodies(const DeckOfRun& opened) {
+/// Returns by what the body of a run differs from that of a deck; empty: by nothing.
+std::string other_body_of(const std::filesystem::path& run, const DeckOfRun& opened) {
   RunChoices choices = opened.choices;
   choices.seed.reset();  // a run's deck has its own
   choices.body.clear();
   choices.needs_code = false;
-  for (const auto& stage : opened.setup.stages) {
-    const auto* load = dynamic_cast<const Load*>(stage.get());
-    if (!load || !exists(load->keys().run / "deck.toml")) continue;
-    const auto& run = load->keys().run;
-    const DeckOfRun of(Deck::open(run / "deck.toml"), run, choices);
+  try {
+    const DeckOfRun of(Deck::open(run / RunFolder::kDeck), run, choices);
     const std::string other =
         first_difference(body_inputs(of.deck, of.setup), body_inputs(opened.deck, opened.setup));
-    if (!other.empty())
-      fmt::print("{}", describe_warnings({fmt::format(
-                           "a load is a share of f_c of the run {}, whose body is another one: {}",
-                           run.string(), other)}));
+    return other.empty() ? other : "whose body is another one: " + other;
+  } catch (const Error& error) {  // its f_c counts all the same
+    return fmt::format("whose body cannot be compared: {}", error.what());
+  }
+}
+
+/// Warns of loads that are shares of the strength which another body had.
+void warn_of_other_bodies(const DeckOfRun& opened) {
+  for (const auto& stage : opened.setup.stages) {
+    const auto* load = dynamic_cast<const Load*>(stage.get());
+    if (!load || !exists(load->keys().run / RunFolder::kDeck)) continue;
+    if (const std::string other = other_body_of(load->keys().run, opened); !other.empty())
+      fmt::print("{}", describe_warnings({fmt::format("a load is a share of f_c of the run {}, {}",
+                                                      load->keys().run.string(), other)}));
   }
 }
 

@@ -26,8 +26,7 @@ inline constexpr PropertyInfo cohesion{"c_o", "cohesion", unit::stress, Range::p
                                        Role::strength};
 inline constexpr PropertyInfo friction_angle{"phi", "friction angle", unit::angle, kAngles};
 inline constexpr PropertyInfo mode_2_energy{"G_f2", "mode II fracture energy", unit::fracture_energy,
-                                            Range::positive().usually(0.1, 1e5),
-                                            Role::sliding_energy};
+                                            Range::positive().usually(0.1, 1e5), Role::sliding_energy};
 
 /// Choice of a Compression.
 inline constexpr ChoiceInfo compression{"compression",

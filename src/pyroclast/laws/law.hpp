@@ -46,13 +46,15 @@ enum class Role : std::uint8_t {
   strength,
   energy,
   sliding_energy,  ///< energy lost by sliding: a deck may let it go with the block size
-  second_slope,   ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
-  cold_strength,  ///< strength at 20 °C; without a statement the contact's first strength there
-  hidden_cracks   ///< share of strengths lost to cracks below the mesh; curves of strengths include it
+  second_slope,    ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
+  cold_strength,   ///< strength at 20 °C; without a statement the contact's first strength there
+  hidden_cracks    ///< share of strengths lost to cracks below the mesh; curves of strengths include it
 };
 
 /// Tells whether the property is a fracture energy.
-constexpr bool is_energy(Role role) { return role == Role::energy || role == Role::sliding_energy; }
+constexpr bool is_energy(Role role) {
+  return role == Role::energy || role == Role::sliding_energy;
+}
 
 /// Tells whether the property is the same at any temperature but where a deck states a curve for it.
 constexpr bool is_apart_from_temperature(Role role) {

@@ -33,7 +33,7 @@ constexpr const char* kProgram = "pyroclast";
 /// manifest. Files outlive `--overwrite` that neither these patterns nor those of drawn files and figures
 /// name.
 constexpr auto kWritten = std::to_array<const char*>({
-    "deck.toml",
+    RunFolder::kDeck,
     kReferences,
     "run.json",
     "body.h5",
@@ -160,7 +160,7 @@ void write_inputs(const fs::path& folder, const Inputs& inputs) {
   if (!inputs.files.empty()) fs::create_directory(folder / "inputs");
   for (const InputFile& input : inputs.files) write_text_file(folder / input.name, input.contents);
   if (!inputs.references.empty()) write_text_file(folder / kReferences, inputs.references);
-  write_text_file(folder / "deck.toml", inputs.deck_text);
+  write_text_file(folder / RunFolder::kDeck, inputs.deck_text);
 }
 
 std::string whole_path(const fs::path& path) {

@@ -65,6 +65,9 @@ inline constexpr std::string_view kOtherFolder = "choose another folder with --o
 /// it.
 class RunFolder {
  public:
+  /// Name of the file with the deck of the run, as it was run.
+  static constexpr const char* kDeck = "deck.toml";
+
   /// Throws Error when the folder, which this process has locked, may not be written.
   /// \param remedy  what to do about a folder that exists, in words that the user can follow
   static void check(const std::filesystem::path& path, bool overwrite,

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDeck = "deck.toml";
-
 /// Throws Error where a checkpoint is not one of this program, these inputs and this body.
 /// \param other_inputs  description of inputs that are not these, for the message
 void require_same(const CheckpointFile& checkpoint, const std::string& inputs, const Simulation& simulation,
@@ -53,7 +51,7 @@ DeckOfRun open_from(const fs::path& run, const std::vector<std::string>& changes
                     RunChoices choices) {
   choices.seed.reset();  // the folder's deck has the seed
   if (const auto body = RunFolder::body(run); body && is_there(*body)) choices.body = body->folder;
-  return {Deck::open(run / kDeck, changes, more), run, std::move(choices)};
+  return {Deck::open(run / RunFolder::kDeck, changes, more), run, std::move(choices)};
 }
 
 /// Returns the stage with this number or name, from 0.
@@ -92,7 +90,7 @@ CheckpointFile open_state(const StageState& state, std::int64_t stage, const fs:
   if (fs::exists(state.file)) return CheckpointFile(state.file);
   const std::string again =
       fmt::format("a run of the deck from the beginning gives the same: pyroclast run {} --out NEW",
-                  shell_path(run / kDeck));
+                  shell_path(run / RunFolder::kDeck));
   if (!is_of(state, run))
     throw Error(
         fmt::format("{}: this fork did not compute stage {} itself; the state at its end, {}, is not "
