@@ -182,6 +182,9 @@ class Concrete(InAFolder):
         self.assertEqual(contacts["aggregate_mortar"], known["aggregate_mortar"])
         self.assertAlmostEqual(float(contacts["mortar_mortar"]["c_o"].split()[0]) / float(
             contacts["mortar_mortar"]["f_t"].split()[0]), 6.0 / 2.5)
+
+    def test_a_small_cylinder_is_checked_without_a_warning_and_its_calibration_foretold(self):
+        self.concrete("--cylinder", *SIEVES, "--width", "70 mm", "--height", "140 mm", "--blocks", "2500")
         self.assertNotIn("warning", self.pyroclast("check", "mine.toml").stdout)
         seen = self.pyroclast("study", "check", "mine-calibrate.toml").stdout
         self.assertRegex(seen, r"time +\d.* a run, \d.* of one core to begin with; \d.* at most, for 30 runs")

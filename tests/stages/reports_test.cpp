@@ -177,6 +177,8 @@ TEST(ExchangeReports, CountsWhatDidNotComeToRest) {
   EXPECT_EQ(number(r, "largest_exchange_increment_K"), 5.0);
   EXPECT_TRUE(is_none(r, "critical_temperature_degC"));
   EXPECT_TRUE(is_none(r, "critical_time_s"));
+  EXPECT_EQ(value_of(r, "critical_temperature_none_because"),
+            Result::Value(std::string("no load by a platen was held")));
   EXPECT_TRUE(is_none(r, "largest_thrust_MPa"));  // it never began between platens
   EXPECT_TRUE(is_none(r, "load_stress_MPa"));
   EXPECT_TRUE(is_none(r, "platen"));
@@ -212,6 +214,7 @@ TEST(ExchangeReports, TheLastExchangeIsWhereItRanAway) {
   const StageReport r = Heat(heating()).report(exchanges(), {1, 4}, Outcome::ran_away);
   EXPECT_EQ(number(r, "critical_temperature_degC"), 80.0);
   EXPECT_EQ(number(r, "critical_time_s"), 30.0);
+  EXPECT_TRUE(is_none(r, "critical_temperature_none_because"));
   EXPECT_EQ(number(r, "exchanges"), 3.0);
   EXPECT_EQ(number(r, "exchanges_not_converged"), 1.0);
   EXPECT_EQ(number(r, "worst_unbalanced_ratio"), 3e-3);

@@ -56,6 +56,12 @@ std::string conditions_of_answer(int dimension) {
                      dimension == 2 ? " in plane stress" : "");
 }
 
+/// Returns why a stage in which nothing failed has no critical temperature.
+std::string why_no_failure(bool bears_load, const ExchangeResponse& r) {
+  if (!bears_load) return "no load by a platen was held";
+  return fmt::format("the specimen bore its load up to {:.0f} degC in the mean", r.last_mean);
+}
+
 PlatenControl read_platen(const Section& s) {
   return s.choice<PlatenControl>(
       "platen",
@@ -168,12 +174,15 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   const bool bears_load =
       kept_.has_press && coupling().platen == PlatenControl::force && kept_.load_stress > 0.0;
+  const Result::Value why_none = failed ? Result::Value() : Result::Value(why_no_failure(bears_load, r));
   report.results = {
       {known::field, needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
       {known::platen, kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value()},
       {known::load_stress, value_if(kept_.has_press, kept_.load_stress * 1e-6)},
       {known::critical_temperature, value_if(failed, r.critical_temperature.value_or(0.0))},
+      reason_of(known::critical_temperature, why_none),
       {known::critical_time, value_if(failed, r.critical_time)},
+      reason_of(known::critical_time, why_none),
       {known::answer_is,
        failed || bears_load ? Result::Value(conditions_of_answer(keys_.dimension)) : Result::Value()},
       {known::highest_temperature, value_if(has_rows, r.highest)},
