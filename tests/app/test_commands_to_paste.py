@@ -43,7 +43,7 @@ class CommandsToPaste(InAFolder):
     def test_a_new_deck_is_checked_by_the_line_that_new_prints(self):
         for name in NAMES:
             with self.subTest(name):
-                said = self.pyroclast("new", "--from", "thermal_wall", "--", name)
+                said = self.pyroclast("new", "--from", "starter", "--", name)
                 self.assertIn("valid", self.paste(self.proposed(said, "pyroclast check")))
                 self.assertEqual(shlex.split(self.proposed(said, "pyroclast run"))[2].removeprefix("./"), f"{name}.toml")
 
