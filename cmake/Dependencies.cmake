@@ -14,7 +14,7 @@ if(PYROCLAST_SANITIZE)
                                                               "-DTOML_ASSERT(expr)=static_assert(true)")
 endif()
 
-# UDUNITS-2, Voro++, libmd and xxHash ship no CMake package; that of HDF5 would need a project that has C.
+# UDUNITS-2, Voro++, KLU, libmd and xxHash ship no CMake package; that of HDF5 would need a project that has C.
 function(pyroclast_find_library name header library)
   find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
   find_library(${name}_LIBRARY ${library} REQUIRED)
@@ -25,6 +25,7 @@ endfunction()
 pyroclast_find_library(udunits2 udunits2.h udunits2 udunits2)
 pyroclast_find_library(voropp voro++.hh voro++ voro++)
 pyroclast_find_library(polyclipping clipper.hpp polyclipping polyclipping)
+pyroclast_find_library(klu klu.h klu suitesparse)
 pyroclast_find_library(libmd sha256.h md)
 pyroclast_find_library(xxhash xxhash.h xxhash)
 pyroclast_find_library(hdf5 hdf5.h hdf5_serial hdf5/serial)

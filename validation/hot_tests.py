@@ -190,6 +190,8 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
                                          f"stages[3].to={at:g} degC"]
     if temperature > 20.0:
         changes += specimen.of_strength(level)
+    if residual and temperature > 500.0:
+        changes.append("stages[4].stop_strain=0.03")  # the peak comes at strains up to 0.02
     kind = "residual" if residual else "hot"
     run = _run(specimen.deck(CRUSHED), f"{kind}-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
     stages = run.summary["stages"]
@@ -198,7 +200,9 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
     if stages[-1]["kind"] != "compress":
         return Crushed(0.0, None, None, failed, None, run)
     found = stages[-1]["results"]
-    return Crushed(found["f_c_MPa"] or 0.0, found["E_GPa"], found["strain_at_peak"], failed, found["quasi_static"], run)
+    if found["f_c_MPa"] is None:
+        raise ValueError(f"{run.folder}: no f_c: {found['f_c_none_because']}")
+    return Crushed(found["f_c_MPa"], found["E_GPa"], found["strain_at_peak"], failed, found["quasi_static"], run)
 
 
 def cold(specimen: Specimen) -> Crushed:

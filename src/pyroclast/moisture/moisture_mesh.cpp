@@ -1,0 +1,100 @@
+#include "pyroclast/moisture/moisture_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pyroclast {
+
+namespace {
+
+/// Share of the line of centroids that each cell keeps where a bent face would take all of it.
+constexpr double kLeastShare = 0.02;
+
+template <int Dim>
+std::vector<Vec<Dim>> centroids(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry) {
+  std::vector<Vec<Dim>> found(model.block_count());
+  for (int b = 0; b < model.block_count(); ++b) {
+    double volume = 0.0;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
+      Vec<Dim> sum;
+      for (const int g : model.zones[z]) sum += model.position[g];
+      found[b] += sum * (geometry.volume[z] / (Dim + 1));
+      volume += geometry.volume[z];
+    }
+    found[b] *= 1.0 / volume;
+  }
+  return found;
+}
+
+/// Returns a face between two cells: a bent face counts as the plane of its contacts' mean frame.
+template <int Dim>
+CellFace cell_face(const ModelOf<Dim>& model, int face, std::array<int, 2> cells, const Vec<Dim>& from,
+                   const Vec<Dim>& to) {
+  Vec<Dim> centre, vector;
+  double area = 0.0;
+  for (int c = model.face_contacts[face]; c < model.face_contacts[face + 1]; ++c) {
+    const Contact<Dim>& contact = model.contacts[c];
+    centre += model.position[contact.a] * contact.area;
+    vector += contact.normal * contact.area;
+    area += contact.area;
+  }
+  centre *= 1.0 / area;
+  const Vec<Dim> line = to - from;
+  const double length = norm(line);
+  const double share =
+      std::clamp(dot(vector, centre - from) / dot(vector, line), kLeastShare, 1.0 - kLeastShare);
+  return {cells, norm(vector), {share * length, (1.0 - share) * length}};
+}
+
+}  // namespace
+
+template <int Dim>
+MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
+                           const std::vector<bool>& takes_part, const std::vector<OutlineFace<Dim>>& outer) {
+  MoistureMesh mesh;
+  mesh.cell_of_block.assign(model.block_count(), -1);
+  for (int b = 0; b < model.block_count(); ++b) {
+    if (!takes_part[model.block_material[b]]) continue;
+    mesh.cell_of_block[b] = mesh.cell_count();
+    double volume = 0.0;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) volume += geometry.volume[z];
+    mesh.volume.push_back(volume);
+    mesh.block.push_back(b);
+    mesh.material.push_back(model.block_material[b]);
+  }
+  const std::vector<Vec<Dim>> centroid = centroids(model, geometry);
+  const std::vector<int> block_of = gridpoint_blocks(model);
+  for (int face = 0; face < model.face_count(); ++face) {
+    const Contact<Dim>& first = model.contacts[model.face_contacts[face]];
+    const int a = block_of[first.a], b = block_of[first.b];
+    const std::array<int, 2> cells{mesh.cell_of_block[a], mesh.cell_of_block[b]};
+    if (cells[0] < 0 || cells[1] < 0) continue;
+    mesh.faces.push_back(cell_face(model, face, cells, centroid[a], centroid[b]));
+  }
+  for (const OutlineFace<Dim>& face : outer) {
+    const int block = block_of[face.gridpoints[0]], cell = mesh.cell_of_block[block];
+    if (cell < 0) continue;
+    mesh.outer_faces.push_back({cell, face.area, std::abs(dot(face.normal, face.centre - centroid[block]))});
+  }
+  return mesh;
+}
+
+std::vector<double> means_of_cells(const Model& model, const MoistureMesh& mesh,
+                                   const std::vector<double>& zone_volume,
+                                   const std::vector<double>& of_zones) {
+  std::vector<double> means(mesh.volume.size());
+  for (int cell = 0; cell < mesh.cell_count(); ++cell) {
+    const int b = mesh.block[cell];
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
+      means[cell] += zone_volume[z] * of_zones[z];
+    means[cell] /= mesh.volume[cell];
+  }
+  return means;
+}
+
+template MoistureMesh moisture_mesh(const ModelOf<2>&, const ZoneGeometry<2>&, const std::vector<bool>&,
+                                    const std::vector<OutlineFace<2>>&);
+template MoistureMesh moisture_mesh(const ModelOf<3>&, const ZoneGeometry<3>&, const std::vector<bool>&,
+                                    const std::vector<OutlineFace<3>>&);
+
+}  // namespace pyroclast
