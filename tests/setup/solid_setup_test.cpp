@@ -14,6 +14,7 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
+#include "pyroclast/specimen/grain_fit.hpp"
 #include "stages/result_of.hpp"
 
 namespace pyroclast {
@@ -44,6 +45,28 @@ std::string cylinder() {
 
 std::string with_more(const std::string& deck, const std::string& tables) {
   return deck + "\n" + tables;
+}
+
+/// A deck whose stones have a shape.
+std::string shaped(const std::string& deck, const std::string& shape) {
+  return with(deck, "[blocks]", "[aggregates.grain_shape]\n" + shape + "\n\n[blocks]");
+}
+
+// Promise: a deck whose blocks follow stones of a shape makes a body with the stones' volume, each of its own
+// blocks.
+TEST(SolidDeck, BlocksFollowStonesOfAShape) {
+  for (const char* const shape : {"kind = \"ellipse\"\nelongation = [1.2, 1.6]\nflatness = [1, 1.3]",
+"kind = \"harmonics\"\nelongation = [1, 1.4]\nroughness = [0.02, 0.05]"}) {
+    std::string deck = shaped(shipped_case("starter_3d"), shape);
+    const auto begin = deck.find("rule = \"fit\"");
+    deck.replace(begin, std::string("rule = \"fit\"").size(), "rule = \"follow\"");
+    const auto simulation = make_simulation(read(with(deck, "count = 3000", "count = 2000")));
+    const auto& made = std::get<specimen::Specimen<3>>(*simulation->specimen());
+    EXPECT_EQ(made.cells.cells.size(), 2000U) << shape;
+    EXPECT_NEAR(made.fraction_of_stones, made.fraction_placed, 0.03 * made.fraction_placed) << shape;
+    EXPECT_TRUE(std::ranges::all_of(made.stones, [](const auto& stone) { return stone.shape != nullptr; }));
+    for (const auto& fit : specimen::fits_of(made)) EXPECT_GE(fit.blocks, 1) << shape;
+  }
 }
 
 TEST(SolidDeck, OneLineMakesASolidOfADeckWithoutPlaces) {
@@ -114,6 +137,14 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
       {with(solid(), "[aggregates]", notch + "[aggregates]"), {"specimen.notches", "in a solid yet"}},
       {with(solid(), "relaxation = 0", "relaxation = 5"), {"blocks.relaxation", "relaxation = 0"}},
       {with(solid(), "count = 60", "file = \"a.tess\""), {"blocks.file", "count or size"}},
+      {shaped(solid(), "kind = \"ellipse\"\nelongation = [1, 2]"),
+       {"superposition.rule", "rule = \"follow\" or rule = \"centroid\""}},
+      {shaped(solid(), "kind = \"polygon\"\nelongation = [1, 2]\ncorners = [3, 8]"),
+       {"aggregates.grain_shape.corners", "4"}},
+      {shaped(solid(), "kind = \"ellipse\"\nelongation = [1, 2]\norientation = [\"0 deg\", \"9 deg\"]"),
+       {"aggregates.grain_shape.orientation", "leave the key out"}},
+      {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
+       {"aggregates.grain_shape.flatness", "grains of a solid"}},
       {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),
        {"mechanics.kinematics", "kinematics = \"small\""}},
       {with_more(solid(),

@@ -17,7 +17,7 @@ namespace {
 
 /// Radius of the circle of a grain's area over the block size.
 double radius_in_blocks(const GrainFit& fit, const Specimen<2>& specimen) {
-  return std::sqrt(fit.area / std::numbers::pi) / specimen.metrics.mean_size;
+  return std::sqrt(fit.extent / std::numbers::pi) / specimen.metrics.mean_size;
 }
 
 SpecimenParameters following(std::uint64_t seed) {
@@ -36,13 +36,13 @@ TEST(GrainFit, BlocksFollowTheSurfacesOfGrains) {
     for (const GrainFit& fit : fits_of(specimen)) {
       const double radius = radius_in_blocks(fit, specimen);
       if (radius >= 1.5) {
-        EXPECT_NEAR(fit.interface / fit.perimeter, 1.0, radius >= 3.0 ? 0.02 : 0.05);
+        EXPECT_NEAR(fit.interface / fit.size, 1.0, radius >= 3.0 ? 0.02 : 0.05);
         continue;
       }
       ++small;
       EXPECT_EQ(fit.blocks, 1);
-      off += std::abs(fit.area_of_blocks / fit.area - 1.0) > 0.02 ? 1 : 0;
-      EXPECT_NEAR(fit.area_of_blocks / fit.area, 1.0, 0.1);
+      off += std::abs(fit.extent_of_blocks / fit.extent - 1.0) > 0.02 ? 1 : 0;
+      EXPECT_NEAR(fit.extent_of_blocks / fit.extent, 1.0, 0.1);
     }
   }
   EXPECT_LE(off, small / 50);
@@ -56,7 +56,7 @@ TEST(GrainFit, SuperposedBlocksMakeTheInterfaceLonger) {
   for (const GrainFit& fit : fits_of(specimen)) {
     if (radius_in_blocks(fit, specimen) < 3.0) continue;
     interface += fit.interface;
-    perimeter += fit.perimeter;
+    perimeter += fit.size;
   }
   EXPECT_NEAR(interface / perimeter, 4.0 / std::numbers::pi, 0.05);
 }
@@ -69,10 +69,10 @@ TEST(GrainFit, ShapesAreFollowedToo) {
     const Specimen<2> specimen = make_specimen(p);
     double area = 0.0, of_blocks = 0.0, interface = 0.0, perimeter = 0.0;
     for (const GrainFit& fit : fits_of(specimen)) {
-      area += fit.area;
-      of_blocks += fit.area_of_blocks;
+      area += fit.extent;
+      of_blocks += fit.extent_of_blocks;
       interface += fit.interface;
-      perimeter += fit.perimeter;
+      perimeter += fit.size;
     }
     EXPECT_NEAR(of_blocks / area, 1.0, 0.01);
     EXPECT_NEAR(interface / perimeter, 1.0, 0.03);
@@ -113,10 +113,10 @@ TEST(GrainFit, TellsTheDistanceOfEdgesFromTheOutline) {
     return grain_of({{{x0, -1}}, {{x1, -1}}, {{x1, 2}}, {{x0, 2}}});
   };
   const GrainFit same = fits_of(with_middle_square(box(1.0, 2.0))).at(0);
-  EXPECT_DOUBLE_EQ(same.area, 3.0);
-  EXPECT_DOUBLE_EQ(same.perimeter, 8.0);
+  EXPECT_DOUBLE_EQ(same.extent, 3.0);
+  EXPECT_DOUBLE_EQ(same.size, 8.0);
   EXPECT_EQ(same.blocks, 1);
-  EXPECT_DOUBLE_EQ(same.area_of_blocks, 1.0);
+  EXPECT_DOUBLE_EQ(same.extent_of_blocks, 1.0);
   EXPECT_DOUBLE_EQ(same.interface, 2.0);
   EXPECT_NEAR(same.deviation, 0.0, 1e-12);
   const GrainFit off = fits_of(with_middle_square(box(0.9, 2.3))).at(0);
@@ -132,8 +132,8 @@ TEST(GrainFit, TellsTheDistanceOfEdgesFromTheOutline) {
 // Promise: from a circle the distance is that at three points of each edge, by Gauss's rule.
 TEST(GrainFit, TellsTheDistanceOfEdgesFromACircle) {
   const GrainFit fit = fits_of(with_middle_square({{{1.5, 0.5}}, 1.2, 0, 0, nullptr})).at(0);
-  EXPECT_DOUBLE_EQ(fit.area, 0.36 * std::numbers::pi);
-  EXPECT_DOUBLE_EQ(fit.perimeter, 1.2 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(fit.extent, 0.36 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(fit.size, 1.2 * std::numbers::pi);
   // points at 0 and sqrt(0.15) from the middle of an edge, which is 0.5 from the centre
   const double in_middle = 0.5 - 0.6, beside = std::sqrt(0.25 + 0.15) - 0.6;
   EXPECT_NEAR(fit.deviation, std::sqrt((8 * in_middle * in_middle + 10 * beside * beside) / 18), 1e-12);
@@ -149,7 +149,7 @@ TEST(GrainFit, CountsEdgesBetweenGrainsForBoth) {
   const auto fits = fits_of(s);
   ASSERT_EQ(fits.size(), 3U);
   EXPECT_EQ(fits[0].blocks, 2);
-  EXPECT_DOUBLE_EQ(fits[0].area_of_blocks, 2.0);
+  EXPECT_DOUBLE_EQ(fits[0].extent_of_blocks, 2.0);
   EXPECT_DOUBLE_EQ(fits[0].interface, 1.0);
   EXPECT_NEAR(fits[0].deviation, 0.0, 1e-12);
   EXPECT_DOUBLE_EQ(fits[1].interface, 1.0);
@@ -204,7 +204,7 @@ TEST(GrainFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
     for (const int blocks : {150, 600}) {
       const Specimen<2> specimen = with_stone(cut_ellipse(centre, a, b), blocks);
       const GrainFit fit = fits_of(specimen).front();
-      EXPECT_NEAR(fit.area_of_blocks / fit.area, 1.0, fit.blocks > 1 ? 0.01 : 0.05);
+      EXPECT_NEAR(fit.extent_of_blocks / fit.extent, 1.0, fit.blocks > 1 ? 0.01 : 0.05);
       double largest = 0.0;
       std::vector<Vec<2>> polygon;
       for (std::size_t cell = 0; cell < specimen.cells.cells.size(); ++cell) {

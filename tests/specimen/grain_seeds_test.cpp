@@ -22,12 +22,12 @@ constexpr double kOffset = 0.4, kPower = 0.25 - kOffset * kOffset;
 /// Seeds around grains in a square of 20, unless a test says another body.
 struct Made {
   explicit Made(std::vector<Grain<2>> all, const BlockSizes& block_sizes = BlockSizes(1.0),
-                std::vector<GrainSeeds::Way> ways = {}, Region body = Region::rectangle(20.0, 20.0))
+                std::vector<WayToFollow> ways = {}, Region body = Region::rectangle(20.0, 20.0))
       : grains(std::move(all)),
         sizes(block_sizes),
         region(std::move(body)),
         outline(region, sizes),
-        seeds(grains, ways.empty() ? std::vector<GrainSeeds::Way>(grains.size()) : ways, region, outline,
+        seeds(grains, ways.empty() ? std::vector<WayToFollow>(grains.size()) : ways, region, &outline,
               sizes) {}
 
   /// Seeds of a grain; -1: those between grains.
@@ -44,7 +44,7 @@ struct Made {
   BlockSizes sizes;
   Region region;
   OutlineSeeds outline;
-  GrainSeeds seeds;
+  GrainSeeds<2> seeds;
 };
 
 const Vec<2> kMiddle{{10.0, 10.0}};

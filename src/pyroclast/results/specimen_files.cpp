@@ -67,12 +67,15 @@ std::string outlines_csv(const std::vector<specimen::Grain<2>>& grains) {
 }
 
 /// Returns the fit of each grain: how well its blocks have its shape.
-std::string grain_fit_csv(const specimen::Specimen<2>& s) {
-  std::string csv = "diameter_m,area_m2,perimeter_m,blocks,area_of_blocks_m2,interface_m,deviation_m\n";
+template <int Dim>
+std::string grain_fit_csv(const specimen::Specimen<Dim>& s) {
+  std::string csv =
+      Dim == 2 ? "diameter_m,area_m2,perimeter_m,blocks,area_of_blocks_m2,interface_m,deviation_m\n"
+               : "diameter_m,volume_m3,surface_m2,blocks,volume_of_blocks_m3,interface_m2,deviation_m\n";
   const auto fits = specimen::fits_of(s);
   for (std::size_t i = 0; i < fits.size(); ++i)
-    csv += fmt::format("{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g}\n", s.stones[i].diameter, fits[i].area,
-                       fits[i].perimeter, fits[i].blocks, fits[i].area_of_blocks, fits[i].interface,
+    csv += fmt::format("{:.9g},{:.9g},{:.9g},{},{:.9g},{:.9g},{:.9g}\n", s.stones[i].diameter, fits[i].extent,
+                       fits[i].size, fits[i].blocks, fits[i].extent_of_blocks, fits[i].interface,
                        fits[i].deviation);
   return csv;
 }
@@ -153,6 +156,7 @@ void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::Spec
                                     {"without_a_block", c.without_a_block}});
   files["specimen.json"] = json.dump(2) + "\n";
   add_stones(files, s.stones, asked);
+  if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 
 }  // namespace

@@ -296,24 +296,38 @@ specimen::ShapeParameters read_shape(const Section& s, const DeckSpace& space) {
   specimen::ShapeParameters p;
   p.kind = s.choice<GrainShape>(
       "kind",
-      {{"ellipse", GrainShape::ellipse, "an ellipse"},
-       {"polygon", GrainShape::polygon, "a convex polygon with corners at random on an ellipse"},
+      {{"ellipse", GrainShape::ellipse, "an ellipse, in a solid an ellipsoid"},
+       {"polygon", GrainShape::polygon,
+        "a convex polygon with corners at random on an ellipse, in a solid a polyhedron with corners on an "
+        "ellipsoid"},
        {"harmonics", GrainShape::harmonics,
-        "r = 1 + sum D_n cos(n angle + phase_n) with n from 3 to 12, drawn out to its elongation"}},
+        "r = 1 + sum D_n cos(n angle + phase_n) with n from 3 to 12, drawn out to its elongation; in a solid "
+        "with spherical harmonics of these degrees"}},
       "shape of the grains; without this table they are circles, in a solid balls");
-  if (space.is_solid())
-    s.error("kind", "grains of a solid are balls: other shapes are for bodies of the plane");
   p.elongation = spread_of(s, "elongation",
                            s.numbers("elongation", Range::between(1.0, 5.0).usually(1.0, 2.5),
-                                     "least and largest length over width of the ellipse"));
+                                     "least and largest length over width of the ellipse, or ellipsoid"));
+  if (s.has("flatness")) {
+    if (!space.is_solid())
+      s.error("flatness", "is width over thickness of grains of a solid; those of a plane have elongation");
+    p.flatness = spread_of(s, "flatness",
+                           s.numbers("flatness", Range::between(1.0, 5.0).usually(1.0, 2.5),
+                                     "least and largest width over thickness in a solid; without this key "
+                                     "grains are as thick as wide"));
+  }
+  s.know({"flatness"});
   const double turn = 2.0 * std::numbers::pi;
   const auto angles = s.optional_quantities(
       "orientation", unit::angle, Range::between(-turn, turn),
-      "least and largest angle of the length from the x axis; without this key all angles are as likely");
+      "least and largest angle of the length from the x axis; without this key all angles are as likely, and "
+      "grains of a solid are always turned at random");
+  if (!angles.empty() && space.is_solid())
+    s.error("orientation", "grains of a solid are turned at random: leave the key out");
   if (!angles.empty()) p.orientation = spread_of(s, "orientation", angles);
   if (p.kind == GrainShape::polygon)
-    p.corners = spread_of(
-        s, "corners", s.numbers("corners", Range::between(3.0, 24.0), "least and largest number of corners"));
+    p.corners = spread_of(s, "corners",
+                          s.numbers("corners", Range::between(space.is_solid() ? 4.0 : 3.0, 24.0),
+                                    "least and largest number of corners; in a solid from 4 on"));
   else
     s.know({"corners"});
   if (p.kind == GrainShape::harmonics) {

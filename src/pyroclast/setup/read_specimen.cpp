@@ -184,16 +184,19 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
         "has a block first"},
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
        {"follow", specimen::Superposition::follow,
-        "nothing is superposed: edges of blocks follow the surfaces of the grains, "
+        "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the grains, "
         "see [Grains](../do/bodies.md#grains)"}},
       "when a block is aggregate");
-  if (p.superposition == specimen::Superposition::follow) {
-    if (space.is_solid())
-      superposition.error(
-          "rule", "\"follow\" is for bodies of the plane: blocks of a solid cannot follow grains yet");
-    if (p.blocks.cells)
-      superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");
-  }
+  if (p.superposition == specimen::Superposition::follow && p.blocks.cells)
+    superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");
+  const bool has_shapes = std::ranges::any_of(specimen::stone_kinds(p), [](const auto* kind) {
+    return kind->shape.kind != specimen::GrainShape::circle;
+  });
+  if (space.is_solid() && has_shapes && p.superposition != specimen::Superposition::follow &&
+      p.superposition != specimen::Superposition::centroid)
+    superposition.error("rule",
+                        "the part of a block that a grain_shape covers is not worked out in a solid: "
+                        "rule = \"follow\" or rule = \"centroid\"");
   if (p.superposition == specimen::Superposition::area)
     p.covered_fraction =
         superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -136,7 +137,7 @@ class SeedDraw {
     seeds.position.resize(kept_);
     seeds.radius.resize(kept_);
     owner_.resize(kept_);
-    along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(along_spacing_));
+    along_.emplace(grains_, ways_, region_, &outline_, sizes_.scaled_to(along_spacing_));
     add_along();
     const auto missing = static_cast<std::size_t>(std::max(0, parameters_.count - block_count()));
     const auto count = static_cast<std::ptrdiff_t>(std::min(free.position.size(), missing));
@@ -219,7 +220,7 @@ class SeedDraw {
   double spacing_along() {
     const double room = parameters_.count - static_cast<double>(outline_.positions().size());
     const auto too_many = [&](double spacing) {
-      along_.emplace(grains_, ways_, region_, outline_, sizes_.scaled_to(spacing));
+      along_.emplace(grains_, ways_, region_, &outline_, sizes_.scaled_to(spacing));
       // area in which blocks of the mean size would be as many
       double blocks = 0.0, area = region_.extent();
       for_each_block(along_->owners(), [&](int grain, bool is_one) {
@@ -277,8 +278,8 @@ class SeedDraw {
   std::optional<PlaceDraw<2>> places_;  ///< where blocks are not alike
   OutlineSeeds outline_;
   double along_spacing_ = 0.0;  ///< mean distance of seeds along surfaces, m
-  std::vector<GrainSeeds::Way> ways_;
-  std::optional<GrainSeeds> along_;
+  std::vector<WayToFollow> ways_;
+  std::optional<GrainSeeds<2>> along_;
   std::vector<int> owner_;  ///< grain of each seed that is kept, -1: of none
   std::size_t kept_ = 0;    ///< number of seeds that the outline and grains ask for
 };
@@ -372,6 +373,206 @@ Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& 
   }
 }
 
+/// Factor of the volume of a stone by which it is followed larger or smaller in a correction: the cube root
+/// would be right at once but for narrow gaps.
+constexpr double kCorrectionInSpace = 0.25;
+/// Volume of a block beside the surface of a stone, over the cube of the distance of seeds.
+constexpr double kVolumeBesideStone = 0.5;
+/// Factor of the distance of seeds along stones where these take more than all blocks.
+constexpr double kWider = 1.02;
+/// Times that blocks are regularised in all; after the first one stones whose volume is off are corrected.
+constexpr int kRegularisations = 2;
+/// Steps of the search for the distance of seeds along stones in space.
+constexpr int kBisectionsInSpace = 8;
+/// Places tried before a free seed may come a step closer to the surface of a stone.
+constexpr int kTriesAtOneDistance = 500;
+
+/// Seeds in space of which some stand in pairs along the surfaces of stones, in the order of a curve through
+/// the body.
+class FollowingSeeds {
+ public:
+  FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Grain<3>> stones,
+                 const BlockSizes& sizes, Random& random)
+      : parameters_(parameters),
+        body_(body),
+        stones_(stones),
+        sizes_(sizes),
+        random_(random),
+        ways_(stones.size()),
+        aim_(stones.size(), 1.0) {
+    spacing_ = spacing_along();
+    make({});
+  }
+
+  /// Draws seeds whose cells fail anew, without a surface.
+  void redraw(const std::vector<int>& which) {
+    std::vector<Vec<3>> standing;
+    for (std::size_t i = 0; i < owner.size(); ++i)
+      if (!std::ranges::binary_search(which, static_cast<int>(i))) standing.push_back(seeds.position[i]);
+    SpacedSeedDraw draw = free_draw(standing);
+    for (const int i : which) {
+      put_free(static_cast<std::size_t>(i), draw.draw());
+      is_free_[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+
+  /// Follows stones whose blocks are too large or too small as larger or smaller ones. Tells whether there
+  /// was one.
+  bool correct(const Cells<3>& cells) {
+    const std::vector<double> volume = volumes(cells);
+    bool is_off = false;
+    for (std::size_t i = 0; i < stones_.size(); ++i) {
+      const double share = volume[i] / (aim_[i] * extent(stones_[i]));
+      if (std::abs(share - 1.0) < kOffInArea) continue;
+      is_off = true;
+      ways_[i].size *= std::clamp(std::pow(share, -kCorrectionInSpace), 0.95, 1.05);
+    }
+    if (!is_off) return false;
+    remake();
+    return true;
+  }
+
+  /// Takes back the last correction, after which cells fail. Returns false where there was none.
+  bool take_back() {
+    if (!before_) return false;
+    std::tie(seeds, owner, is_free_) = std::move(*before_);
+    before_.reset();
+    return true;
+  }
+
+  /// Aims at other volumes where those of regularised blocks are off. Tells whether one was, and then makes
+  /// the seeds anew.
+  bool aim(const Cells<3>& regular) {
+    const std::vector<double> volume = volumes(regular);
+    bool is_off = false;
+    for (std::size_t i = 0; i < stones_.size(); ++i) {
+      const double share = volume[i] / extent(stones_[i]);
+      if (std::abs(share - 1.0) < 2.0 * kOffInArea) continue;
+      is_off = true;
+      aim_[i] /= std::clamp(share, 0.9, 1.1);
+      ways_[i].size *= std::pow(std::clamp(share, 0.9, 1.1), -kCorrectionInSpace);
+    }
+    if (is_off) remake();
+    return is_off;
+  }
+
+  Seeds<3> seeds;
+  std::vector<int> owner;  ///< stone of each seed, -1: of none
+
+ private:
+  std::vector<double> volumes(const Cells<3>& cells) const {
+    std::vector<double> volume(stones_.size());
+    for (std::size_t cell = 0; cell < owner.size(); ++cell)
+      if (owner[cell] >= 0) volume[owner[cell]] += extent(cells, cell);
+    return volume;
+  }
+
+  void remake() {
+    before_.emplace(seeds, owner, is_free_);
+    std::vector<Vec<3>> free;
+    for (std::size_t i = 0; i < owner.size(); ++i)
+      if (is_free_[i]) free.push_back(seeds.position[i]);
+    make(free);
+  }
+
+  void follow(double spacing) { along_.emplace(stones_, ways_, body_, nullptr, sizes_.scaled_to(spacing)); }
+
+  /// Finds the distance of seeds along surfaces with which all blocks are about as large, m. Throws Error
+  /// where there are not enough blocks.
+  double spacing_along() {
+    const auto too_many = [&](double spacing) {
+      follow(spacing);
+      double volume = body_.extent();  // in which blocks of the mean size would be as many
+      const double of_block = spacing * spacing * spacing;
+      for (const int stone : along_->owners()) {
+        const bool is_one = stone >= 0 && along_->is_one_cell(stone);
+        const double relative = is_one ? sizes_.relative(stones_[stone].centre) : 1.0;
+        volume -= is_one ? extent(stones_[stone]) / (relative * relative * relative)
+                         : kVolumeBesideStone * of_block;
+      }
+      const auto blocks = static_cast<double>(along_->owners().size());
+      return blocks + std::max(0.0, volume / of_block) > parameters_.count;
+    };
+    double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
+    for (int i = 0; i < kBisectionsInSpace; ++i) {
+      const double middle = std::sqrt(low * high);
+      (too_many(middle) ? low : high) = middle;
+    }
+    if (too_many(high))
+      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} stones: take more",
+                              parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
+                              stones_.size()));
+    return high;
+  }
+
+  /// Places the seeds along surfaces, and free ones up to the number of blocks.
+  /// \param places  places of free seeds, taken as far as they are needed
+  void make(const std::vector<Vec<3>>& places) {
+    follow(spacing_);
+    const std::size_t count = parameters_.count;
+    while (along_->owners().size() > count) follow(spacing_ *= kWider);
+    seeds.position = along_->positions();
+    seeds.radius = along_->radii();
+    owner = along_->owners();
+    is_free_.assign(owner.size(), 0);
+    for (const Vec<3>& place : places)
+      if (owner.size() < count && along_->leave_room_at(place, kLeastClear)) add_free(place);
+    if (owner.size() < count) {
+      SpacedSeedDraw draw = free_draw(seeds.position);
+      while (owner.size() < count) add_free(draw.draw());
+    }
+    sort();
+  }
+
+  SpacedSeedDraw free_draw(const std::vector<Vec<3>>& standing) {
+    SpacedSeedDraw draw(body_, sizes_, random_, [this](const Vec<3>& place, int tried) {
+      return along_->leave_room_at(
+          place, std::max(kLeastClear, kClearOfGrains - 0.05 * (tried / kTriesAtOneDistance)));
+    });
+    for (const Vec<3>& place : standing) draw.add(place);
+    return draw;
+  }
+
+  void add_free(const Vec<3>& place) {
+    seeds.position.emplace_back();
+    seeds.radius.emplace_back();
+    owner.emplace_back();
+    is_free_.push_back(1);
+    put_free(owner.size() - 1, place);
+  }
+
+  void put_free(std::size_t i, const Vec<3>& place) {
+    const double spread = parameters_.radius_spread;
+    seeds.position[i] = place;
+    seeds.radius[i] = 0.5 * sizes_.at(place) * random_.uniform(1.0 - spread, 1.0 + spread);
+    owner[i] = along_->grain_at(place);
+  }
+
+  void sort() {
+    const auto order = order_along_curve(seeds.position, body_);
+    const auto sorted = [&](auto& values) {
+      auto before = std::exchange(values, {});
+      for (const std::size_t i : order) values.push_back(before[i]);
+    };
+    sorted(seeds.position);
+    sorted(seeds.radius);
+    sorted(owner);
+    sorted(is_free_);
+  }
+
+  const BlockParameters& parameters_;
+  const Prism& body_;
+  std::span<const Grain<3>> stones_;
+  const BlockSizes& sizes_;
+  Random& random_;
+  std::vector<WayToFollow> ways_;
+  std::vector<double> aim_;  ///< volume of the blocks of each stone before they are regularised, over its own
+  double spacing_ = 0.0;     ///< mean distance of seeds along surfaces, m
+  std::optional<GrainSeeds<3>> along_;
+  std::vector<char> is_free_;                                                        ///< of each seed
+  std::optional<std::tuple<Seeds<3>, std::vector<int>, std::vector<char>>> before_;  ///< the last correction
+};
+
 /// Adds the sizes that blocks were to have, where they are not alike.
 template <int Dim>
 void add_sizes(const BlockSizes& sizes, Blocks<Dim>& blocks) {
@@ -405,25 +606,47 @@ Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, R
 }
 
 Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random, Team* team,
-                      std::span<const Grain<3>> /*stones*/) {
+                      std::span<const Grain<3>> stones) {
   const BlockSizes sizes = sizes_of<3>(parameters, body);
-  Seeds<3> seeds = spaced_seeds(body, sizes, parameters.count, parameters.radius_spread, random);
+  std::optional<FollowingSeeds> following;
+  if (!stones.empty()) following.emplace(parameters, body, stones, sizes, random);
+  Seeds<3> free;
+  if (!following) free = spaced_seeds(body, sizes, parameters.count, parameters.radius_spread, random);
+  Seeds<3>& seeds = following ? following->seeds : free;
   const std::string what = fmt::format("Tessellation of {} blocks", parameters.count);
   Blocks<3> blocks;
-  for (; blocks.rounds < kMostRoundsInSpace; ++blocks.rounds) {
+  int corrections = 0, regularisations = 0, most_corrections = kCorrections;
+  for (int failed = 0; failed < kMostRoundsInSpace; ++blocks.rounds) {
     Laguerre<3> result = laguerre_cells(seeds, body, team);
     if (!result.broken.empty()) {
       blocks.done.seeds_redrawn += static_cast<int>(result.broken.size());
-      redraw(seeds, result.broken, body, sizes, random);
+      if (++failed > kRoundsOfCorrection && following && following->take_back())
+        most_corrections = corrections;
+      else if (following)
+        following->redraw(result.broken);
+      else
+        redraw(seeds, result.broken, body, sizes, random);
       continue;
     }
+    failed = 0;
     require_valid(result.cells, body, what);
+    if (following && corrections < most_corrections && following->correct(result.cells)) {
+      ++corrections;
+      continue;
+    }
+    if (following) blocks.grain = following->owner;
     if (parameters.shortest_edge > 0.0) {
-      const auto regular = regularise(result.cells, body, result.plane,
-                                      {parameters.shortest_edge, parameters.largest_bend}, sizes);
+      const auto regular =
+          regularise(result.cells, body, result.plane, {parameters.shortest_edge, parameters.largest_bend},
+                     sizes, blocks.grain);
       blocks.done.vertices_merged = regular.vertices_merged;
       blocks.done.edges_left_short = regular.edges_left_short;
       require_valid(result.cells, body, what);
+      if (following && ++regularisations < kRegularisations && most_corrections > corrections &&
+          following->aim(result.cells)) {
+        most_corrections += kCorrections;
+        continue;
+      }
     }
     blocks.cells = std::move(result.cells);
     add_sizes(sizes, blocks);

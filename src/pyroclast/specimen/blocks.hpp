@@ -39,7 +39,8 @@ BlockSizes sizes_of(const BlockParameters& parameters, const OutlineOf<Dim>& out
 Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
                       Team* team = nullptr, std::span<const Grain<2>> grains = {});
 /// Draws seeds that keep their distance, tessellates the body and regularises. Seeds whose cells fail are
-/// drawn anew. Blocks of a solid follow no stones yet.
+/// drawn anew. Where blocks follow stones, these are followed larger or smaller until the volumes of their
+/// blocks are right.
 Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random,
                       Team* team = nullptr, std::span<const Grain<3>> stones = {});
 

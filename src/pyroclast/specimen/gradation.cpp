@@ -8,6 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/shell.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -54,7 +55,10 @@ namespace {
 template <int Dim>
 Grain<Dim> draw_unit_grain(const ShapeParameters& parameters, Random& random) {
   Grain<Dim> grain{{}, 1.0};
-  if constexpr (Dim == 2) grain.shape = draw_outline(parameters, random);
+  if constexpr (Dim == 2)
+    grain.shape = draw_outline(parameters, random);
+  else
+    grain.shape = draw_shell(parameters, random);
   return grain;
 }
 

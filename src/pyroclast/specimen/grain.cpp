@@ -7,6 +7,7 @@
 
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/shell.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -82,10 +83,7 @@ std::optional<std::vector<OutlineSide>> sides_towards(const Grain<2>& grain, con
 /// Tells whether two grains with outlines are closer to each other than `gap` (m). A grain within another
 /// one, or on it, is closer.
 bool are_closer_outlines(const Grain<2>& a, const Grain<2>& b, double gap) {
-  const Vec<2> between = b.centre - a.centre;
-  const double inner_a = a.shape->inner_radius(), inner_b = b.shape->inner_radius(),
-               inner = inner_a + inner_b + gap;
-  if (inner_a > 0.0 && inner_b > 0.0 && inner > 0.0 && dot(between, between) < inner * inner) return true;
+  if (are_surely_closer(a, b, gap)) return true;
   const auto of_b = sides_towards(b, a, gap);
   if (!of_b) return true;
   const auto of_a = sides_towards(a, b, gap);
@@ -156,12 +154,33 @@ Approach<2> approach_of_outlines(const Grain<2>& a, const Grain<2>& b) {
   return overlap ? least_move(of_a, of_b) : least;
 }
 
-}  // namespace
-
-double distance(const Grain<2>& grain, const Vec<2>& place) {
-  const Vec<2> there = place - grain.centre;
-  return grain.shape ? grain.shape->nearest(there).distance : norm(there) - 0.5 * grain.diameter;
+const Shell& shell_of(const Grain<3>& stone) {
+  return dynamic_cast<const Shell&>(*stone.shape);
 }
+
+bool are_closer_shells(const Grain<3>& a, const Grain<3>& b, double gap) {
+  if (are_surely_closer(a, b, gap)) return true;
+  const Vec<3> between = b.centre - a.centre;
+  return shell_of(a).has_vertex_closer(shell_of(b), -between, gap) ||
+         shell_of(b).has_vertex_closer(shell_of(a), between, gap);
+}
+
+/// Depth of an overlap over the lesser diameter from which on the line of the centres tells the way apart.
+constexpr double kDeep = 0.25;
+
+Approach<3> approach_of_shells(const Grain<3>& a, const Grain<3>& b) {
+  const Vec<3> between = b.centre - a.centre;
+  const auto of_b = shell_of(b).approach_of_vertices(shell_of(a), between);
+  const auto of_a = shell_of(a).approach_of_vertices(shell_of(b), -between);
+  Approach<3> least{of_b.distance, of_b.point.normal};
+  if (of_a.distance < of_b.distance) least = {of_a.distance, -of_a.point.normal};
+  if (const double apart = norm(between);
+      apart > 0.0 && least.gap < -kDeep * std::min(a.diameter, b.diameter))
+    least.direction = between * (1.0 / apart);
+  return least;
+}
+
+}  // namespace
 
 Vec<2> place_within(const Grain<2>& grain) {
   const Outline* const outline = as_outline(grain);
@@ -176,9 +195,12 @@ std::vector<Vec<2>> corners_of(const Grain<2>& grain) {
   return corners;
 }
 
-bool holds(const Grain<2>& grain, const Vec<2>& place) {
-  if (!grain.shape) return norm(place - grain.centre) <= 0.5 * grain.diameter;
-  return distance(grain, place) <= 0.0;
+std::vector<Vec<3>> corners_of(const Grain<3>& grain) {
+  const auto* const shell = dynamic_cast<const Shell*>(grain.shape.get());
+  if (!shell) return {};
+  std::vector<Vec<3>> corners = shell->vertices();
+  for (Vec<3>& corner : corners) corner += grain.centre;
+  return corners;
 }
 
 template <int Dim>
@@ -194,8 +216,12 @@ Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b) {
     const Approach<Dim> other = approach(b, a);
     return {other.gap, -other.direction};
   }
-  if constexpr (Dim == 2)
-    if (b.shape) return approach_of_outlines(a, b);
+  if (b.shape) {
+    if constexpr (Dim == 2)
+      return approach_of_outlines(a, b);
+    else
+      return approach_of_shells(a, b);
+  }
   const auto from_a = a.shape->nearest(between);
   return {from_a.distance - 0.5 * b.diameter, from_a.point.normal};
 }
@@ -222,8 +248,12 @@ bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap) {
   const double closest = reach(a) + gap + reach(b);
   if (!(dot(between, between) < closest * closest)) return false;
   if (!a.shape && !b.shape) return true;
-  if constexpr (Dim == 2)
-    if (a.shape && b.shape) return are_closer_outlines(a, b, gap);
+  if (a.shape && b.shape) {
+    if constexpr (Dim == 2)
+      return are_closer_outlines(a, b, gap);
+    else
+      return are_closer_shells(a, b, gap);
+  }
   return approach(a, b).gap < gap;
 }
 

@@ -44,22 +44,45 @@ double extent_of(std::span<const Grain<Dim>> grains) {
 }
 
 /// Returns the distance of a place from the surface of a grain, m: negative within.
-double distance(const Grain<2>& grain, const Vec<2>& place);
+template <int Dim>
+double distance(const Grain<Dim>& grain, const Vec<Dim>& place) {
+  const Vec<Dim> there = place - grain.centre;
+  return grain.shape ? grain.shape->nearest(there).distance : norm(there) - 0.5 * grain.diameter;
+}
 
 /// Returns a place well within a grain.
 Vec<2> place_within(const Grain<2>& grain);
+inline Vec<3> place_within(const Grain<3>& grain) {
+  return grain.centre;
+}
 
 /// Tells whether a place lies in a grain or on its surface.
-bool holds(const Grain<2>& grain, const Vec<2>& place);
+template <int Dim>
+bool holds(const Grain<Dim>& grain, const Vec<Dim>& place) {
+  if (!grain.shape) return norm(place - grain.centre) <= 0.5 * grain.diameter;
+  return distance(grain, place) <= 0.0;
+}
 
 /// Largest overlap of grains that touch each other or the surface of the body, as a share of the diameter: a
 /// file of nine digits tells no more.
 inline constexpr double kTouching = 1e-6;
 
 /// Tells whether two grains are closer to each other than `gap` (m), or overlap; with a gap of 0 or less
-/// whether they overlap by more than its length. Exact for circles, balls and the sides of outlines.
+/// whether they overlap by more than its length. Exact for circles, balls and the sides of outlines; two
+/// shells are as near as their vertices tell.
 template <int Dim>
 bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap);
+
+/// Tells whether the balls within two grains are closer to each other than `gap` (m): then the grains are.
+template <int Dim>
+bool are_surely_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap) {
+  const auto inner_of = [](const Grain<Dim>& grain) {
+    return grain.shape ? grain.shape->inner_radius() : 0.5 * grain.diameter;
+  };
+  const Vec<Dim> between = b.centre - a.centre;
+  const double inner_a = inner_of(a), inner_b = inner_of(b), inner = inner_a + inner_b + gap;
+  return inner_a > 0.0 && inner_b > 0.0 && inner > 0.0 && dot(between, between) < inner * inner;
+}
 
 /// Nearest approach of two grains.
 template <int Dim>
@@ -77,6 +100,8 @@ Approach<2> approach(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to
 
 /// Returns the corners of a grain's outline where it lies, m; empty for a circle.
 std::vector<Vec<2>> corners_of(const Grain<2>& grain);
+/// Returns the vertices of a stone's shell where it lies, m; empty for a ball.
+std::vector<Vec<3>> corners_of(const Grain<3>& grain);
 
 /// Tells whether a segment comes closer to a grain than `gap` (m), or runs through the grain; with a gap of 0
 /// or less whether the segment lies deeper in the grain than its length.

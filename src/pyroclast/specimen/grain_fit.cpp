@@ -5,8 +5,7 @@
 
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
-#include "pyroclast/specimen/polygon.hpp"
-#include "pyroclast/specimen/topology.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -24,35 +23,65 @@ double mean_square_distance(const Grain<2>& grain, const Vec<2>& from, const Vec
   return sum;
 }
 
+/// Returns the length of an edge, m, or the area of a face, m².
+double size_of(const Cells<2>& cells, const Facet<2>& edge) {
+  return norm(cells.vertices[edge.corners[1]] - cells.vertices[edge.corners[0]]);
+}
+double size_of(const Cells<3>& cells, const Facet<3>& face) {
+  return norm(area_vector(cells, face));
+}
+
+/// Returns the integral over a facet of the square of its distance from the surface of a grain.
+double square_distance(const Cells<2>& cells, const Facet<2>& edge, const Grain<2>& grain) {
+  return size_of(cells, edge) *
+         mean_square_distance(grain, cells.vertices[edge.corners[0]], cells.vertices[edge.corners[1]]);
+}
+/// By the middles of the edges of each triangle, which is exact for squares.
+double square_distance(const Cells<3>& cells, const Facet<3>& face, const Grain<3>& grain) {
+  const auto at = [&](std::size_t i) { return cells.vertices[face.corners[i]]; };
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < face.corners.size(); ++i) {
+    const Vec<3> a = at(0), b = at(i), c = at(i + 1);
+    const double area = 0.5 * norm(cross(b - a, c - a));
+    for (const Vec<3>& middle : {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
+      const double away = distance(grain, middle);
+      sum += area / 3.0 * away * away;
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
-std::vector<GrainFit> fits_of(const Specimen<2>& specimen) {
+template <int Dim>
+std::vector<GrainFit> fits_of(const Specimen<Dim>& specimen) {
   if (specimen.grain.empty()) return {};
   std::vector<GrainFit> fits;
-  for (const Grain<2>& grain : specimen.stones)
-    fits.push_back({extent(grain), grain.shape ? grain.shape->size() : Ball<2>(0.5 * grain.diameter).size()});
-  const Cells<2>& tessellation = specimen.cells;
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+  for (const Grain<Dim>& grain : specimen.stones)
+    fits.push_back(
+        {extent(grain), grain.shape ? grain.shape->size() : Ball<Dim>(0.5 * grain.diameter).size()});
+  for (std::size_t c = 0; c < specimen.cells.cells.size(); ++c) {
     if (specimen.grain[c] < 0) continue;
-    corners(tessellation, c, polygon);
     GrainFit& fit = fits[specimen.grain[c]];
-    fit.area_of_blocks += area(polygon);
+    fit.extent_of_blocks += extent(specimen.cells, c);
     ++fit.blocks;
   }
-  for (const Facet<2>& edge : facets(tessellation)) {
-    const int left = specimen.grain[edge.inner], right = edge.outer < 0 ? -1 : specimen.grain[edge.outer];
-    if (left == right || edge.outer < 0) continue;
-    const Vec<2>&from = tessellation.vertices[edge.corners[0]], &to = tessellation.vertices[edge.corners[1]];
+  for (const Facet<Dim>& facet : facets(specimen.cells)) {
+    if (facet.outer < 0) continue;
+    const int left = specimen.grain[facet.inner], right = specimen.grain[facet.outer];
+    if (left == right) continue;
     for (const int grain : {left, right}) {
       if (grain < 0) continue;
-      fits[grain].interface += norm(to - from);
-      fits[grain].deviation += norm(to - from) * mean_square_distance(specimen.stones[grain], from, to);
+      fits[grain].interface += size_of(specimen.cells, facet);
+      fits[grain].deviation += square_distance(specimen.cells, facet, specimen.stones[grain]);
     }
   }
   for (GrainFit& fit : fits)
     if (fit.interface > 0.0) fit.deviation = std::sqrt(fit.deviation / fit.interface);
   return fits;
 }
+
+template std::vector<GrainFit> fits_of(const Specimen<2>&);
+template std::vector<GrainFit> fits_of(const Specimen<3>&);
 
 }  // namespace pyroclast::specimen

@@ -42,9 +42,13 @@ class GrainGrid {
 
   /// Tells whether a stone comes closer than `gap` to this one (m).
   bool overlaps(const Grain<Dim>& stone, double gap) const {
-    return !for_each_bin(bins_, reach(stone, gap), [&](const std::vector<int>& bin) {
-      return std::ranges::none_of(bin, [&](int number) { return are_closer(stone, stones_[number], gap); });
-    });
+    const auto are_all_away = [&](auto is_closer) {
+      return for_each_bin(bins_, reach(stone, gap), [&](const std::vector<int>& bin) {
+        return std::ranges::none_of(bin, [&](int number) { return is_closer(stone, stones_[number], gap); });
+      });
+    };
+    // most stones that lie on another one are found out by the balls within both
+    return (stone.shape && !are_all_away(are_surely_closer<Dim>)) || !are_all_away(are_closer<Dim>);
   }
 
   /// Collects the numbers of the stones whose bins touch a box, each once, in the order of insertion.

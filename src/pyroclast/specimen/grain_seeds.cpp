@@ -17,18 +17,28 @@ constexpr double kFromSurface = 0.4;   ///< distance of a seed from the surface
 constexpr double kAlongSurface = 0.9;  ///< distance from seed to seed along the surface
 /// Half of the gap below which two grains share a row of seeds: wider ones have room for two.
 constexpr double kNarrow = 0.7;
-constexpr double kOneCell = 1.5;  ///< radius below which the cells of a grain become one
+/// Radius below which the cells of a grain become one; in space it has one seed.
+template <int Dim>
+constexpr double kOneCell = Dim == 2 ? 1.5 : 1.1;
 /// Least number of tangents around a grain of one cell.
 constexpr int kFewestTangents = 7;
 /// The same where a grain has corners, and its sides one tangent each: two in a line would make a flat
 /// corner.
 constexpr int kFewestSides = 4;
+/// Largest distance of tangents around a stone of one cell in space, over its radius: some 16 tangents. Where
+/// it has sides, of one of them alone: each side has a tangent, unless larger ones are near.
+constexpr double kOfOneTangent = 0.95, kOfOneSide = 1.2;
 /// Radius of the ball around a small grain over that within it up to which the grain has one seed.
 constexpr double kRound = 1.15;
 /// Least distance between two seeds outside of grains.
 constexpr double kApartBetween = 0.45;
 /// Radii within a grain between which it has a seed in the middle: a free seed would seldom find the place.
-constexpr double kFewestAround = 1.3, kMiddle = 2.0;
+template <int Dim>
+constexpr double kFewestAround = Dim == 2 ? 1.3 : 0.0;
+constexpr double kMiddle = 2.0;
+/// Halvings of the gap in the search for its middle.
+template <int Dim>
+constexpr int kHalvingsOfGap = Dim == 2 ? 40 : 20;
 /// Distance of a grain's surface from the outline of the body up to which the outline cuts the grain.
 constexpr double kCut = 1e-3;
 /// Power of a point of the surface, in squared spacings: with it a seed at the offset has a radius of 0.5.
@@ -49,15 +59,43 @@ double area_of_tangents(const std::vector<SurfacePoint<2>>& points) {
   return area(corners);
 }
 
+/// Returns the radius of a circle of an area, or of a ball of a volume.
+template <int Dim>
+double radius_of(double extent) {
+  return Dim == 2 ? std::sqrt(extent / std::numbers::pi) : std::cbrt(0.75 * extent / std::numbers::pi);
+}
+
+/// Returns the factor by which the polygon of tangents `along` apart is larger than a shape.
+double larger_by_tangents(const Surface<2>& shape, double along, const Surface<2>::Relative& relative) {
+  return std::sqrt(area_of_tangents(shape.points(along, {}, relative)) / shape.extent());
+}
+
+/// Returns the factor by which the polyhedron of tangents is larger: over each hexagon of tangents on a ball
+/// stands 0.0802 of its area over the radius on average. Sides are tangents of themselves.
+double larger_by_tangents(const Surface<3>& shape, double along, const Surface<3>::Relative& /*relative*/) {
+  if (shape.corner_count() > 0) return 1.0;
+  const double radius = radius_of<3>(shape.extent());
+  return std::cbrt(1.0 + 3.0 * 0.0802 * 0.866 * along * along / (radius * radius));
+}
+
+double distance_before_cuts(const Region& region, const Vec<2>& place) {
+  return region.distance_before_cuts(place);
+}
+double distance_before_cuts(const Prism& body, const Vec<3>& place) {
+  return body.distance(place);
+}
+
 }  // namespace
 
-GrainSeeds::GrainSeeds(std::span<const Grain<2>> grains, std::span<const Way> ways, const Region& region,
-                       const OutlineSeeds& outline, const BlockSizes& sizes)
+template <int Dim>
+GrainSeeds<Dim>::GrainSeeds(std::span<const Grain<Dim>> grains, std::span<const Way> ways,
+                            const OutlineOf<Dim>& region, const OutlineSeeds* outline,
+                            const BlockSizes& sizes)
     : region_(region),
       outline_(outline),
       sizes_(sizes),
-      grid_(region.box().low, region.box().high, grains),
-      between_(region.box().low, region.box().high, sizes.mean()) {
+      grid_(region.low(), region.high(), grains),
+      between_(region.low(), region.high(), sizes.mean()) {
   for (std::size_t i = 0; i < grains.size(); ++i) grains_.push_back(followed(grains[i], ways[i]));
   std::vector<int> order(grains_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -65,49 +103,51 @@ GrainSeeds::GrainSeeds(std::span<const Grain<2>> grains, std::span<const Way> wa
   for (const int number : order) follow(number);
 }
 
-GrainSeeds::Followed GrainSeeds::followed(const Grain<2>& grain, const Way& way) const {
-  std::shared_ptr<const Surface<2>> shape = grain.shape;
-  if (!shape) shape = std::make_shared<Ball<2>>(0.5 * grain.diameter);
-  const double radius = std::sqrt(shape->extent() / std::numbers::pi), spacing = sizes_.at(grain.centre);
-  Followed result{grain.centre, shape, radius < kOneCell * spacing, spacing};
+template <int Dim>
+typename GrainSeeds<Dim>::Followed GrainSeeds<Dim>::followed(const Grain<Dim>& grain, const Way& way) const {
+  std::shared_ptr<const Surface<Dim>> shape = grain.shape;
+  if (!shape) shape = std::make_shared<Ball<Dim>>(0.5 * grain.diameter);
+  const double radius = radius_of<Dim>(shape->extent()), spacing = sizes_.at(grain.centre);
+  Followed result{grain.centre, shape, radius < kOneCell<Dim> * spacing, spacing};
   if (!result.is_one_cell)
     result.along = kAlongSurface * spacing;
   else if (shape->corner_count() > 0)
-    result.along = shape->size() / kFewestSides;
+    result.along = Dim == 2 ? shape->size() / kFewestSides : kOfOneSide * radius;
   else  // seeds outside of the grain are as far from each other as those along a large one
     result.along = std::min(kAlongSurface * spacing * radius / (radius + kFromSurface * spacing),
-                            shape->size() / kFewestTangents);
-  const double larger =
-      std::sqrt(area_of_tangents(shape->points(result.along, {}, spacing_over(result))) / shape->extent());
+                            Dim == 2 ? shape->size() / kFewestTangents : kOfOneTangent * radius);
+  const double larger = larger_by_tangents(*shape, result.along, spacing_over(result));
   result.drawn = way.size / std::clamp(larger, 0.9, 1.25);
   result.shape = shape->scaled(result.drawn);
   const double inner = result.shape->inner_radius(), outer = result.shape->bounding_radius();
-  if (result.is_one_cell && (way.is_of_one_seed || outer < kRound * inner))
+  if (result.is_one_cell && (Dim == 3 || way.is_of_one_seed || outer < kRound * inner))
     result.power = inner * outer + kPower * spacing * spacing;
   return result;
 }
 
 /// Returns how the distance of seeds along a grain changes; empty where it does not. A grain of one cell has
 /// tangents that are alike.
-Surface<2>::Relative GrainSeeds::spacing_over(const Followed& grain) const {
+template <int Dim>
+typename Surface<Dim>::Relative GrainSeeds<Dim>::spacing_over(const Followed& grain) const {
   if (sizes_.is_even() || grain.is_one_cell) return {};
-  return [this, centre = grain.centre, spacing = grain.spacing](const Vec<2>& place) {
+  return [this, centre = grain.centre, spacing = grain.spacing](const Vec<Dim>& place) {
     return sizes_.at(centre + place) / spacing;
   };
 }
 
-void GrainSeeds::follow(int number) {
+template <int Dim>
+void GrainSeeds<Dim>::follow(int number) {
   Followed& grain = grains_[number];
   const double inner = grain.shape->inner_radius() / grain.spacing;
-  if (!grain.is_one_cell && inner > kFewestAround && inner < kMiddle)
+  if (!grain.is_one_cell && inner > kFewestAround<Dim> && inner < kMiddle)
     add(grain.centre, 0.25 * grain.spacing * grain.spacing, number);
   if (grain.power > 0.0) add(grain.centre, grain.power, number);
-  std::vector<Vec<2>> taken;
-  for (const Vec<2>& foot : grain.feet) taken.push_back(foot - grain.centre);
+  std::vector<Vec<Dim>> taken;
+  for (const Vec<Dim>& foot : grain.feet) taken.push_back(foot - grain.centre);
   for (const auto& [at, normal] : grain.shape->points(grain.along, taken, spacing_over(grain))) {
     const Foot foot{grain.centre + at, normal};
     grain.feet.push_back(foot.at);
-    if (region_.distance_before_cuts(grain.centre + at * (1.0 / grain.drawn)) > -kCut * grain.spacing) {
+    if (distance_before_cuts(region_, grain.centre + at * (1.0 / grain.drawn)) > -kCut * grain.spacing) {
       add_within(number, foot);
       continue;
     }
@@ -126,21 +166,22 @@ void GrainSeeds::follow(int number) {
     const Foot across = nearest(other, foot.at + half * normal);
     const double along = beside.is_one_cell ? beside.along : kAlongSurface * sizes_.at(across.at);
     const bool is_free = std::ranges::none_of(
-        beside.feet, [&](const Vec<2>& there) { return norm(there - across.at) < 0.5 * along; });
+        beside.feet, [&](const Vec<Dim>& there) { return norm(there - across.at) < 0.5 * along; });
     if (!is_free) continue;
     beside.feet.push_back(across.at);
     add_within(other, across);
   }
 }
 
-GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
+template <int Dim>
+typename GrainSeeds<Dim>::Gap GrainSeeds<Dim>::gap_from(int number, const Foot& foot) const {
   const double spacing = sizes_.at(foot.at), most = kNarrow * spacing;
   Gap gap{most, -1};
   // the place on the normal that is as far from another surface as from the foot
   const auto halve = [&](auto distance) {
     if (distance(gap.half) >= gap.half) return false;
     double low = 0.0, high = gap.half;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < kHalvingsOfGap<Dim>; ++i) {
       const double middle = 0.5 * (low + high);
       (distance(middle) > middle ? low : high) = middle;
     }
@@ -148,7 +189,7 @@ GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
     return true;
   };
   for (const int other : near(foot.at, 2.0 * most)) {
-    if (other == number) continue;
+    if (other == number || is_surely_farther(other, foot.at + gap.half * foot.normal, gap.half)) continue;
     if (halve([&](double half) { return distance(other, foot.at + half * foot.normal); })) gap.other = other;
   }
   if (gap.other < 0) gap.half = kFromSurface * spacing;
@@ -156,25 +197,36 @@ GrainSeeds::Gap GrainSeeds::gap_from(int number, const Foot& foot) const {
   return gap;
 }
 
-GrainSeeds::Foot GrainSeeds::nearest(int number, const Vec<2>& place) const {
+template <int Dim>
+typename GrainSeeds<Dim>::Foot GrainSeeds<Dim>::nearest(int number, const Vec<Dim>& place) const {
   const auto found = grains_[number].shape->nearest(place - grains_[number].centre);
   return {grains_[number].centre + found.point.at, found.point.normal};
 }
 
-double GrainSeeds::distance(int number, const Vec<2>& place) const {
+template <int Dim>
+double GrainSeeds<Dim>::distance(int number, const Vec<Dim>& place) const {
   return grains_[number].shape->nearest(place - grains_[number].centre).distance;
 }
 
-std::vector<int> GrainSeeds::near(const Vec<2>& place, double distance) const {
+/// Tells whether a place is farther from a grain than a distance (m), as the ball around the grain tells.
+template <int Dim>
+bool GrainSeeds<Dim>::is_surely_farther(int number, const Vec<Dim>& place, double distance) const {
+  return norm(place - grains_[number].centre) - grains_[number].shape->bounding_radius() > distance;
+}
+
+template <int Dim>
+std::vector<int> GrainSeeds<Dim>::near(const Vec<Dim>& place, double distance) const {
   std::vector<int> numbers;
-  Vec<2> half;
+  Vec<Dim> half;
   half.c.fill(distance);
   grid_.collect(place - half, place + half, numbers);
   return numbers;
 }
 
-bool GrainSeeds::add(const Vec<2>& place, double square, int owner) {
-  if (!region_.is_rectangle() && !outline_.leave_room_at(place)) return false;
+template <int Dim>
+bool GrainSeeds<Dim>::add(const Vec<Dim>& place, double square, int owner) {
+  if constexpr (Dim == 2)
+    if (!region_.is_rectangle() && !outline_->leave_room_at(place)) return false;
   if (region_.distance(place) >= 0.0) return false;
   positions_.push_back(place);
   radii_.push_back(std::sqrt(std::max(square, 0.0)));
@@ -182,33 +234,41 @@ bool GrainSeeds::add(const Vec<2>& place, double square, int owner) {
   return true;
 }
 
-void GrainSeeds::add_within(int number, const Foot& foot) {
+template <int Dim>
+void GrainSeeds<Dim>::add_within(int number, const Foot& foot) {
   if (grains_[number].power > 0.0) return;
   const double spacing = sizes_.at(foot.at);
   const double within = std::min(kFromSurface * spacing, 0.5 * grains_[number].shape->inner_radius());
   add(foot.at - within * foot.normal, within * within + kPower * spacing * spacing, number);
 }
 
-void GrainSeeds::add_between(const Vec<2>& place, double square) {
+template <int Dim>
+void GrainSeeds<Dim>::add_between(const Vec<Dim>& place, double square) {
   if (grain_at(place) >= 0) return;
   const double apart = kApartBetween * sizes_.at(place);
   if (between_.overlaps({place, 0.0}, apart)) return;
   if (add(place, square, -1)) between_.insert({place, 0.0});
 }
 
-int GrainSeeds::grain_at(const Vec<2>& place) const {
+template <int Dim>
+int GrainSeeds<Dim>::grain_at(const Vec<Dim>& place) const {
   for (const int number : near(place, 0.0))
-    if (distance(number, place) < 0.0) return number;
+    if (!is_surely_farther(number, place, 0.0) && distance(number, place) < 0.0) return number;
   return -1;
 }
 
-bool GrainSeeds::leave_room_at(const Vec<2>& place, double clear) const {
+template <int Dim>
+bool GrainSeeds<Dim>::leave_room_at(const Vec<Dim>& place, double clear) const {
   const double away = clear * sizes_.at(place);
   for (const int number : near(place, away)) {
+    if (is_surely_farther(number, place, away)) continue;
     const double outside = distance(number, place);
     if (std::abs(outside) < away || (outside < 0.0 && grains_[number].is_one_cell)) return false;
   }
   return true;
 }
+
+template class GrainSeeds<2>;
+template class GrainSeeds<3>;
 
 }  // namespace pyroclast::specimen

@@ -117,11 +117,10 @@ class Growth {
       }
     std::vector<Vec<Dim>> points{grain.centre};
     double least = target + 0.5 * grain.diameter;
-    if constexpr (Dim == 2)
-      if (grain.shape) {
-        points = corners_of(grain);
-        least = target;
-      }
+    if (grain.shape) {
+      points = corners_of(grain);
+      least = target;
+    }
     Vec<Dim> push{};
     for (const Vec<Dim>& point : points)
       for (int d = 0; d < Dim; ++d) {

@@ -171,6 +171,7 @@ std::vector<SurfacePoint<2>> Ball<2>::points(double spacing, std::span<const Vec
 }
 
 template class Ball<2>;
+template class Ball<3>;
 
 Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   const std::size_t n = corners_.size();

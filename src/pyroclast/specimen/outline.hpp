@@ -32,6 +32,11 @@ class Ball final : public Surface<Dim> {
   double radius_;
 };
 
+template <>
+std::vector<SurfacePoint<2>> Ball<2>::points(double, std::span<const Vec<2>>, const Relative&) const;
+template <>
+std::vector<SurfacePoint<3>> Ball<3>::points(double, std::span<const Vec<3>>, const Relative&) const;
+
 /// Closed line in the plane as straight pieces, without crossings, around its centroid: an ellipse, a
 /// polygon, a stone of harmonics or of an image. Pieces that meet at a small angle stand for a curve; at a
 /// larger one they have a corner.

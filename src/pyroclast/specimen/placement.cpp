@@ -96,8 +96,13 @@ bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance
                               std::ranges::none_of(room.lines, [&](const std::array<Vec<2>, 2>& line) {
                                 return are_closer(grain, line[0], line[1], distance);
                               }));
+  } else {
+    if (!room.distance)
+      return std::ranges::all_of(corners_of(grain), [&](const Vec<3>& c) { return is_in_box(c, distance); });
+    if (room.distance(grain.centre) <= -reach(grain) - distance) return true;
+    return std::ranges::all_of(corners_of(grain),
+                               [&](const Vec<3>& c) { return room.distance(c) <= -distance; });
   }
-  return false;
 }
 
 template bool lies_within(const Grain<2>&, const Room<2>&, double);

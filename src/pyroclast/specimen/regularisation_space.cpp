@@ -26,6 +26,9 @@ constexpr double kFirstWay = 0.1, kShortestWay = 1e-3;
 constexpr double kLittle = 0.02;
 /// Cosine of the angle to a plane from which on an axis tells no way along it.
 constexpr double kAcross = 0.3;
+/// Cosine of the angle between a face and the surface of a stone at a vertex from which on the vertex lies on
+/// an edge of the stone.
+constexpr double kCosineAtEdge = 0.9;
 /// Share of its flatness by which a fan must be better than another, beyond rounding.
 constexpr double kRounding = 1e-9;
 
@@ -39,7 +42,7 @@ struct ShortEdge {
 class CellRegulariser {
  public:
   CellRegulariser(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
-                  const RegularCells& asked, const BlockSizes& sizes)
+                  const RegularCells& asked, const BlockSizes& sizes, std::span<const int> stone)
       : complex_(cells),
         body_(body),
         asked_(asked),
@@ -55,6 +58,7 @@ class CellRegulariser {
         faces_at_[v].push_back(static_cast<int>(f));
         if (plane[f] >= 0) planes_[v].push_back(plane[f]);
       }
+    if (!stone.empty()) find_surfaces(stone);
     for (auto& planes : planes_) sort_unique(planes);
     for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
       size_of_cell_.push_back(size_ * mean_relative(cells.cells[cell]));
@@ -77,6 +81,50 @@ class CellRegulariser {
   }
 
  private:
+  /// Lets vertices between cells of different stones lie on the surfaces of these, which count behind the
+  /// planes of the body. An edge of a surface counts once more.
+  void find_surfaces(std::span<const int> stone) {
+    surface_of_face_.assign(complex_.faces.size(), -1);
+    const int first = static_cast<int>(body_.planes().size());
+    for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
+      const Facet<3>& face = complex_.faces[f];
+      if (face.outer < 0 || stone[face.inner] == stone[face.outer]) continue;
+      surface_of_face_[f] = first + 2 * std::max(stone[face.inner], stone[face.outer]);
+      for (const int v : face.corners) planes_[v].push_back(surface_of_face_[f]);
+    }
+    for (std::size_t v = 0; v < planes_.size(); ++v) {
+      sort_unique(planes_[v]);
+      const std::vector<int> surfaces = planes_[v];
+      for (const int surface : surfaces)
+        if (surface >= first && is_on_edge(static_cast<int>(v), surface)) planes_[v].push_back(surface + 1);
+    }
+  }
+
+  /// Returns the vector of a face's area that points out of the stone, or out of the cell with the lower
+  /// number between two stones.
+  Vec<3> area_on_surface(int face) const { return area_vector(complex_, complex_.faces[face]); }
+
+  /// Returns the normal of a surface at a vertex, of any sense.
+  Vec<3> normal_at(int vertex, int surface) const {
+    Vec<3> sum{};
+    for (const int f : faces_at_[vertex])
+      if (surface_of_face_[f] == surface) {
+        const Vec<3> area = area_on_surface(f);
+        sum += dot(area, sum) < 0.0 ? -area : area;
+      }
+    const double length = norm(sum);
+    return length > 0.0 ? sum * (1.0 / length) : sum;
+  }
+
+  bool is_on_edge(int vertex, int surface) const {
+    const Vec<3> normal = normal_at(vertex, surface);
+    return std::ranges::any_of(faces_at_[vertex], [&](int f) {
+      if (surface_of_face_[f] != surface) return false;
+      const Vec<3> area = area_on_surface(f);
+      return std::abs(dot(area, normal)) < kCosineAtEdge * norm(area);
+    });
+  }
+
   /// Merges short edges and small faces as long as one can be merged. Returns the number of vertices that
   /// have gone.
   int merge_all() {
@@ -307,13 +355,19 @@ class CellRegulariser {
     const auto& planes = planes_[vertex];
     std::vector<Vec<3>> ways;
     if (planes.size() > 2) return ways;
-    const auto normal = [&](std::size_t i) { return body_.planes()[planes[i]].normal; };
+    const int first_surface = static_cast<int>(body_.planes().size());
+    for (const int plane : planes)
+      if (plane >= first_surface && (plane - first_surface) % 2 == 1) return ways;
+    const auto normal = [&](std::size_t i) {
+      return planes[i] < first_surface ? body_.planes()[planes[i]].normal : normal_at(vertex, planes[i]);
+    };
     for (int d = 0; d < 3; ++d) {
       Vec<3> way{};
       way[d] = 1.0;
       if (planes.size() == 1) way -= normal(0) * dot(normal(0), way);
       if (planes.size() == 2) {
         const Vec<3> line = cross(normal(0), normal(1));
+        if (planes[1] >= first_surface && !(norm(line) > kAcross)) return {};
         way = line * (dot(line, way) / dot(line, line));
       }
       if (const double length = norm(way); length > kAcross) ways.push_back(way * (1.0 / length));
@@ -380,6 +434,7 @@ class CellRegulariser {
   std::vector<std::vector<int>> planes_;    ///< planes of the body on which each vertex lies, ascending
   std::vector<std::vector<int>> faces_at_;  ///< faces at each vertex; none: merged into another
   std::vector<double> way_;                 ///< by which each vertex moves next, m
+  std::vector<int> surface_of_face_;        ///< number of the surface on which each face lies; -1: on none
   std::vector<double> flatness_;            ///< of each cell
   std::vector<std::array<int, 2>> edges_;   ///< scratch of is_ball
 };
@@ -387,8 +442,8 @@ class CellRegulariser {
 }  // namespace
 
 RegularisedCells regularise(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
-                            const RegularCells& asked, const BlockSizes& sizes) {
-  return CellRegulariser(cells, body, plane, asked, sizes).run();
+                            const RegularCells& asked, const BlockSizes& sizes, std::span<const int> stone) {
+  return CellRegulariser(cells, body, plane, asked, sizes, stone).run();
 }
 
 }  // namespace pyroclast::specimen

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
+#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/specimen/grain_grid.hpp"
 
 namespace pyroclast::specimen {
 
@@ -23,43 +23,9 @@ constexpr double kLeastDistance = 0.62;
 /// Tries of one seed, after which there is no place.
 constexpr int kMostTries = 1'000'000;
 
-/// Draws seeds that keep their distance: balls that may touch.
-class SpacedSeedDraw {
- public:
-  SpacedSeedDraw(const Prism& body, const BlockSizes& sizes, Random& random)
-      : body_(body), sizes_(sizes), random_(random), grid_(body.low(), body.high(), distance(sizes.mean())) {
-    if (!sizes.is_even()) places_.emplace(room_in(body), sizes);
-  }
-
-  void add(const Vec<3>& point) { grid_.insert({point, distance(sizes_.at(point))}); }
-
-  /// Draws a seed at a place with room.
-  Vec<3> draw() {
-    for (int i = 0; i < kMostTries; ++i) {
-      const Vec<3> point = places_ ? places_->draw(random_) : anywhere();
-      if (body_.distance(point) >= 0.0 || grid_.overlaps({point, distance(sizes_.at(point))}, 0.0)) continue;
-      add(point);
-      return point;
-    }
-    throw Error(fmt::format("after {} blocks there is no place for more: blocks of {:.3g} mm are too large",
-                            grid_.stones().size(), 1e3 * sizes_.mean()));
-  }
-
- private:
-  static double distance(double size) { return kLeastDistance * size; }
-
-  Vec<3> anywhere() {
-    Vec<3> point;
-    for (int d = 0; d < 3; ++d) point[d] = random_.uniform(body_.low()[d], body_.high()[d]);
-    return point;
-  }
-
-  const Prism& body_;
-  const BlockSizes& sizes_;
-  Random& random_;
-  std::optional<PlaceDraw<3>> places_;  ///< where blocks are not alike
-  GrainGrid<3> grid_;
-};
+double distance_at(double size) {
+  return kLeastDistance * size;
+}
 
 /// Returns the place of a point along Morton's curve (G. M. Morton, IBM, 1966): the bits of its coordinates,
 /// by turns.
@@ -77,6 +43,44 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Prism& body) {
 }
 
 }  // namespace
+
+SpacedSeedDraw::SpacedSeedDraw(const Prism& body, const BlockSizes& sizes, Random& random, Allows allows)
+    : body_(body),
+      sizes_(sizes),
+      random_(random),
+      allows_(std::move(allows)),
+      grid_(body.low(), body.high(), distance_at(sizes.mean())) {
+  if (!sizes.is_even()) places_.emplace(room_in(body), sizes);
+}
+
+void SpacedSeedDraw::add(const Vec<3>& point) {
+  grid_.insert({point, distance_at(sizes_.at(point))});
+}
+
+Vec<3> SpacedSeedDraw::draw() {
+  for (int i = 0; i < kMostTries; ++i) {
+    const Vec<3> point = places_ ? places_->draw(random_) : anywhere();
+    if (body_.distance(point) >= 0.0 || grid_.overlaps({point, distance_at(sizes_.at(point))}, 0.0)) continue;
+    if (allows_ && !allows_(point, i)) continue;
+    add(point);
+    return point;
+  }
+  throw Error(fmt::format("after {} blocks there is no place for more: blocks of {:.3g} mm are too large",
+                          grid_.stones().size(), 1e3 * sizes_.mean()));
+}
+
+Vec<3> SpacedSeedDraw::anywhere() {
+  Vec<3> point;
+  for (int d = 0; d < 3; ++d) point[d] = random_.uniform(body_.low()[d], body_.high()[d]);
+  return point;
+}
+
+std::vector<std::size_t> order_along_curve(const std::vector<Vec<3>>& places, const Prism& body) {
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return place_on_curve(places[i], body); });
+  return order;
+}
 
 Seeds<3> spaced_seeds(const Prism& body, const BlockSizes& sizes, int count, double spread, Random& random) {
   SpacedSeedDraw draw(body, sizes, random);

@@ -29,8 +29,8 @@ namespace {
 constexpr std::string_view kOnlyCircles = ": notches cut through circles alone, so an outline must end there";
 /// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
-/// Diameter, in block sizes, below which the shape of a stone in space depends on the blocks, and the strength
-/// of the body with it (docs/validation/solid_strengths.md, "The size of blocks").
+/// Diameter, in block sizes, below which the shape of a stone in space depends on the blocks, and the
+/// strength of the body with it (docs/validation/solid_strengths.md, "The size of blocks").
 constexpr double kSmallestStone = 3.0;
 
 void require(bool condition, std::string_view what, double value, std::string_view allowed) {
@@ -196,8 +196,12 @@ void require_of_space(const SpecimenParameters& p) {
     throw Error("a solid cannot be made of cells of a plane");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
   if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
-  for (const auto* const kind : stone_kinds(p))
+  for (const auto* const kind : stone_kinds(p)) {
     if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
+    if (kind->shape.kind != GrainShape::circle && p.superposition != Superposition::follow &&
+        p.superposition != Superposition::centroid)
+      throw Error("shapes of a solid are superposed by the centroids of blocks, or followed");
+  }
 }
 
 /// Returns the size classes of all kinds: the intervals between their sieves.

@@ -49,9 +49,10 @@ struct Stone {
 
 enum class GrainShape : std::uint8_t {
   circle,    ///< a ball in a solid
-  ellipse,   ///< an ellipse of this elongation
-  polygon,   ///< convex, with corners at random on an ellipse (Wang, Kwan and Chan 1999)
-  harmonics  ///< r(angle) = 1 + sum D_n cos(n angle + phase_n) with n from 3 on, drawn out to the elongation
+  ellipse,   ///< an ellipse of this elongation, in a solid an ellipsoid
+  polygon,   ///< convex, with corners at random on an ellipse (Wang, Kwan and Chan 1999); so in a solid
+  harmonics  ///< r(angle) = 1 + sum D_n cos(n angle + phase_n) with n from 3 on, drawn out to the elongation;
+             ///< in a solid with spherical harmonics of the degrees n
 };
 
 /// Numbers between two bounds, each as likely as the other.
@@ -63,6 +64,7 @@ struct Spread {
 struct ShapeParameters {
   GrainShape kind = GrainShape::circle;
   Spread elongation{1.0, 1.0};                ///< length over width
+  Spread flatness{1.0, 1.0};                  ///< in a solid: width over thickness
   Spread orientation{0.0, std::numbers::pi};  ///< angle of the length from the x axis, radians
   Spread corners{5.0, 8.0};                   ///< number of corners of a polygon
   Spread roughness{0.0, 0.0};                 ///< D_3 of harmonics

@@ -40,10 +40,6 @@ double common(const Cells<3>& cells, std::size_t cell, const Grain<3>& stone) {
   return common_volume(cells, cell, stone.centre, 0.5 * stone.diameter);
 }
 
-bool holds(const Grain<3>& stone, const Vec<3>& place) {
-  return norm(place - stone.centre) <= 0.5 * stone.diameter;
-}
-
 /// Returns the stone in which the centroid of each cell lies, -1: in none.
 template <int Dim>
 std::vector<int> stones_at_centroids(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
