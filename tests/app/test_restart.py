@@ -96,6 +96,17 @@ class Resuming(RestartTest):
         self.pyroclast("resume", "out", "--no-figures")
         self.assert_same("whole", "out")
 
+    def test_contacts_that_were_found_go_on(self):
+        found = changes('mechanics.kinematics="finite"', 'mechanics.contacts="found"', "stages[1].velocity=80 mm/s",
+                        "stages[1].stop_strain=8e-3", "stages[1].stop_fraction_of_peak=0.01")
+        self.run_case("whole", *found, "--threads", "1")
+        summary = json.loads((self.folder / "whole/summary.json").read_text())
+        self.assertGreater(summary["energy_J"]["dissipated_contact_area"], 0.0)  # pairs have pressed and slid
+        self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 1e-3)
+        self.broken_off("out", signal.SIGKILL, 900, *found)
+        self.pyroclast("resume", "out", "--threads", "2", "--no-figures")
+        self.assert_same("whole", "out")
+
     def test_a_frame_that_is_lost_is_named(self):
         self.broken_off("out", signal.SIGKILL, 100)
         (self.folder / "out/fields/blocks_0001.hdf").unlink()

@@ -491,6 +491,27 @@ TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
   says("friction = 0.4", "friction = 0.4\nstrength_factor = 0.5", "strength_factor = 0.5: has no effect");
 }
 
+TEST(FoundContacts, AreAskedForByTheDeck) {
+  const auto deck = [](const std::string& kinematics, const std::string& contacts, const std::string& table) {
+    const std::string with_keys =
+        with(paper_deck(), "[mechanics]",
+             "[mechanics]\nkinematics = \"" + kinematics + "\"\ncontacts = \"" + contacts + "\"");
+    return with(with_keys, "[mechanics]", table + "\n[mechanics]");
+  };
+  const auto found = [&](const std::string& table) {
+    return read(deck("finite", "found", table)).moving->mechanics.found;
+  };
+  EXPECT_FALSE(read(paper_deck()).moving->mechanics.found.is_on);
+  EXPECT_TRUE(found("").is_on);
+  EXPECT_EQ(found("").like, "mortar_mortar");
+  EXPECT_EQ(found("").damping, 0.0);
+  EXPECT_EQ(found("[contacts.found]\ndamping = 0.2").damping, 0.2);
+  EXPECT_EQ(found("[contacts.found]\nlike = \"aggregate_mortar\"").like, "aggregate_mortar");
+  expect_in("kinematics = \"finite\" is needed", message(deck("small", "found", "")));
+  expect_in("contacts.found.like", message(deck("finite", "found", "[contacts.found]\nlike = \"steel\"")));
+  expect_in("has no effect", message(deck("finite", "first", "[contacts.found]\nlike = \"mortar_mortar\"")));
+}
+
 // A stated stiffness scales with the block size as E / t_b does, and is as printed at the stated size.
 TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
   const auto setup = read(paper_deck());
@@ -505,8 +526,8 @@ TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
   EXPECT_EQ(make_concrete(setup.block_materials, fixed, 0.006).contacts[mortar_mortar]["K_n"](20.0), 18400e9);
 }
 
-// The second slope is beta K_n. It goes with the inverse of the block size, or is the same at any; G_f2 is the
-// same at any, or goes with the block size.
+// The second slope is beta K_n. It goes with the inverse of the block size, or is the same at any; G_f2 is
+// the same at any, or goes with the block size.
 TEST(WithBlockSize, AreTheSlopeAndTheEnergyThatADeckNames) {
   const auto mortar = [](const std::string& deck, double size, double between) {
     const auto setup = read(deck);

@@ -147,6 +147,8 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
        {"aggregates.grain_shape.flatness", "grains of a solid"}},
       {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),
        {"mechanics.kinematics", "kinematics = \"small\""}},
+      {with(solid(), "safety = 0.9", "safety = 0.9\ncontacts = \"found\""),
+       {"mechanics.contacts", "contacts = \"first\""}},
       {with_more(solid(),
                  "[[inclusions]]\nshape = \"fibre\"\nphase = \"mortar\"\ncount = 3\n"
                  "length = \"30 mm\"\nminimum_gap = \"1 mm\"\n"),

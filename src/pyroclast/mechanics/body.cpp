@@ -11,6 +11,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/energy_ledger.hpp"
+#include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/model/item_halo.hpp"
 
 namespace pyroclast {
@@ -23,9 +24,10 @@ int place_of(const LawTable& law, Remembers what, int dim) {
 
 BodyProperties by_interface(const Model& model, std::vector<ZoneProperties> zones,
                             const std::vector<ContactProperties>& interfaces) {
-  BodyProperties p{std::move(zones), ContactSets(interfaces), {}, {}};
+  BodyProperties p{std::move(zones), ContactSets(interfaces), {}, {}, {}};
   p.of_contact.reserve(model.contact_count());
   for (int c = 0; c < model.contact_count(); ++c) p.of_contact.push_back(model.joint(c).interface);
+  for (int i = 0; i < p.contacts.size(); ++i) p.of_interface.push_back(i);
   return p;
 }
 
@@ -41,6 +43,7 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
       properties(std::move(with)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  if (Dim != 2 && parameters.found.is_on) throw Error("contacts = found: made for 2D only; use first");
   if (Dim == 2 && parameters.gravity[2] != 0.0) throw Error("gravity acts across the plane of this body");
   if (!properties.creep.empty()) creep_strain.resize(model.zones.size());
   list_laws();
@@ -49,6 +52,15 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
   mean_height = chunked_sum(layout.chunks.zones, [&](int z) { return 1.0 / norm(geometry.gradient[z][0]); }) /
                 layout.chunks.zones.whole_count();
   gridpoints_of_whole = layout.chunks.gridpoints.whole_count();
+}
+
+template <int Dim>
+Body<Dim>::~Body() = default;
+
+template <int Dim>
+std::size_t Body<Dim>::memory() const {
+  return pyroclast::memory(layout) + pyroclast::memory(arrays) +
+         (found ? pyroclast::memory(found->arrays) : 0);
 }
 
 template <int Dim>
@@ -223,6 +235,8 @@ void Body<Dim>::name_dissipations() {
         dissipations.emplace_back(loss.name);
   if (creeps() && std::ranges::find(dissipations, kCreep) == dissipations.end())
     dissipations.push_back(kCreep);
+  if (parameters.found.is_on) dissipations.push_back(kContactArea);
+  if (parameters.found.is_on && parameters.found.damping > 0.0) dissipations.push_back(kContactDamping);
   if (dissipations.size() > kMostDissipations)
     throw Error(
         fmt::format("the laws of this body name {} kinds of dissipated energy; at most {} are counted",

@@ -11,6 +11,7 @@
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/material/creep.hpp"
 #include "pyroclast/mechanics/compiled_step.hpp"
+#include "pyroclast/mechanics/found/parameters.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/model/model.hpp"
 
@@ -32,6 +33,7 @@ struct MechanicsParameters {
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;  ///< time step, s: the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
+  FoundParameters found;   ///< contacts that are found; finite kinematics in the plane only
   InstructionSet instructions = best_instruction_set();
   // The parameters from here on change speed, not results.
   LayoutParameters layout;
@@ -46,6 +48,9 @@ struct BodyProperties {
   std::vector<int> of_contact;        ///< index into `contacts` of each contact
   /// Creep of each zone, from these temperatures on; empty where none ever creeps.
   std::vector<CreepIncrement> creep;
+  /// Index into `contacts` of each interface, for found contacts far from every contact of the interface;
+  /// empty where there are none.
+  std::vector<int> of_interface = {};
 };
 
 /// Returns the properties of a body whose contacts differ by interface alone.
@@ -67,6 +72,8 @@ struct TieOfBundle {
   int component;
   std::vector<int> slots;
 };
+
+struct FoundData;
 
 /// Energies that the body books beside its arrays, J, see EnergyLedger.
 struct Books {
@@ -91,6 +98,7 @@ struct Body {
        std::shared_ptr<Team> threads);
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
+  ~Body();
 
   double time_step() const { return state.time_step; }
   /// Tells whether zones of this body can creep.
@@ -106,7 +114,7 @@ struct Body {
   /// Returns the place of the constraints of a gridpoint's pack, once its bundle has some; else -1.
   int constraint_pack_of(int gridpoint) const;
   /// Returns the bytes of all arrays of layout and state.
-  std::size_t memory() const { return pyroclast::memory(layout) + pyroclast::memory(arrays); }
+  std::size_t memory() const;
 
   template <class T>
   FlatArray<T> made(std::size_t size) const {
@@ -153,6 +161,8 @@ struct Body {
   int gridpoints_of_whole = 0;       ///< gridpoints of the whole body, where this is a part
   double least_force = 0.0;          ///< sum over all gridpoints, N; a smaller sum of forces counts as none
   double real_mass = 0.0, moving_mass = 0.0;  ///< kg
+
+  std::unique_ptr<FoundData> found;  ///< contacts that are found; null where contacts are the first ones
 
   std::int64_t steps = 0;
   Books books;

@@ -12,6 +12,12 @@ namespace pyroclast {
 /// Name of the energy that zones lose by creep.
 inline constexpr std::string_view kCreep = "creep";
 
+/// Name of the energy that found contacts lose where their area changes under shear.
+inline constexpr std::string_view kContactArea = "contact_area";
+
+/// Name of the energy that the damping of found contacts takes.
+inline constexpr std::string_view kContactDamping = "contact_damping";
+
 /// Energies lost for good, J: at contacts, named by their laws, and by creep of zones.
 struct Dissipation {
   std::vector<std::string_view> names;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/mechanics/found/found_contacts.hpp"
 #include "pyroclast/mechanics/reader.hpp"
 
 namespace pyroclast {
@@ -23,6 +24,8 @@ void Masses<Dim>::measure_stiffness() {
   body_.stiffness.resize(body_.model.position.size());
   for (int g = 0; g < body_.model.gridpoint_count(); ++g)
     body_.stiffness[g] = body_.state.stiffness[body_.layout.gridpoint_slot[g]];
+  if constexpr (Dim == 2)
+    if (body_.found) FoundContacts(body_).add_stiffness(body_.stiffness);
   set_least_force();
 }
 
@@ -91,6 +94,8 @@ void Masses<Dim>::set_step_over_mass() {
   std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle slots never move
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
     step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
+  if constexpr (Dim == 2)
+    if (body_.found) FoundContacts(body_).follow_properties();  // damping follows the masses
 }
 
 template <int Dim>

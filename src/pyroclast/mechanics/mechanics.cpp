@@ -1,17 +1,21 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/found/found_contacts.hpp"
 
 namespace pyroclast {
 
 namespace {
 
+/// Steps from one hand-over of broken faces to the next: whatever the batches, the same steps of a run.
+constexpr int kStepsToHandOver = 64;
 /// Largest ratio between the time steps of a body and of a state that it takes over.
 constexpr double kSameStep = 2.0;
 
@@ -25,8 +29,11 @@ Mechanics<Dim>::Mechanics(const ModelOf<Dim>& model, const std::vector<double>& 
       mover_(*body_) {
   Body<Dim>& body = *body_;
   Properties<Dim>(body).place();
+  if constexpr (Dim == 2) FoundContacts::make(body);
   Masses<Dim>(body).measure_stiffness();
   Masses<Dim>(body).set(densities);
+  if constexpr (Dim == 2)
+    if (body.found) FoundContacts(body).begin();
   mover_.sweep(1, Pass::measure);
   // no force has acted yet
   std::fill(body.arrays.force.begin(), body.arrays.force.end(), VectorPack<Dim>{});
@@ -62,6 +69,8 @@ void Mechanics<Dim>::change_properties(Change change) {
   const double held_before = before.zones + before.contacts + before.dissipated.total();
   change();
   Properties<Dim>(body).place();
+  if constexpr (Dim == 2)
+    if (body.found) FoundContacts(body).follow_properties();
   auto& displacement = body.arrays.displacement;
   const auto next = displacement;
   const auto old_force = read().forces();
@@ -97,9 +106,27 @@ void Mechanics<Dim>::advance(int steps) {
   constraints().order();
   body.books.property_change += std::exchange(body.books.begun_property_change, 0.0);
   body.books.mass_scaling += std::exchange(body.books.begun_mass_scaling, 0.0);
-  if (steps > 1) mover_.sweep(steps - 1, Pass::move);
-  mover_.sweep(1, Pass::move_and_measure);
-  body.steps += steps;
+  for (int left = steps; left > 0;) {
+    const int now = std::min(left, steps_to_hand_over());
+    left -= now;
+    const int moved = left > 0 ? now : now - 1;
+    if (moved > 0) mover_.sweep(moved, Pass::move);
+    if (left == 0) mover_.sweep(1, Pass::move_and_measure);
+    body.steps += now;
+  }
+}
+
+/// Returns how many steps may follow before broken faces are handed over to found contacts, and hands over
+/// those that are due now.
+template <int Dim>
+int Mechanics<Dim>::steps_to_hand_over() {
+  if constexpr (Dim == 2)
+    if (body_->found) {
+      const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
+      if (since == 0) FoundContacts(*body_).hand_over();
+      return kStepsToHandOver - since;
+    }
+  return std::numeric_limits<int>::max();
 }
 
 template <int Dim>
@@ -121,6 +148,8 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   body.visit_arrays(visitor);
   constraints().visit_state(visitor);
   Properties<Dim>(body).visit_state(visitor);
+  if constexpr (Dim == 2)
+    if (body.found) FoundContacts(body).visit_state(visitor);
   if (!visitor.replaces()) return;
   Masses<Dim>(body).follow_state();
   mover_.take_from_owners();

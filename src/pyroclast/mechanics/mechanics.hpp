@@ -80,6 +80,7 @@ class Mechanics {
  private:
   template <class Change>
   void change_properties(Change change);
+  int steps_to_hand_over();
 
   std::unique_ptr<Body<Dim>> body_;
   Mover<Dim> mover_;

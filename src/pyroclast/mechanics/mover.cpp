@@ -1,7 +1,10 @@
 #include "pyroclast/mechanics/mover.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
+
+#include "pyroclast/mechanics/found/found_contacts.hpp"
 
 namespace pyroclast {
 
@@ -9,6 +12,33 @@ namespace {
 
 /// Strides between two looks at what travels: messages go on only within calls.
 constexpr std::size_t kStridesPerLook = 64;
+
+/// Share of a thread in found contacts: rows, and of its own bundles the gridpoints on which rows act and the
+/// packs whose way is watched.
+struct ShareOfFound {
+  IndexRange rows, loaded, watched;
+};
+
+template <int Dim>
+ShareOfFound share_of_found(const State<Dim>& s, const IndexRange& bundles, int packs, int thread,
+                            int threads) {
+  ShareOfFound share;
+  if (!s.found) return share;
+  const auto rows = static_cast<std::int64_t>(s.found->rows.size());
+  share.rows = {static_cast<int>(rows * thread / threads), static_cast<int>(rows * (thread + 1) / threads)};
+  const auto pack = [&](int bundle) {
+    return bundle < static_cast<int>(s.layout.bundles.size()) ? s.layout.bundles[bundle].first_pack : packs;
+  };
+  const auto range = [&](const auto& list, auto place) {
+    const auto before = [&](int end) {
+      return static_cast<int>(std::ranges::lower_bound(list, end, {}, place) - list.begin());
+    };
+    return IndexRange{before(pack(bundles.first)), before(pack(bundles.last))};
+  };
+  share.loaded = range(s.found->loaded, [](const LoadedGridpoint& g) { return g.slot / kLanes; });
+  share.watched = range(s.found->watched, [](int watched) { return watched; });
+  return share;
+}
 
 }  // namespace
 
@@ -27,26 +57,41 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
     update_faces(s, stride.faces.first, stride.faces.last, measure);
     passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
   };
+  if constexpr (Dim == 2)
+    if (body.found) body.found->seen.moves = pass != Pass::measure;
+  const auto must_search = [&] {
+    double longest = 0.0;
+    for (const Worker& worker : workers_) longest = larger(longest, worker.way_of_found);
+    if constexpr (Dim == 2) return FoundContacts(body).must_search(longest);
+    return false;
+  };
   halo_.spoil(body.arrays);
-  // A call ends before its last step where other work took the cores, and fewer threads go on.
+  // A call ends before its last step where other work took the cores, and fewer threads go on; and where
+  // found contacts need a search.
   for (int left = steps, moved = 0; left > 0; left -= moved) {
     const int threads =
         std::clamp(body.model.zone_count() / body.parameters.zones_for_a_thread, 1, body.team->offered());
     if (static_cast<int>(workers_.size()) != threads) {
       workers_.clear();
       for (Share& share : share_out(body.layout, threads, halo_.bundles_sent()))
-        workers_.push_back({std::move(share), body.make_scratch()});
+        workers_.push_back({std::move(share), body.make_scratch(), 0.0});
     }
+    if constexpr (Dim == 2)
+      if (body.found) FoundContacts(body).search_where_needed();
     const bool ties_join_parts = body.ties_join_parts();
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = body.state;
+      const Share& share = worker.share;
+      const ShareOfFound found =
+          share_of_found(s, share.bundles, body.layout.gridpoint_packs, thread, threads);
       int taken = 0;
-      for (bool is_crowded = false; taken < left && !is_crowded; ++taken) {
-        const Share& share = worker.share;
+      for (bool ends = false; taken < left && !ends; ++taken) {
+        if (s.found) passes.update_found(s, found.rows.first, found.rows.last);
         for (const auto& faces : share.crossing) update_faces(s, faces.first, faces.last, measure);
         passes.place_corner_forces(s, share.corner_parts.first, share.corner_parts.last, pass);
         body.team->barrier();
+        if (s.found) passes.sum_found(s, found.loaded.first, found.loaded.last);
         for (const auto& stride : share.leading) sweep_through(s, worker, stride);
         if (ties_join_parts) {
           body.team->barrier();
@@ -62,8 +107,10 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
           if (exchanges && i % kStridesPerLook == 0) halo_.go_on();
         }
         if (exchanges) halo_.end_exchange(body.arrays, Travels::each_step);
+        if (s.found) worker.way_of_found = passes.way_of_found(s, found.watched.first, found.watched.last);
         // ranks take as many steps as the others
-        is_crowded = body.team->barrier() && !moves_with_others;
+        ends = body.team->barrier() && !moves_with_others;
+        if (s.found) ends = ends || must_search();
       }
       if (thread == 0) moved = taken;
     });

@@ -274,6 +274,8 @@ void Properties<Dim>::visit_contacts_sets(StateVisitor& visitor) {
   visitor.visit_by_chunk("choices_of_sets", choices, chunks);
   visitor.visit_by_chunk("numbers_of_sets", numbers, chunks);
   visitor.visit_by_chunk("set_of_contact", set_by_chunk, chunks, state::at_least(0));
+  std::vector<ContactProperties> of_interfaces;
+  if (body_.parameters.found.is_on) of_interfaces = visit_sets_of_interfaces(visitor);
   if (!visitor.replaces()) return;
 
   sets = {};
@@ -302,7 +304,25 @@ void Properties<Dim>::visit_contacts_sets(StateVisitor& visitor) {
   });
   visitor.require(next_choice.empty(), "choices_of_sets", "are more than the laws have");
   visitor.require(next_number.empty(), "numbers_of_sets", "are more than the laws have");
+  for (std::size_t i = 0; i < of_interfaces.size(); ++i) {
+    body_.properties.of_interface[i] = sets.size();
+    sets.add(of_interfaces[i]);
+  }
   if (body_.model.part) take_sets_from_owners();
+}
+
+/// Shows the numbers of the sets that interfaces have for found contacts, and returns these sets.
+template <int Dim>
+std::vector<ContactProperties> Properties<Dim>::visit_sets_of_interfaces(StateVisitor& visitor) {
+  std::vector<ContactProperties> sets;
+  for (const int set : body_.properties.of_interface) {
+    ContactProperties& one = sets.emplace_back(body_.properties.contacts[set]);
+    const std::string name = fmt::format("numbers_of_interface_{}", sets.size() - 1);
+    const std::size_t count = one.numbers.size();
+    visitor.visit(name, one.numbers, state::number().of(count));
+    if (visitor.checks()) validate(one, body_.model.interface_names[sets.size() - 1]);
+  }
+  return sets;
 }
 
 /// Adds a set of parameters from a state.

@@ -30,6 +30,7 @@ class Properties {
   std::vector<int> find_sets_of_faces();
   void place_own_constants();
   void visit_contacts_sets(StateVisitor& visitor);
+  std::vector<ContactProperties> visit_sets_of_interfaces(StateVisitor& visitor);
   void add_set(const StateVisitor& visitor, const LawTable& law, std::span<const int> choices,
                std::span<const double> numbers);
   void take_sets_from_owners();

@@ -8,7 +8,8 @@
 
 namespace pyroclast {
 
-/// State of one contact point at the displacements of the last forces.
+/// State of one contact point at the displacements of the last forces. A point whose face is handed over to
+/// found contacts keeps its internal variables and losses, and bears nothing: those contacts do.
 struct ContactState {
   const LawTable* law = nullptr;
   int dimension = 0;              ///< dimension of the body, 2 or 3

@@ -211,6 +211,7 @@ struct StepParameters {
 
 template <int Dim>
 struct State;
+struct FoundRows;
 
 /// Functions of a law for packs of faces that have it, compiled for one instruction set.
 template <int Dim>
@@ -228,6 +229,9 @@ template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
   const PackFunctions<Dim>* laws = nullptr;  ///< functions of the laws of the body
+  FoundRows* found = nullptr;  ///< contacts that are found; null where contacts are the first ones
+  /// Bits of the faces of each pack of faces that are handed over to found contacts; empty without these.
+  ConstView<std::uint8_t> handed_over;
 
   bool weighs() const { return !this->real_mass.empty(); }
 };
@@ -269,6 +273,10 @@ struct StepPasses {
   void (*move_tied_parts)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Computes `State::stiffness`; leaves contact and corner forces unset until the next sweep.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
+  // Found contacts, see FoundContactForces; null in 3D.
+  void (*update_found)(State<Dim>&, int first, int last) = nullptr;
+  void (*sum_found)(State<Dim>&, int first, int last) = nullptr;
+  double (*way_of_found)(const State<Dim>&, int first, int last) = nullptr;
 };
 
 /// Functions compiled for one instruction set, for bodies in 2D and in 3D.

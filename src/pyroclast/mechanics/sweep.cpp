@@ -131,6 +131,7 @@ std::vector<Share> share_out(const Layout<Dim>& layout, int threads, const std::
       else
         append(shares[t].crossing, r);
     }
+    shares[t].bundles = ranges[t];
     shares[t].corner_parts = {first_part(layout, t, threads), first_part(layout, t + 1, threads)};
     shares[t].moved_parts = parts_among(layout, ranges[t].first, ranges[t].last);
     shares[t].leading = strides_through(layout, bundles[1], packs[1]);

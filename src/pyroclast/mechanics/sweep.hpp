@@ -16,6 +16,7 @@ struct Share {
   struct Stride {
     IndexRange faces, bundles;
   };
+  IndexRange bundles;                ///< bundles of the thread
   std::vector<IndexRange> crossing;  ///< packs of faces that touch bundles of other threads
   IndexRange corner_parts;           ///< entries of `parts` whose corner forces the thread computes
   std::vector<Stride> leading, strides;

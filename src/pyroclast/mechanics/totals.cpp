@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/mechanics/found/found_contacts.hpp"
 
 namespace pyroclast {
 
@@ -88,6 +89,20 @@ Dissipation Totals<Dim>::dissipated() const {
   if (body_.creeps())
     all.energies[static_cast<std::size_t>(std::ranges::find(all.names, kCreep) - all.names.begin())] +=
         body_.books.creep_work;
+  if (body_.found) {
+    const auto place_of_name = [&](std::string_view name) {
+      return static_cast<std::size_t>(std::ranges::find(all.names, name) - all.names.begin());
+    };
+    const std::size_t of_area = place_of_name(kContactArea), of_damping = place_of_name(kContactDamping);
+    for_each_loss(*body_.found,
+                  [&](int law, const std::vector<double>& losses, double lost_area, double lost_damping) {
+                    for (std::size_t i = 0; i < losses.size(); ++i)
+                      if (const int place = places[law][i]; place >= 0)
+                        all.energies[static_cast<std::size_t>(place)] += losses[i];
+                    all.energies[of_area] += lost_area;
+                    if (lost_damping != 0.0) all.energies[of_damping] += lost_damping;
+                  });
+  }
   return all;
 }
 
@@ -134,6 +149,7 @@ EnergyLedger Totals<Dim>::energies() const {
   e.loading = sums.loading;
   e.contacts = chunked_sum(body_.layout.chunks.face_packs,
                            [&](int pack) { return body_.state.face_sums[pack].stored; });
+  if (body_.found) e.contacts += stored_by(*body_.found);
   e.dissipated = dissipated();
   // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
@@ -157,10 +173,10 @@ double Totals<Dim>::unbalanced_ratio() const {
     const auto& state = body_.state;
     const double unbalanced =
         chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].unbalanced; });
-    const double applied =
-        chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].applied; }) +
-        chunked_sum(chunks.face_packs, [&](int pack) { return state.face_sums[pack].applied; });
-    return unbalanced / std::max(applied, body_.least_force);
+    double all = chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].applied; }) +
+                 chunked_sum(chunks.face_packs, [&](int pack) { return state.face_sums[pack].applied; });
+    if (body_.found) all += applied_by(*body_.found);
+    return unbalanced / std::max(all, body_.least_force);
   });
 }
 

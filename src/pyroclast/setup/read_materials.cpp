@@ -410,7 +410,9 @@ class InterfaceReader {
         of_stones_(of_stones),
         on_cooling_(on_cooling),
         find_law_(find_law),
-        curves_(curves) {}
+        curves_(curves) {
+    std::erase_if(sections_, [](const auto& section) { return section.first == kFoundTable; });
+  }
 
   /// Reads all interfaces. An interface comes before those that are like it.
   std::vector<InterfaceParameters> read() {

@@ -49,6 +49,9 @@ std::vector<BlockMaterial> read_conducting_materials(const Section& root,
 /// \param named  true where the command line states the law
 using LawFinder = std::function<const LawTable&(const std::string& name, bool named)>;
 
+/// Table of [contacts] that is no interface: contacts that are found.
+inline constexpr const char* kFoundTable = "found";
+
 /// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
 /// \param of_stones    phases whose blocks belong to stones that are known
 /// \param matrix       phase that must have an interface with itself

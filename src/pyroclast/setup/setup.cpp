@@ -71,10 +71,42 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
                            Kinematics::small, "whether the body may turn");
   if (m.kinematics == Kinematics::finite && space.is_solid())
     s.error("kinematics", "blocks of a solid cannot turn yet: kinematics = \"small\"");
+  m.found.is_on = s.choice<bool>(
+      "contacts",
+      {{"first", false, "contacts join the faces that coincide at the start, for ever"},
+       {"found", true,
+        "blocks that part may meet others, see [Contacts that are found](../understand/found.md)"}},
+      false, "which blocks may touch");
+  if (m.found.is_on && space.is_solid())
+    s.error("contacts", "contacts of a solid are not found yet: contacts = \"first\"");
+  else if (m.found.is_on && m.kinematics == Kinematics::small)
+    s.error("contacts", "blocks that meet others turn: kinematics = \"finite\" is needed");
   m.safety =
       s.number("safety", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.3, 0.95),
                "fraction of the stable step that is taken");
   return m;
+}
+
+/// Reads [contacts.found].
+void read_found(const Section& contacts, const ContactParameters& parameters, FoundParameters& found) {
+  if (!found.is_on) {
+    contacts.know({kFoundTable});
+    return;
+  }
+  const std::array<std::string, 2> of_matrix{parameters.matrix, parameters.matrix};
+  for (const InterfaceParameters& interface : parameters.interfaces)
+    if (std::ranges::find(interface.between, of_matrix) != interface.between.end())
+      found.like = interface.name;
+  const Section s = contacts.section_or_none(kFoundTable, "contacts between blocks that meet anew");
+  found.damping =
+      s.number("damping", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.3), 0.0,
+               "share of critical damping while blocks press each other; never pulls");
+  found.like = s.text("like", found.like,
+                      "interface, broken, between blocks whose materials no interface joins, or several; "
+                      "without this key that of the matrix with itself");
+  if (s.ok() && std::ranges::find(parameters.interfaces, found.like, &InterfaceParameters::name) ==
+                    parameters.interfaces.end())
+    s.error("like", fmt::format("must be an interface of [contacts]; got \"{}\"", found.like));
 }
 
 /// Returns the time for which boundaries act, s.
@@ -391,6 +423,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
   setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);
+  read_found(root.section("contacts"), moving.contacts, moving.mechanics.found);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 

@@ -82,6 +82,10 @@ BodyProperties by_block_size(const Model& model, std::vector<ZoneProperties> zon
     validate(scaled, model.interface_names[joint.interface]);
     p.contacts.add(scaled);
   }
+  for (const ContactProperties& of_mean : interfaces) {
+    p.of_interface.push_back(p.contacts.size());
+    p.contacts.add(of_mean);
+  }
   return p;
 }
 
@@ -210,6 +214,12 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
     if (const double size = model.joint(c).block_size; size > 0.0)
       contact.scale_to_size(contact.stiffness_between(size), to);
     p.contacts.validate(c, model.interface_names[interface]);
+  }
+  p.of_interface.clear();
+  const double mean = field.mean();
+  for (const ContactMaterial& contact : materials.contacts) {
+    p.of_interface.push_back(p.contacts.size());
+    p.contacts.add(contact.at(mean, materials.property_temperature(mean, before.of_body(mean))));
   }
   return p;
 }

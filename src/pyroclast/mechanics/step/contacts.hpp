@@ -68,20 +68,60 @@ struct Contacts {
   [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
     for (int pack = first; pack < last; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
-      if (s.one_set[pack]) {
-        const OneForAll& constants = constants_of_set(s, pack);
-        update_pack<kKinematics, kMeasure>(
-            s, pack, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_point(s, pack, point, constants, opening, tangential);
-            });
-      } else {
-        update_pack<kKinematics, kMeasure>(
-            s, pack, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential);
-            });
-      }
+      if constexpr (Dim == 2 && kKinematics == Kinematics::finite)
+        if (!s.handed_over.empty() && s.handed_over[pack] != 0) {
+          update_handed_over<kMeasure>(s, pack);
+          continue;
+        }
+      update_pack<kKinematics, kMeasure>(s, pack,
+                                         [](const PointPack& point) { return Real::load(point.area); });
     }
   }
+
+  /// Updates a pack of faces of which found pairs press some: these keep their history, and bear nothing.
+  template <bool kMeasure>
+  [[gnu::flatten, gnu::noinline]] static void update_handed_over(State<Dim>& s, int pack) {
+    const unsigned lanes = s.handed_over[pack];
+    const auto handed_over = Real::Truth::from_bits(lanes);
+    const auto area_of = [&](const PointPack& point) {
+      return select(handed_over, Real(0.0), Real::load(point.area));
+    };
+    const int first = s.layout.first_point_of(pack);
+    if (!any(area_of(s.layout.points[first]) > 0.0)) {
+      for (int at = first; at < s.layout.first_point_of(pack + 1); ++at)
+        for (auto* const forces : {&s.contact_force[slot_of(at, 0)], &s.turning_force[slot_of(at, 0)]})
+          R::store(Vector{}, forces);
+      if constexpr (kMeasure) s.face_sums[pack] = {};
+      return;
+    }
+    HistoryOfFaces history;
+    history.keep(s, pack);
+    update_pack<Kinematics::finite, kMeasure>(s, pack, area_of);
+    history.put_back(s, pack, lanes);
+  }
+
+  /// Internal variables and losses of a pack of faces in the plane.
+  struct HistoryOfFaces {
+    static constexpr int kPoints = 2;
+    Line lines[kPoints * (kInternals + kLosses) + 1];
+
+    void keep(const State<Dim>& s, int pack) {
+      const auto take = [](Line* kept, const Line* line, int count) {
+        for (int i = 0; i < count; ++i) kept[i] = line[i];
+      };
+      take(lines, s.internals.data() + s.first_internal[pack], kPoints * kInternals);
+      take(lines + kPoints * kInternals, s.loss.data() + s.first_loss[pack], kPoints * kLosses);
+    }
+    void put_back(const State<Dim>& s, int pack, unsigned lanes) const {
+      const auto put = [&](Line* line, const Line* kept, int count) {
+        for (int i = 0; i < count; ++i)
+          for (int lane = 0; lane < kLanes; ++lane)
+            if ((lanes >> static_cast<unsigned>(lane) & 1U) != 0) line[i].number[lane] = kept[i].number[lane];
+      };
+      put(s.internals.data() + s.first_internal[pack], lines, kPoints * kInternals);
+      put(s.loss.data() + s.first_loss[pack], lines + kPoints * kInternals, kPoints * kLosses);
+    }
+  };
 
   /// Implements PackFunctions::update_lanes.
   static LanesResponse update_lanes(const void* constants, const Line* own, const Line* jump, Line* internals,
@@ -144,16 +184,34 @@ struct Contacts {
     return frame;
   }
 
+  /// \param area_of  function that returns the areas on which points press
+  template <Kinematics kKinematics, bool kMeasure, class AreaOf>
+  static void update_pack(State<Dim>& s, int pack, AreaOf area_of) {
+    if (s.one_set[pack]) {
+      const OneForAll& constants = constants_of_set(s, pack);
+      respond_to_jumps<kKinematics, kMeasure>(
+          s, pack, area_of, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+            return update_point(s, pack, point, constants, opening, tangential);
+          });
+    } else {
+      respond_to_jumps<kKinematics, kMeasure>(
+          s, pack, area_of, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+            return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential);
+          });
+    }
+  }
+
+  /// \param area_of  as of update_pack
   /// \param respond  function from (point, opening, tangential jump) to a ContactResponse
-  template <Kinematics kKinematics, bool kMeasure, class Respond>
-  static void update_pack(State<Dim>& s, int pack, Respond respond) {
+  template <Kinematics kKinematics, bool kMeasure, class AreaOf, class Respond>
+  static void respond_to_jumps(State<Dim>& s, int pack, AreaOf area_of, Respond respond) {
     const Frame frame = frame_of<kKinematics>(s, pack);
     const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
     Real turning = 0.0;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
     for (int at = first; at < last; ++at) {
       const PointPack& point = s.layout.points[at];
-      const Real area = Real::load(point.area);
+      const Real area = area_of(point);
       const Vector jump = R::gather_differences(s.displacement, point.b, point.a);
       const Real opening = dot(jump, frame.normal);
       Tangential<Dim, Real> tangential;
@@ -171,13 +229,13 @@ struct Contacts {
       }
     }
     if constexpr (kKinematics == Kinematics::finite)
-      add_turning_forces(s, first, frame, turning * Real::load(s.layout.points[first].area));
+      add_turning_forces(s, first, frame, turning * area_of(s.layout.points[first]));
     if constexpr (kMeasure) {
       FaceSums& sums = s.face_sums[pack];
       sums.stored = sum(stored);
       sums.applied = sum(applied);
-      sums.jump = largest(
-          select(Real::load(s.layout.points[first].area) > 0.0, widest / size_against_jumps(s, first), 0.0));
+      sums.jump =
+          largest(select(area_of(s.layout.points[first]) > 0.0, widest / size_against_jumps(s, first), 0.0));
     }
   }
 

@@ -4,13 +4,15 @@
 
 #include "pyroclast/mechanics/compiled_step.hpp"
 #include "pyroclast/mechanics/step/contacts.hpp"
+#include "pyroclast/mechanics/step/found.hpp"
 #include "pyroclast/mechanics/step/motion.hpp"
 #include "pyroclast/mechanics/step/zones.hpp"
 
 /// Step of the method, on lanes:
 ///
 ///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
-///     large blocks     ^      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
+///     found pairs      ^      -> places of edges -> law -> corner forces       Eqs. (10)-(15)  found.hpp
+///     large blocks     |      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
 ///                      |                                          |
 ///                      |                                          v
 ///     bundles          |   weight + contact forces + zone forces + loads       Eqs. (4), (5)   zones.hpp
@@ -80,7 +82,14 @@ class Step {
   }
 
   static constexpr StepPasses<Dim> passes() {
-    return {place_corner_forces, move_bundles, move_tied_parts, sum_stiffness};
+    StepPasses<Dim> all{place_corner_forces, move_bundles, move_tied_parts, sum_stiffness};
+    if constexpr (Dim == 2) {
+      using Found = FoundContactForces<Set>;
+      all.update_found = Found::update;
+      all.sum_found = Found::sum_forces;
+      all.way_of_found = Found::way;
+    }
+    return all;
   }
 
   // flatten, because lanes that cross a call go through memory
@@ -157,7 +166,10 @@ class Step {
         for (int j = 0; j < Dim; ++j) total[j] = mass * gravity[j];
         if constexpr (kMeasure) sums.applied += norm(total);
       }
-      R::store(C::template add_forces<kKinematics, true>(s, pack, total), scratch.sum[i].c);
+      total = C::template add_forces<kKinematics, true>(s, pack, total);
+      if constexpr (kKinematics == Kinematics::finite)
+        if (s.found) total += R::load(&s.found->force[slot_of(pack, 0)]);
+      R::store(total, scratch.sum[i].c);
     }
   }
 

@@ -1,0 +1,797 @@
+#include "pyroclast/mechanics/found/found_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/place_in.hpp"
+#include "pyroclast/laws/common.hpp"
+#include "pyroclast/mechanics/found/edge_pair.hpp"
+#include "pyroclast/mechanics/reader.hpp"
+#include "pyroclast/model/outline.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Depth from which on the end of a pair does not count, over the height of the smaller block: the far sides
+/// of two blocks that touch face each other too, as deep as both are high.
+constexpr double kMostDepth = 0.25;
+/// Depth over the length of an edge that counts as touching where blocks are placed.
+constexpr double kTouching = 1e-6;
+/// Bound of a change of gaps, overlaps and cosines over the reach, while gridpoints go that far.
+constexpr double kMargin = 5.0;
+/// Distance from the origin, over the reach, beyond which nothing meets any more.
+constexpr double kFarthest = 1e7;
+/// Bound of a gridpoint's share of critical damping over that of its block, the root of the ratio of their
+/// masses.
+constexpr double kGridpointDamping = 3.0;
+/// Largest ratio between the sum of |stiffness| over a row of a contact's matrix and its larger stiffness,
+/// whatever its direction: (1 + sqrt 2) / 2, where it has no shear stiffness.
+constexpr double kOfAnyDirection = 1.2071067811865476;
+
+constexpr Remembers kDamages[] = {Remembers::tension_damage, Remembers::shear_damage,
+                                  Remembers::mixed_damage};
+
+/// Returns the internal variables of a broken point that was never touched.
+std::vector<double> broken_internals(const LawTable& law) {
+  std::vector<double> internals(law.internals(2).size());
+  for (const Remembers what : kDamages)
+    if (const int place = place_of(law, what, 2); place >= 0)
+      internals[static_cast<std::size_t>(place)] = 1.0;
+  return internals;
+}
+
+/// Tells whether a broken point of a law lets go of what it pulls.
+bool lets_go(const ContactProperties& properties) {
+  auto internals = broken_internals(*properties.law);
+  std::vector<double> losses(properties.law->losses.size());
+  const double open[2] = {1e-3, 0.0};
+  return properties.law->update(2)(properties.constants().data(), open, internals.data(), losses.data())
+             .normal_traction == 0.0;
+}
+
+}  // namespace
+
+// The data
+
+void FoundContacts::make(Body<2>& body) {
+  if (!body.parameters.found.is_on) return;
+  if (body.parameters.kinematics != Kinematics::finite)
+    throw Error("contacts = found: blocks that meet others turn, which needs kinematics = finite");
+  if (body.model.part) throw Error("contacts = found: one rank alone must hold the body");
+  body.found = std::make_unique<FoundData>();
+  FoundData& found = *body.found;
+  found.parameters = body.parameters.found;
+  const auto& model = body.model;
+
+  std::vector<LawOfRows> laws;
+  for (const LawTable* table : body.laws) {
+    LawOfRows& law = laws.emplace_back();
+    const auto infos = table->internals(2);
+    law.internals = static_cast<int>(infos.size());
+    law.losses = static_cast<int>(table->losses.size());
+    law.constants = table->constant_count;
+    if (std::max(law.internals, law.losses) > LawOfRows::kMost)
+      throw Error(
+          fmt::format("contacts = found: the law \"{}\" has more than {} internal variables or losses",
+                      table->name, LawOfRows::kMost));
+    for (int i = 0; i < law.internals; ++i)
+      if (std::string_view(infos[i].name) == info::held_jump.name) law.held_jump = i;
+    std::ranges::copy(broken_internals(*table), law.broken);
+  }
+  found.arrays.laws = FlatArray<LawOfRows>(laws);
+
+  const std::vector<int> block_of = gridpoint_blocks(model);
+  const auto add_facet = [&](std::array<int, 2> gridpoints, int face) {
+    const double length = norm(model.position[gridpoints[1]] - model.position[gridpoints[0]]);
+    found.facets.push_back({block_of[gridpoints[0]], gridpoints, face, face < 0, length});
+  };
+  for (const auto& face :
+       pyroclast::outline(model, body.geometry, std::vector<bool>(model.material_names.size(), true)))
+    add_facet(face.gridpoints, -1);
+  found.outline = static_cast<int>(found.facets.size());
+  found.face_of_lane.assign(body.layout.faces.size() * kLanes, -1);
+  for (int face = 0; face < model.face_count(); ++face) {
+    const int first = model.face_contacts[face];
+    const auto &begin = model.contacts[first], &end = model.contacts[first + 1];
+    add_facet({begin.a, end.a}, face);
+    add_facet({end.b, begin.b}, face);
+    const int slot = body.layout.contact_slot[first];
+    found.face_of_lane[kLanes * body.layout.face_pack_of_point[slot / kLanes] + slot % kLanes] = face;
+  }
+  found.is_handed_over.assign(static_cast<std::size_t>(model.face_count()), false);
+
+  found.at_gridpoint = gridpoint_contacts(model);
+  const auto blocks = static_cast<std::size_t>(model.block_count());
+  std::vector<double>& longest = found.longest;
+  longest.resize(blocks);
+  double sum = 0.0;
+  for (const BlockFacet& facet : found.facets) {
+    longest[facet.block] = std::max(longest[facet.block], facet.length);
+    sum += facet.length;
+  }
+  const double mean_edge = sum / static_cast<double>(std::max<std::size_t>(found.facets.size(), 1));
+  found.skin = found.parameters.skin * mean_edge;
+  found.reach = found.parameters.reach * mean_edge;
+  found.most_depth.resize(blocks);
+  for (int b = 0; b < model.block_count(); ++b) {
+    double area = 0.0;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
+      area += body.geometry.volume[z] / model.thickness;
+    found.most_depth[b] = kMostDepth * area / longest[b];
+  }
+
+  found.contacts_of_block.resize(blocks);
+  found.first_contact.assign(model.interface_names.size(), -1);
+  const int materials = static_cast<int>(model.material_names.size());
+  constexpr int kNone = -1, kSeveral = -2;
+  found.interfaces.assign(static_cast<std::size_t>(materials * materials), kNone);
+  for (int c = 0; c < model.contact_count(); ++c) {
+    const auto& contact = model.contacts[c];
+    const int a = block_of[contact.a], b = block_of[contact.b];
+    for (const int block : {a, b}) found.contacts_of_block[block].push_back(c);
+    if (found.first_contact[contact.interface] < 0) found.first_contact[contact.interface] = c;
+    const int of_a = model.block_material[a], of_b = model.block_material[b];
+    for (const int pair : {of_a * materials + of_b, of_b * materials + of_a}) {
+      int& interface = found.interfaces[pair];
+      if (interface == kNone) interface = contact.interface;
+      if (interface != contact.interface) interface = kSeveral;
+    }
+  }
+  std::vector<bool> serves(model.interface_names.size());
+  for (int i = 0; i < std::ssize(serves); ++i)
+    if (const int set = FoundContacts(body).set_of_interface(i); set >= 0)
+      serves[i] = lets_go(body.properties.contacts[set]);
+  const std::string& name = found.parameters.like;
+  const int like = name.empty() ? 0 : place_in(model.interface_names, name);
+  if (like >= std::ssize(serves))
+    throw Error(fmt::format("contacts = found: there is no interface \"{}\"", name));
+  for (int& interface : found.interfaces) {
+    if (interface >= 0 && serves[interface]) continue;
+    if (!serves[like])
+      throw Error(fmt::format(
+          "contacts = found: the law of the interface \"{}\" does not let go of what it pulls once "
+          "it is broken, or none of its contacts is in the body",
+          model.interface_names[like]));
+    interface = like;
+  }
+
+  const auto slots = static_cast<std::size_t>(body.layout.gridpoint_packs) * kLanes;
+  found.arrays.force = body.made<Vec<2>>(slots);
+  found.arrays.searched = body.made<Vec<2>>(slots);
+  found.searched_far = body.made<Vec<2>>(slots);
+  found.handed_over = body.made<std::uint8_t>(body.layout.faces.size());
+  body.state.found = &found.seen;
+  body.state.handed_over = {found.handed_over.data(), found.handed_over.size()};
+}
+
+Vec<2> FoundContacts::place(int gridpoint, const FlatArray<Vec<2>>& displacement) const {
+  return body_.model.position[gridpoint] + displacement[body_.layout.gridpoint_slot[gridpoint]];
+}
+
+/// Returns the gridpoints of a pair: the ends of edge a, then those of edge b.
+std::array<int, 4> FoundContacts::corners(const Key& key) const {
+  const auto &a = found_.facets[key[0]].gridpoints, &b = found_.facets[key[1]].gridpoints;
+  return {a[0], a[1], b[1], b[0]};
+}
+
+/// \param place  returns the place of a gridpoint, m
+template <class Place>
+auto FoundContacts::pair_at(const Key& key, Place place) const {
+  const auto at = corners(key);
+  return edge_pair<double>({place(at[0]), place(at[1])}, {place(at[2]), place(at[3])},
+                           found_.facets[key[0]].length, found_.facets[key[1]].length);
+}
+
+double FoundContacts::most_depth(const Key& key) const {
+  return std::min(found_.most_depth[found_.facets[key[0]].block],
+                  found_.most_depth[found_.facets[key[1]].block]);
+}
+
+/// Tells whether a contact that is not handed over joins two gridpoints.
+bool FoundContacts::holds_together(int a, int b) const {
+  const GridpointContacts& at = found_.at_gridpoint;
+  for (int i = at.begin[a]; i < at.begin[a + 1]; ++i) {
+    const auto& contact = body_.model.contacts[at.contact_side[i] / 2];
+    if ((contact.a == b || contact.b == b) && !found_.is_handed_over[contact.face]) return true;
+  }
+  return false;
+}
+
+/// Returns the bits of the ends that may press: at the mouth of a notch or the root of a crack, where a
+/// contact still joins both corners, it presses alone.
+std::uint32_t FoundContacts::ends_that_count(const FoundPair& pair) const {
+  if (face_of(pair.facets) >= 0) return 3;
+  const auto at = corners(pair.facets);
+  return (holds_together(at[0], at[2]) ? 0U : 1U) | (holds_together(at[1], at[3]) ? 0U : 2U);
+}
+
+int FoundContacts::interface_of(const Key& key) const {
+  const auto material = [&](int facet) { return body_.model.block_material[found_.facets[facet].block]; };
+  return found_
+      .interfaces[material(key[0]) * static_cast<int>(body_.model.material_names.size()) + material(key[1])];
+}
+
+/// Returns the face whose two sides a pair is; -1 for other pairs.
+int FoundContacts::face_of(const Key& key) const {
+  const int face = found_.facets[key[0]].face;
+  return found_.facets[key[1]].face == face ? face : -1;
+}
+
+/// Returns the set of parameters of an end of a pair: that of the face's own contact; else that of the
+/// nearest contact of the interface, so that the pair has the temperature of its place.
+int FoundContacts::set_of(const FoundPair& pair, int end) const {
+  const auto& model = body_.model;
+  const auto& of_contact = body_.properties.of_contact;
+  const BlockFacet &first = found_.facets[pair.facets[0]], &second = found_.facets[pair.facets[1]];
+  if (const int face = face_of(pair.facets); face >= 0) return of_contact[model.face_contacts[face] + end];
+  const int interface = interface_of(pair.facets);
+  for (const BlockFacet& facet : {first, second})
+    if (facet.face >= 0)
+      if (const int c = model.face_contacts[facet.face]; model.contacts[c].interface == interface)
+        return of_contact[c];
+  for (const BlockFacet& facet : {first, second})
+    for (const int c : found_.contacts_of_block[facet.block])
+      if (model.contacts[c].interface == interface) return of_contact[c];
+  return set_of_interface(interface);
+}
+
+/// Returns the set of an interface at no special place; -1 where the body has none.
+int FoundContacts::set_of_interface(int interface) const {
+  if (!body_.properties.of_interface.empty()) return body_.properties.of_interface[interface];
+  const int c = found_.first_contact[interface];
+  return c < 0 ? -1 : body_.properties.of_contact[c];
+}
+
+const LawTable& FoundContacts::law_of(const FoundPair& pair) const {
+  return body_.properties.contacts.law(set_of(pair, 0));
+}
+
+int FoundContacts::law_index(const FoundPair& pair) const {
+  return place_in(body_.laws, &law_of(pair));
+}
+
+FoundPair FoundContacts::new_pair(const Key& key) const {
+  FoundPair pair;
+  pair.facets = key;
+  pair.law = law_index(pair);
+  const LawOfRows& law = found_.arrays.laws[pair.law];
+  for (int end = 0; end < 2; ++end)
+    pair.internals.insert(pair.internals.end(), law.broken, law.broken + law.internals);
+  pair.lost.resize(static_cast<std::size_t>(law.losses));
+  return pair;
+}
+
+/// Returns the coefficient of damping of a pair, Pa s/m: the share of 2 sqrt(K_n m / A) that the parameters
+/// ask for, with the mass of the smaller block over its longest facet.
+double FoundContacts::damping_of(const FoundPair& pair, double stiffness) const {
+  if (found_.parameters.damping == 0.0) return 0.0;
+  double mass_of_area = std::numeric_limits<double>::infinity();
+  for (const int facet : pair.facets) {
+    const int block = found_.facets[facet].block;
+    double mass = 0.0;
+    for (int g = body_.model.block_gridpoints[block]; g < body_.model.block_gridpoints[block + 1]; ++g)
+      mass += body_.mass[g];
+    mass_of_area = std::min(mass_of_area, mass / (found_.longest[block] * body_.model.thickness));
+  }
+  return 2.0 * found_.parameters.damping * std::sqrt(stiffness * mass_of_area);
+}
+
+void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
+  const auto& model = body_.model;
+  const auto& sets = body_.properties.contacts;
+  const auto& of_contact = body_.properties.of_contact;
+  std::vector<double> of_set(static_cast<std::size_t>(sets.size()), -1.0),
+      of_interface(model.interface_names.size());
+  const auto stiffness_of_set = [&](int set) {
+    if (of_set[set] < 0.0) {
+      const auto k = sets[set].stiffness();
+      of_set[set] = kOfAnyDirection * std::max(k.normal, k.shear);
+    }
+    return of_set[set];
+  };
+  for (int c = 0; c < model.contact_count(); ++c) {
+    double& most = of_interface[model.contacts[c].interface];
+    most = std::max(most, stiffness_of_set(of_contact[c]));
+  }
+  for (int i = 0; i < std::ssize(of_interface); ++i)
+    if (const int set = set_of_interface(i); set >= 0)
+      of_interface[i] = std::max(of_interface[i], stiffness_of_set(set));
+  // Damping takes a share of the step. It is that of a block, whose gridpoints are lighter.
+  const double share = kGridpointDamping * found_.parameters.damping,
+               grown = share + std::sqrt(1.0 + share * share);
+  const int materials = static_cast<int>(model.material_names.size());
+  for (const BlockFacet& facet : found_.facets) {
+    double needed = 0.0;
+    for (int other = 0; other < materials; ++other)
+      needed = std::max(
+          needed, of_interface[found_.interfaces[model.block_material[facet.block] * materials + other]]);
+    needed *= grown * grown;
+    if (facet.face >= 0) needed -= stiffness_of_set(of_contact[model.face_contacts[facet.face]]);
+    // the factor 2 counts the gridpoint itself and those across; half of the edge acts on each end
+    if (needed > 0.0)
+      for (const int g : facet.gridpoints)
+        of_gridpoints[g] += 2.0 * needed * 0.5 * facet.length * model.thickness;
+  }
+}
+
+// The search
+
+void FoundContacts::begin() {
+  search_where_needed();
+  leave_out_overlaps(std::vector<bool>(found_.facets.size(), true), kTouching);
+}
+
+bool FoundContacts::must_search(double square_of_way) const {
+  const double most = 0.5 * found_.reach;
+  return !(square_of_way <= most * most);
+}
+
+void FoundContacts::search_where_needed() {
+  const auto watched = static_cast<int>(found_.arrays.watched.size());
+  if (found_.has_near && !must_search(body_.step.passes.way_of_found(body_.state, 0, watched))) return;
+  take_back();
+  if (found_.has_far) {
+    double longest = 0.0;
+    for (const int pack : found_.arrays.watched)
+      for (int slot = slot_of(pack, 0); slot < slot_of(pack + 1, 0); ++slot) {
+        const Vec<2> way = body_.arrays.displacement[slot] - found_.searched_far[slot];
+        longest = std::max(longest, dot(way, way));
+      }
+    found_.has_far = longest <= 0.25 * found_.skin * found_.skin;
+  }
+  if (!found_.has_far) find_far();
+  find_near();
+  make_rows();
+}
+
+/// Lists the pairs of free facets whose boxes, grown by half of the largest distance of a pair that counts
+/// before the next such search, meet.
+void FoundContacts::find_far() {
+  struct Box {
+    Vec<2> low, high;
+  };
+  std::vector<int> free;
+  std::vector<Box> boxes;
+  std::vector<int> watched;
+  double sum = 0.0;
+  for (int f = 0; f < std::ssize(found_.facets); ++f) {
+    const BlockFacet& facet = found_.facets[f];
+    if (!facet.is_free) continue;
+    const Vec<2> a = place(facet.gridpoints[0], body_.arrays.displacement),
+                 b = place(facet.gridpoints[1], body_.arrays.displacement);
+    const double farthest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1])});
+    if (!(farthest < kFarthest * found_.reach)) continue;  // flown off, or no number
+    const double grow = 0.5 * (found_.skin + kMargin * found_.reach + found_.most_depth[facet.block]);
+    free.push_back(f);
+    sum += facet.length;
+    Box& box = boxes.emplace_back();
+    for (int i = 0; i < 2; ++i) {
+      box.low[i] = std::min(a[i], b[i]) - grow;
+      box.high[i] = std::max(a[i], b[i]) + grow;
+    }
+    for (const int g : facet.gridpoints) watched.push_back(body_.layout.gridpoint_slot[g] / kLanes);
+  }
+  std::sort(watched.begin(), watched.end());
+  watched.erase(std::unique(watched.begin(), watched.end()), watched.end());
+  found_.arrays.watched = FlatArray<int>(watched);
+
+  // cells of a grid, with the facets whose boxes reach into them
+  const double cell = free.empty() ? 1.0 : 2.0 * sum / static_cast<double>(free.size());
+  std::vector<std::array<int, 3>> entries;
+  const auto cell_of = [&](double x) { return static_cast<int>(std::floor(x / cell)); };
+  for (int i = 0; i < std::ssize(free); ++i)
+    for (int x = cell_of(boxes[i].low[0]); x <= cell_of(boxes[i].high[0]); ++x)
+      for (int y = cell_of(boxes[i].low[1]); y <= cell_of(boxes[i].high[1]); ++y)
+        entries.push_back({x, y, i});
+  std::sort(entries.begin(), entries.end());
+  found_.far.clear();
+  const auto same_cell = [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; };
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    for (std::size_t j = i + 1; j < entries.size() && same_cell(entries[i], entries[j]); ++j) {
+      const int a = entries[i][2], b = entries[j][2];
+      if (found_.facets[free[a]].block == found_.facets[free[b]].block) continue;
+      bool meet = true;
+      for (int k = 0; k < 2; ++k)
+        meet = meet && boxes[a].low[k] <= boxes[b].high[k] && boxes[b].low[k] <= boxes[a].high[k];
+      if (meet) found_.far.push_back({free[a], free[b]});
+    }
+  std::sort(found_.far.begin(), found_.far.end());
+  found_.far.erase(std::unique(found_.far.begin(), found_.far.end()), found_.far.end());
+  found_.searched_far = body_.arrays.displacement;
+  found_.has_far = true;
+}
+
+/// Tells whether a pair may press before the next search.
+bool FoundContacts::is_near(const Key& key) const {
+  const auto p = pair_at(key, [&](int g) { return place(g, body_.arrays.displacement); });
+  const double margin = kMargin * found_.reach;
+  const double turn = margin * (1.0 / p.length_a + 1.0 / p.length_b);
+  if (p.cosine < -turn || p.overlap < -margin) return false;
+  if (p.overlap <= 0.0 || p.cosine <= 0.0) return true;
+  const auto [least, most] = std::minmax(p.gap[0], p.gap[1]);
+  return least < margin && most > -most_depth(key) - margin;
+}
+
+/// Lists the pairs that are near, in rows or not, and those that have lost energy.
+void FoundContacts::find_near() {
+  std::vector<FoundPair> next;
+  auto old = found_.pairs.begin();
+  const auto keep_old = [&](bool is_near) {
+    old->is_near = is_near || old->presses();
+    if (old->is_near || old->has_lost()) next.push_back(std::move(*old));
+    ++old;
+  };
+  for (const Key& key : found_.far) {
+    while (old != found_.pairs.end() && old->facets < key) keep_old(false);
+    const bool is_near = this->is_near(key);
+    if (old != found_.pairs.end() && old->facets == key)
+      keep_old(is_near);
+    else if (is_near)
+      next.push_back(new_pair(key));
+  }
+  while (old != found_.pairs.end()) keep_old(false);
+  found_.pairs = std::move(next);
+  found_.arrays.searched = body_.arrays.displacement;
+  ++found_.searches;
+}
+
+// The rows
+
+/// Puts near pairs into rows: those of one law and its choices side by side, and first those that press.
+void FoundContacts::make_rows() {
+  struct Group {
+    int law;
+    std::vector<int> choices;
+    bool stands_apart;
+    auto operator<=>(const Group&) const = default;
+  };
+  std::vector<std::pair<Group, int>> order;
+  for (int i = 0; i < std::ssize(found_.pairs); ++i) {
+    FoundPair& pair = found_.pairs[i];
+    pair.slot = -1;
+    if (pair.is_near)
+      order.push_back({{pair.law, body_.properties.contacts.choices(set_of(pair, 0)), !pair.presses()}, i});
+  }
+  std::sort(order.begin(), order.end());
+  auto& arrays = found_.arrays;
+  std::vector<FoundRow> rows;
+  std::vector<std::size_t> firsts{0};  // entries of `order`
+  int internals = 0, losses = 0, constants = 0, choices = 0;
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && end < i + kLanes && order[end].first == order[i].first) ++end;
+    FoundRow& row = rows.emplace_back();
+    row.law = order[i].first.law;
+    const LawOfRows& law = arrays.laws[row.law];
+    row.first_internal = std::exchange(internals, internals + 2 * law.internals);
+    row.first_loss = std::exchange(losses, losses + law.losses);
+    row.first_constant = std::exchange(constants, constants + 2 * law.constants);
+    const int bytes = static_cast<int>((body_.laws[row.law]->constants_size + 63) / 64 * 64);
+    row.first_choice = std::exchange(choices, choices + bytes);
+    i = end;
+    firsts.push_back(end);
+  }
+  arrays.rows = FlatArray<FoundRow>(rows);
+  arrays.internals = FlatArray<Line>(static_cast<std::size_t>(internals));
+  arrays.lost = FlatArray<Line>(static_cast<std::size_t>(losses));
+  arrays.constants = FlatArray<Line>(static_cast<std::size_t>(constants));
+  arrays.choices = FlatArray<std::byte>(static_cast<std::size_t>(choices));
+  arrays.forces = FlatArray<VectorPack<2>>(4 * rows.size());
+  std::vector<ConstantsOfSet> of_sets(static_cast<std::size_t>(body_.properties.contacts.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::size_t at = firsts[r] + static_cast<std::size_t>(lane);
+      const bool idles = at >= firsts[r + 1];
+      FoundPair& pair = found_.pairs[order[idles ? firsts[r] : at].second];
+      if (!idles) pair.slot = slot_of(static_cast<int>(r), lane);
+      // an idle lane is a new pair of the same facets, without thickness
+      put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane, of_sets);
+      if (idles) arrays.rows[r].thickness.number[lane] = 0.0;
+    }
+  list_loads();
+  see(found_.seen, arrays);
+  found_.seen.is_damped = found_.parameters.damping > 0.0;
+  found_.has_near = true;
+}
+
+/// Returns the constants of a set of parameters, derived when they are first asked for.
+const FoundContacts::ConstantsOfSet& FoundContacts::constants_of(int set,
+                                                                 std::vector<ConstantsOfSet>& of_sets) const {
+  ConstantsOfSet& constants = of_sets[set];
+  if (!constants.bytes.empty()) return constants;
+  const LawTable& law = body_.properties.contacts.law(set);
+  constants.bytes.resize(law.constants_size);
+  body_.properties.contacts.derive(set, constants.bytes.data());
+  constants.numbers.resize(static_cast<std::size_t>(law.constant_count));
+  law.numbers_of(constants.bytes.data(), constants.numbers.data(), 1);
+  constants.stiffness = law.stiffness(constants.bytes.data());
+  return constants;
+}
+
+void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane,
+                                 std::vector<ConstantsOfSet>& of_sets) {
+  auto& arrays = found_.arrays;
+  FoundRow& row = arrays.rows[index];
+  const LawOfRows& law = arrays.laws[row.law];
+  const auto at = corners(pair.facets);
+  for (int i = 0; i < 4; ++i) row.corners[i][lane] = offset_of<2>(body_.layout.gridpoint_slot[at[i]]);
+  const auto put = [&](Line& line, double number) { line.number[lane] = number; };
+  put(row.unloaded_a, found_.facets[pair.facets[0]].length);
+  put(row.unloaded_b, found_.facets[pair.facets[1]].length);
+  put(row.thickness, body_.model.thickness * pair.ratio);
+  put(row.most_depth, most_depth(pair.facets));
+  put(row.not_counted, pair.not_counted);
+  put(row.stored, pair.stored);
+  put(row.applied, pair.applied);
+  put(row.lost_area, pair.lost_area);
+  put(row.lost_damping, pair.lost_damping);
+  put(row.damping, damping_of(pair, constants_of(set_of(pair, 0), of_sets).stiffness.normal));
+  const auto bit = 1U << static_cast<unsigned>(lane);
+  if (pair.is_handed_over) row.handed_over |= bit;
+  const auto ends = ends_that_count(pair);
+  for (int k = 0; k < 2; ++k) {
+    if ((ends >> static_cast<unsigned>(k) & 1U) != 0) row.counts[k] |= bit;
+    put(row.area[k], pair.ends[k].area);
+    put(row.held[k], pair.ends[k].held);
+    put(row.shift[k], pair.ends[k].shift);
+    put(row.offset[k], pair.ends[k].offset);
+    put(row.damped[k], pair.ends[k].damped);
+    const ConstantsOfSet& constants = constants_of(set_of(pair, k), of_sets);
+    if (lane == 0 && k == 0) std::ranges::copy(constants.bytes, arrays.choices.begin() + row.first_choice);
+    for (int i = 0; i < law.constants; ++i)
+      put(arrays.constants[row.first_constant + k * law.constants + i], constants.numbers[i]);
+    put(row.shear_stiffness[k], constants.stiffness.shear);
+    for (int i = 0; i < law.internals; ++i)
+      put(arrays.internals[row.first_internal + k * law.internals + i],
+          pair.internals[k * law.internals + i]);
+  }
+  for (int i = 0; i < law.losses; ++i) put(arrays.lost[row.first_loss + i], pair.lost[i]);
+}
+
+/// Lists the forces of each gridpoint in the order of the pairs' keys.
+void FoundContacts::list_loads() {
+  auto& arrays = found_.arrays;
+  std::vector<std::array<int, 2>> forces;  // slot, and place of the force
+  for (const FoundPair& pair : found_.pairs) {
+    if (pair.slot < 0) continue;
+    const auto at = corners(pair.facets);
+    for (int i = 0; i < 4; ++i)
+      forces.push_back({body_.layout.gridpoint_slot[at[i]],
+                        (4 * (pair.slot / kLanes) + i) * 2 * kLanes + pair.slot % kLanes});
+  }
+  std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  std::vector<LoadedGridpoint> loaded;
+  std::vector<int> acting;
+  for (const auto& [slot, place] : forces) {
+    if (loaded.empty() || loaded.back().slot != slot)
+      loaded.push_back({slot, static_cast<int>(acting.size()), 0});
+    acting.push_back(place);
+    loaded.back().last_force = static_cast<int>(acting.size());
+  }
+  arrays.loaded = FlatArray<LoadedGridpoint>(loaded);
+  arrays.acting = FlatArray<int>(acting);
+  std::fill(arrays.force.begin(), arrays.force.end(), Vec<2>{});
+}
+
+/// Gives pairs the numbers that they have in rows.
+void FoundContacts::take_back() {
+  const auto& arrays = found_.arrays;
+  for (FoundPair& pair : found_.pairs) {
+    if (pair.slot < 0) continue;
+    const FoundRow& row = arrays.rows[pair.slot / kLanes];
+    const LawOfRows& law = arrays.laws[row.law];
+    const int lane = pair.slot % kLanes;
+    const bool was_handed_over = pair.is_handed_over;
+    pair.is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
+    pair.not_counted = row.not_counted.number[lane];
+    pair.stored = row.stored.number[lane];
+    pair.applied = row.applied.number[lane];
+    pair.lost_area = row.lost_area.number[lane];
+    pair.lost_damping = row.lost_damping.number[lane];
+    for (int k = 0; k < 2; ++k) {
+      PairEnd& end = pair.ends[k];
+      end.area = row.area[k].number[lane];
+      end.held = row.held[k].number[lane];
+      end.shift = row.shift[k].number[lane];
+      end.damped = row.damped[k].number[lane];
+      for (int i = 0; i < law.internals; ++i)
+        pair.internals[k * law.internals + i] =
+            arrays.internals[row.first_internal + k * law.internals + i].number[lane];
+    }
+    for (int i = 0; i < law.losses; ++i) pair.lost[i] = arrays.lost[row.first_loss + i].number[lane];
+    if (was_handed_over &&
+        !pair.is_handed_over) {  // the sides have left each other: what follows is a new pair
+      pair.ratio = 1.0;
+      for (PairEnd& end : pair.ends) end.offset = 0.0;
+    }
+  }
+}
+
+void FoundContacts::forget_lists() {
+  for (FoundPair& pair : found_.pairs) pair.slot = -1;
+  found_.has_far = found_.has_near = false;
+}
+
+void FoundContacts::follow_properties() {
+  take_back();
+  found_.has_near = false;
+}
+
+// Faces that are handed over
+
+std::vector<int> FoundContacts::broken_faces() const {
+  std::vector<int> faces;
+  const auto& s = body_.arrays;
+  for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {
+    const LawTable& law = body_.law_of_pack(pack);
+    const auto count = static_cast<int>(law.internals(2).size());
+    unsigned broken = 0xffU & ~static_cast<unsigned>(found_.handed_over[pack]);
+    for (int point = 0; point < 2; ++point) {
+      unsigned of_point = 0;
+      for (const Remembers what : kDamages)
+        if (const int place = place_of(law, what, 2); place >= 0)
+          for (int lane = 0; lane < kLanes; ++lane)
+            if (s.internals[s.first_internal[pack] + point * count + place].number[lane] >= 1.0)
+              of_point |= 1U << static_cast<unsigned>(lane);
+      broken &= of_point;
+    }
+    for (int lane = 0; broken != 0 && lane < kLanes; ++lane)
+      if (const int face = found_.face_of_lane[kLanes * pack + lane];
+          (broken >> static_cast<unsigned>(lane) & 1U) != 0 && face >= 0)
+        faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+void FoundContacts::mark_handed_over(int face) {
+  found_.is_handed_over[face] = true;
+  for (int side = 0; side < 2; ++side) found_.facets[found_.outline + 2 * face + side].is_free = true;
+  const int slot = body_.layout.contact_slot[body_.model.face_contacts[face]];
+  found_.handed_over[body_.layout.face_pack_of_point[slot / kLanes]] |=
+      static_cast<std::uint8_t>(1U << static_cast<unsigned>(slot % kLanes));
+}
+
+/// Returns the pair of the two sides of a face, with the areas, jumps and history of its contact points at
+/// the displacements of the last forces.
+FoundPair FoundContacts::pair_of_face(int face) const {
+  const Reader<2> read(body_);
+  FoundPair pair = new_pair({found_.outline + 2 * face, found_.outline + 2 * face + 1});
+  const auto p =
+      pair_at(pair.facets, [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); });
+  if (!p.face) return pair;  // the sides have left each other already
+  pair.is_handed_over = true;
+  pair.internals.clear();
+  const int first = body_.model.face_contacts[face];
+  const double area = body_.model.contacts[first].area;
+  pair.ratio = area / (p.cosine * p.cosine * 0.5 * p.overlap * body_.model.thickness);
+  for (int k = 0; k < 2; ++k) {
+    const ContactState state = read.contact(first + k);
+    const double stiffness =
+        body_.properties.contacts[body_.properties.of_contact[first + k]].stiffness().shear;
+    pair.ends[k] = {area, state.shear_traction[0] / stiffness, state.tangential_jump[0] - p.slide[k],
+                    state.opening - p.gap[k], 0.0};
+    pair.internals.insert(pair.internals.end(), state.internals.begin(), state.internals.end());
+    pair.stored += state.stored * area;
+  }
+  return pair;
+}
+
+void FoundContacts::hand_over() {
+  const std::vector<int> faces = broken_faces();
+  if (faces.empty()) return;
+  take_back();
+  // facets beside the face are fresh too: where it held them together they may press from now on
+  std::vector<bool> ends(body_.model.position.size()), fresh(found_.facets.size());
+  for (const int face : faces) {
+    found_.pairs.push_back(pair_of_face(face));
+    for (const int contact : {body_.model.face_contacts[face], body_.model.face_contacts[face] + 1})
+      ends[body_.model.contacts[contact].a] = ends[body_.model.contacts[contact].b] = true;
+  }
+  for (std::size_t f = 0; f < fresh.size(); ++f)
+    fresh[f] = ends[found_.facets[f].gridpoints[0]] || ends[found_.facets[f].gridpoints[1]];
+  for (const int face : faces) mark_handed_over(face);
+  std::sort(found_.pairs.begin(), found_.pairs.end(),
+            [](const FoundPair& a, const FoundPair& b) { return a.facets < b.facets; });
+  forget_lists();
+  search_where_needed();
+  leave_out_overlaps(fresh, 0.0);
+}
+
+/// Leaves out the present overlap of pairs that lie in each other as they begin.
+/// \param fresh      true for facets that begin
+/// \param tolerance  depth over the length of an edge that is none
+void FoundContacts::leave_out_overlaps(const std::vector<bool>& fresh, double tolerance) {
+  const Reader<2> read(body_);
+  for (FoundPair& pair : found_.pairs) {
+    if (!pair.is_near || pair.presses() || !(fresh[pair.facets[0]] || fresh[pair.facets[1]])) continue;
+    const auto p =
+        pair_at(pair.facets, [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); });
+    if (!p.face) continue;
+    const double least = -tolerance * std::min(p.length_a, p.length_b), most = -most_depth(pair.facets);
+    const auto lies_in = [&](double gap) { return gap < least && gap > most; };
+    if (lies_in(p.gap[0]) || lies_in(p.gap[1])) pair.not_counted = p.overlap;
+  }
+  make_rows();
+}
+
+// Sums and states
+
+double stored_by(const FoundData& found) {
+  double sum = 0.0;
+  for (const FoundPair& pair : found.pairs)
+    sum +=
+        pair.slot < 0 ? pair.stored : found.arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes];
+  return sum;
+}
+
+double applied_by(const FoundData& found) {
+  double sum = 0.0;
+  for (const FoundPair& pair : found.pairs)
+    sum += pair.slot < 0 ? pair.applied
+                         : found.arrays.rows[pair.slot / kLanes].applied.number[pair.slot % kLanes];
+  return sum;
+}
+
+void FoundContacts::visit_state(StateVisitor& visitor) {
+  const StateVisitor::Scope scope(visitor, "found");
+  std::vector<int> faces, keys;
+  std::vector<double> numbers;
+  const auto each_number = [](FoundPair& pair, auto f) {
+    f(pair.ratio), f(pair.not_counted), f(pair.stored), f(pair.applied), f(pair.lost_area),
+        f(pair.lost_damping);
+    for (PairEnd& end : pair.ends) f(end.area), f(end.held), f(end.shift), f(end.offset), f(end.damped);
+    for (double& number : pair.internals) f(number);
+    for (double& number : pair.lost) f(number);
+  };
+  if (!visitor.replaces()) {
+    take_back();
+    for (int face = 0; face < std::ssize(found_.is_handed_over); ++face)
+      if (found_.is_handed_over[face]) faces.push_back(face);
+    for (FoundPair& pair : found_.pairs) {
+      if (!pair.presses() && !pair.has_lost()) continue;
+      keys.insert(keys.end(), {pair.facets[0], pair.facets[1], pair.is_handed_over ? 1 : 0});
+      each_number(pair, [&](double& number) { numbers.push_back(number); });
+    }
+  }
+  visitor.visit("handed_over", faces, state::index(found_.is_handed_over.size()));
+  visitor.visit("pairs", keys, state::index(found_.facets.size()));
+  visitor.visit("numbers", numbers);
+  if (!visitor.replaces()) return;
+
+  std::fill(found_.is_handed_over.begin(), found_.is_handed_over.end(), false);
+  std::fill(found_.handed_over.begin(), found_.handed_over.end(), std::uint8_t{0});
+  for (BlockFacet& facet : found_.facets) facet.is_free = facet.face < 0;
+  for (const int face : faces) mark_handed_over(face);
+  found_.pairs.clear();
+  visitor.require(keys.size() % 3 == 0, "pairs", "is cut off");
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i + 2 < keys.size(); i += 3) {
+    const Key key{keys[i], keys[i + 1]};
+    visitor.require(key[0] < key[1] && (found_.pairs.empty() || found_.pairs.back().facets < key), "pairs",
+                    "are not in order");
+    visitor.require(found_.facets[key[0]].block != found_.facets[key[1]].block, "pairs", "are of one block");
+    visitor.require(found_.facets[key[0]].is_free && found_.facets[key[1]].is_free, "pairs",
+                    "names a facet that is not free");
+    const bool is_handed_over = keys[i + 2] != 0;
+    visitor.require(!is_handed_over || face_of(key) >= 0, "pairs", "hands over facets of two faces");
+    FoundPair pair = new_pair(key);
+    pair.is_handed_over = is_handed_over;
+    each_number(pair, [&](double& number) {
+      visitor.require(taken < numbers.size(), "numbers", "are fewer than the pairs have");
+      number = numbers[taken++];
+    });
+    found_.pairs.push_back(std::move(pair));
+  }
+  visitor.require(taken == numbers.size(), "numbers", "are more than the pairs have");
+  forget_lists();
+}
+
+}  // namespace pyroclast

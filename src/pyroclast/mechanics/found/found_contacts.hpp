@@ -1,0 +1,103 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/mechanics/found/found.hpp"
+
+namespace pyroclast {
+
+/// Finder of contacts of a plane body: makes the data, searches for pairs, hands broken faces over to pairs,
+/// and keeps the pairs' history. The step works on rows of pairs, see FoundContactForces.
+class FoundContacts {
+ public:
+  explicit FoundContacts(Body<2>& body) : body_(body), found_(*body.found) {}
+
+  /// Makes the data of a body whose parameters say so. Throws Error where its kinematics, its ranks or the
+  /// laws of its interfaces do not allow it.
+  static void make(Body<2>& body);
+
+  /// Searches for the pairs at the beginning of a run; where blocks lie in each other already, that part of
+  /// their overlap does not count.
+  void begin();
+  /// Searches for pairs where gridpoints have gone too far since the last search. A step asks for it with
+  /// the square of the longest way, m².
+  void search_where_needed();
+  bool must_search(double square_of_way) const;
+  /// Hands faces over to pairs whose contact points are all broken, with all that the points remember.
+  void hand_over();
+  /// Lets the rows follow new properties.
+  void follow_properties();
+  /// Adds the stiffness that free facets may meet to that of their gridpoints, and that of faces beyond their
+  /// own contacts', N/m.
+  void add_stiffness(std::vector<double>& of_gridpoints) const;
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  using Key = std::array<int, 2>;
+  /// Constants of a law for a set of parameters.
+  struct ConstantsOfSet {
+    std::vector<std::byte> bytes;
+    std::vector<double> numbers;
+    ContactStiffness<double> stiffness;
+  };
+
+  Vec<2> place(int gridpoint, const FlatArray<Vec<2>>& displacement) const;
+  template <class Place>
+  auto pair_at(const Key& key, Place place) const;
+  double most_depth(const Key& key) const;
+  std::array<int, 4> corners(const Key& key) const;
+  std::uint32_t ends_that_count(const FoundPair& pair) const;
+  bool holds_together(int a, int b) const;
+  int interface_of(const Key& key) const;
+  int face_of(const Key& key) const;
+  int set_of(const FoundPair& pair, int end) const;
+  int set_of_interface(int interface) const;
+  const LawTable& law_of(const FoundPair& pair) const;
+  int law_index(const FoundPair& pair) const;
+  double damping_of(const FoundPair& pair, double stiffness) const;
+  const ConstantsOfSet& constants_of(int set, std::vector<ConstantsOfSet>& of_sets) const;
+  FoundPair new_pair(const Key& key) const;
+
+  void find_far();
+  void find_near();
+  bool is_near(const Key& key) const;
+  void make_rows();
+  void put_into_row(const FoundPair& pair, int row, int lane, std::vector<ConstantsOfSet>& of_sets);
+  void list_loads();
+  void take_back();
+  void mark_handed_over(int face);
+  std::vector<int> broken_faces() const;
+  FoundPair pair_of_face(int face) const;
+  void leave_out_overlaps(const std::vector<bool>& fresh, double tolerance);
+  void forget_lists();
+
+  Body<2>& body_;
+  FoundData& found_;
+};
+
+/// Returns the energy that found pairs store, J.
+double stored_by(const FoundData& found);
+/// Returns the sum of the magnitudes of the forces of found pairs, N.
+double applied_by(const FoundData& found);
+/// Calls `f(law, losses, lost_area, lost_damping)` for the energies, J, that each pair has lost: those of its
+/// law, those that a changing area takes, and those of damping.
+template <class F>
+void for_each_loss(const FoundData& found, F f) {
+  std::vector<double> losses;
+  for (const FoundPair& pair : found.pairs) {
+    losses = pair.lost;
+    double lost_area = pair.lost_area, lost_damping = pair.lost_damping;
+    if (pair.slot >= 0) {
+      const FoundRow& row = found.arrays.rows[pair.slot / kLanes];
+      const int lane = pair.slot % kLanes;
+      for (std::size_t i = 0; i < losses.size(); ++i)
+        losses[i] = found.arrays.lost[row.first_loss + static_cast<int>(i)].number[lane];
+      lost_area = row.lost_area.number[lane];
+      lost_damping = row.lost_damping.number[lane];
+    }
+    f(pair.law, losses, lost_area, lost_damping);
+  }
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "pyroclast/mechanics/state.hpp"
+
+/// Rows of found contacts, as a step sees them; found.hpp explains the words.
+namespace pyroclast {
+
+/// Law as rows need it.
+struct LawOfRows {
+  static constexpr int kMost = 16;  ///< most internal variables, and most losses
+
+  int internals = 0, losses = 0, constants = 0;
+  int held_jump = -1;      ///< place of the internal variable of this name; -1: none
+  double broken[kMost]{};  ///< internal variables of a point that is broken and was never touched
+};
+
+/// Eight pairs side by side.
+struct alignas(64) FoundRow {
+  std::array<std::array<int, kLanes>, 4> corners;  ///< offsets of the ends of edge a, then of edge b
+  Line unloaded_a, unloaded_b;                     ///< lengths of the edges without load, m
+  Line thickness;    ///< thickness of the body times the pair's ratio, m; 0 where idle
+  Line most_depth;   ///< depth from which on an end does not count, m
+  Line not_counted;  ///< m
+  Line area[2], held[2], shift[2], offset[2];     ///< see PairEnd
+  Line shear_stiffness[2];                        ///< Pa/m
+  Line damping;                                   ///< coefficient of damping, Pa s/m
+  Line damped[2];                                 ///< see PairEnd
+  Line stored, applied, lost_area, lost_damping;  ///< see FoundPair
+  std::array<std::uint32_t, 2> counts;            ///< bits of the lanes whose end may press
+  std::uint32_t handed_over;                      ///< bits of the lanes whose pair is handed over
+  int law;                                        ///< entry of State::laws and FoundRows::laws
+  int first_internal;  ///< first line of FoundRows::internals, of the first end and then the second
+  int first_loss;      ///< first line of FoundRows::lost
+  int first_constant;  ///< first line of FoundRows::constants, of the first end and then the second
+  int first_choice;    ///< first byte of FoundRows::choices: constants of which the choices count
+};
+
+/// Gridpoint on which rows act.
+struct LoadedGridpoint {
+  int slot = 0;
+  int first_force = 0, last_force = 0;  ///< entries of FoundRows::acting
+};
+
+/// Arrays of found contacts as a step needs them, owned (FlatArray) or seen (View).
+template <template <class> class Array>
+struct FoundArrays {
+  Array<LawOfRows> laws;  ///< in the order of State::laws
+  Array<FoundRow> rows;
+  Array<Line> internals, lost, constants;
+  Array<std::byte> choices;
+  Array<VectorPack<2>> forces;    ///< forces on the four corners of each row, N
+  Array<LoadedGridpoint> loaded;  ///< gridpoints by slot
+  Array<int> acting;              ///< places among the numbers of `forces`, in the order of the pairs' keys
+  Array<Vec<2>> force;            ///< sum of these forces by slot, N
+  Array<int> watched;             ///< packs of gridpoints of free facets, ascending
+  Array<Vec<2>> searched;         ///< displacement by slot at the last search for near pairs, m
+
+  template <class F, class... A>
+  static void each(F&& f, A&... a) {
+    f(ArrayInfo{"found_laws", Per::entry}, a.laws...);
+    f(ArrayInfo{"found_rows", Per::entry}, a.rows...);
+    f(ArrayInfo{"found_internals", Per::entry}, a.internals...);
+    f(ArrayInfo{"found_lost", Per::entry}, a.lost...);
+    f(ArrayInfo{"found_constants", Per::entry}, a.constants...);
+    f(ArrayInfo{"found_choices", Per::entry}, a.choices...);
+    f(ArrayInfo{"found_forces", Per::entry}, a.forces...);
+    f(ArrayInfo{"found_loaded", Per::entry}, a.loaded...);
+    f(ArrayInfo{"found_acting", Per::entry}, a.acting...);
+    f(ArrayInfo{"found_force", Per::entry}, a.force...);
+    f(ArrayInfo{"found_watched", Per::entry}, a.watched...);
+    f(ArrayInfo{"found_searched", Per::entry}, a.searched...);
+  }
+};
+
+/// What a step sees of found contacts.
+struct FoundRows : FoundArrays<View> {
+  bool is_damped = false;
+  bool moves = false;  ///< true where the sweep moves the body
+};
+
+}  // namespace pyroclast

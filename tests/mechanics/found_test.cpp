@@ -1,0 +1,356 @@
+#include "pyroclast/mechanics/found/found.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "copy_state.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "small_chunks.hpp"
+
+namespace pyroclast {
+namespace {
+
+using namespace bodies;
+
+constexpr double kGravity = 9.81, kDensity = 2400.0;
+
+std::vector<Vec<2>> rectangle(double x, double y, double width, double height, double angle = 0.0,
+                              const Vec<2>& about = {}) {
+  std::vector<Vec<2>> corners{{{x, y}}, {{x + width, y}}, {{x + width, y + height}}, {{x, y + height}}};
+  for (auto& corner : corners) corner = turned(corner - about, angle) + about;
+  return corners;
+}
+
+int add_block(ModelOf<2>& model, const std::vector<Vec<2>>& corners) {
+  const auto zoned = specimen::zone_block(corners);
+  return model.add_block(zoned.gridpoints, zoned.zones, 0);
+}
+
+ModelOf<2> empty_model() {
+  ModelOf<2> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  return model;
+}
+
+/// Parameters of blocks that fly: real mass, no damping.
+MechanicsParameters flying(double gravity, double safety) {
+  MechanicsParameters p;
+  p.gravity = {{0.0, -gravity}};
+  p.kinematics = Kinematics::finite;
+  p.safety = safety;
+  p.found.is_on = true;
+  p.zones_for_a_thread = 1;
+  return p;
+}
+
+Frictional::Properties<double> rubbing(double stiffness, double friction) {
+  return {stiffness, 0.4 * stiffness, friction};
+}
+
+void hold(Mechanics<2>& m, int block) {
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
+    for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+}
+
+Vec<2> velocity_of_block(const Mechanics<2>& m, int block) {
+  Vec<2> momentum{};
+  double mass = 0.0;
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
+    momentum += m.read().velocity(g) * m.body().mass[g];
+    mass += m.body().mass[g];
+  }
+  return momentum * (1.0 / mass);
+}
+
+double lowest(const Mechanics<2>& m, int block) {
+  double y = 1e9;
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
+    y = std::min(y, m.model().position[g][1] + m.read().displacement(g)[1]);
+  return y;
+}
+
+struct Fall {
+  double restitution = 0.0, fastest = 0.0;  ///< velocity after over velocity before, and that before, m/s
+  double error = 0.0, damped = 0.0;  ///< largest error of the ledger, and what damping took, over E_kin
+};
+
+/// A block that falls by 2 mm on a held one, with a contact that is softer than the block.
+Fall fall(double damping) {
+  ModelOf<2> model = empty_model();
+  add_block(model, rectangle(-0.5, -0.1, 1.0, 0.1));
+  const int falling = add_block(model, rectangle(-0.025, 0.002, 0.05, 0.05));
+  auto parameters = flying(kGravity, 0.2);
+  parameters.found.damping = damping;
+  auto m = mechanics<2>(model, rubbing(1e10, 0.0), parameters, 30e9);
+  hold(m, 0);
+  double fastest_down = 0.0, fastest_up = 0.0, worst = 0.0, kinetic = 0.0, damped = 0.0;
+  while (m.time() < 0.04) {
+    m.advance(1);
+    const double v = velocity_of_block(m, falling)[1];
+    fastest_down = std::min(fastest_down, v);
+    fastest_up = std::max(fastest_up, v);
+    const EnergyLedger e = m.totals().energy();
+    kinetic = std::max(kinetic, e.kinetic);
+    worst = std::max(worst, std::abs(e.error()));
+    damped = e.dissipated.of("contact_damping");
+  }
+  return {-fastest_up / fastest_down, -fastest_down, worst / kinetic, damped / kinetic};
+}
+
+// Promise: a block that falls on another one comes back as fast as it fell, and the ledger closes.
+TEST(FoundContactsVerification, BlockThatFallsComesBack) {
+  const Fall free = fall(0.0);
+  EXPECT_NEAR(free.fastest, std::sqrt(2 * kGravity * 0.002), 1e-4);
+  EXPECT_NEAR(free.restitution, 1.0, 1e-4);
+  // the step in which edges meet puts in up to K (v dt)^2 A / 4: 3e-5 of the kinetic energy
+  EXPECT_LT(free.error, 4e-5);
+  EXPECT_EQ(free.damped, 0.0);
+}
+
+// Promise: damping is a share of critical that never pulls: the contact ends where its force does (Schwager
+// and Pöschel, Granular Matter 9, 2007).
+TEST(FoundContactsVerification, DampingTakesItsShareOfABounce) {
+  for (const double share : {0.05, 0.2}) {
+    const Fall damped = fall(share);
+    const double root = std::sqrt(1.0 - share * share);
+    const double closed =
+        std::exp(-share / root * (std::numbers::pi - std::atan2(2 * share * root, 1 - 2 * share * share)));
+    EXPECT_NEAR(damped.restitution, closed, 2e-3);
+    EXPECT_NEAR(damped.damped, 1.0 - damped.restitution * damped.restitution,
+                3e-3);  // the block rings a little
+    EXPECT_LT(damped.error, 4e-5);
+  }
+}
+
+// Promise: a brick slides down over the joints of an incline of several blocks as down one plane.
+TEST(FoundContactsVerification, BrickSlidesDownAnInclineOfSeveralBlocks) {
+  constexpr double kAngle = 30.0 * std::numbers::pi / 180.0, kFriction = 0.3;
+  ModelOf<2> model = empty_model();
+  for (int i = 0; i < 5; ++i) add_block(model, rectangle(i * 0.05, -0.05, 0.05, 0.05, -kAngle));
+  const int brick = add_block(model, rectangle(0.02, 0.0, 0.04, 0.04, -kAngle));
+  auto m = mechanics<2>(model, rubbing(1e11, kFriction), flying(kGravity, 0.3), 30e9);
+  for (int b = 0; b < brick; ++b) hold(m, b);
+  const double acceleration = kGravity * (std::sin(kAngle) - kFriction * std::cos(kAngle));
+  const Vec<2> down{{std::cos(kAngle), -std::sin(kAngle)}};
+  while (m.time() < 0.11) m.advance(500);  // before it leaves the first block, where it chatters
+  // the brick bounces a little on its contact, and friction takes its share of that momentum too
+  const Vec<2> v = velocity_of_block(m, brick), up{{-down[1], down[0]}};
+  EXPECT_NEAR((dot(v, down) + kFriction * dot(v, up)) / (acceleration * m.time()), 1.0, 2e-4);
+  const EnergyLedger e = m.totals().energy();
+  EXPECT_LT(std::abs(e.error()), 2e-5 * e.kinetic);
+  EXPECT_GT(e.dissipated.of("friction"), 0.1 * e.gravity);
+}
+
+/// Two rows of blocks, the lower face of the upper row broken.
+ModelOf<2> two_rows(int blocks, double size) {
+  return lattice(blocks, 2, [=](double x, double y) { return Vec<2>{{x * blocks * size, y * 2 * size}}; });
+}
+
+// Promise: a broken face that is handed over presses on as it did: neither energy nor forces change.
+TEST(FoundContacts, FaceThatIsHandedOverPressesOn) {
+  const ModelOf<2> model = two_rows(3, 0.01);
+  auto bond = mortar_contact();
+  bond.residual_cohesion = 0.0;
+  auto parameters = flying(0.0, 0.5);
+  parameters.damping_form = DampingForm::combined;
+  parameters.local_damping = 0.3;
+  auto m = mechanics<2>(model, bond, parameters);
+  auto never = parameters;
+  never.found.is_on = false;
+  auto first = mechanics<2>(model, bond, never);
+  for (Mechanics<2>* body : {&m, &first}) {
+    for (int c = 0; c < model.contact_count(); ++c)
+      if (std::abs(model.contacts[c].normal[1]) > 0.5) {
+        EXPECT_TRUE(body->break_contact(c));
+      }
+    for (int b = 0; b < 3; ++b) hold(*body, b);
+    for (int b = 3; b < 6; ++b)
+      for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
+        body->constraints().apply_force(g, {{20.0, -3000.0}});
+  }
+  m.advance(1);  // handed over before the first step
+  EXPECT_TRUE(m.body().found->is_handed_over[1] || m.body().found->is_handed_over[2]);
+  first.advance(1);
+  m.advance(3000);
+  first.advance(3000);
+  const EnergyLedger a = m.totals().energy(), b = first.totals().energy();
+  EXPECT_NEAR(a.contacts, b.contacts, 1e-2 * b.contacts);
+  EXPECT_LT(std::abs(a.error()), 1e-6 * turnover(a));
+}
+
+TEST(FoundContacts, HandOverKeepsEnergyAndForces) {
+  const ModelOf<2> model = two_rows(3, 0.01);
+  auto bond = mortar_contact();
+  bond.residual_cohesion = 0.0;
+  auto parameters = flying(0.0, 0.5);
+  parameters.local_damping = 0.3;
+  auto m = mechanics<2>(model, bond, parameters);
+  for (int b = 0; b < 3; ++b) hold(m, b);
+  for (int b = 3; b < 6; ++b)
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
+      m.constraints().apply_force(g, {{200.0, -3000.0}});
+  m.advance(64 * 40 - 1);
+  for (int c = 0; c < model.contact_count(); ++c)
+    if (std::abs(model.contacts[c].normal[1]) > 0.5) {
+      EXPECT_TRUE(m.break_contact(c));
+    }
+  m.advance(1);  // the last step without found pairs
+  const EnergyLedger before = m.totals().energy();
+  EXPECT_TRUE(m.body().found->pairs.empty() || !m.body().found->pairs.front().is_handed_over);
+  m.advance(1);
+  const EnergyLedger after = m.totals().energy();
+  int handed_over = 0;
+  for (const auto& pair : m.body().found->pairs) handed_over += pair.is_handed_over ? 1 : 0;
+  EXPECT_EQ(handed_over, 3);
+  EXPECT_NEAR(after.error(), before.error(), 1e-9);
+  EXPECT_GE(after.dissipated.total(), before.dissipated.total());
+  EXPECT_GT(after.contacts, 1e-4);
+}
+
+/// A specimen that is crushed between its held lower and its driven upper side, until pieces part.
+Mechanics<2> crushed(const ModelOf<2>& model, MechanicsParameters parameters, int threads, int batch,
+                     int steps) {
+  auto contact = mortar_contact();
+  contact.mode_1_energy = 3.0;
+  contact.mode_2_energy = 12.0;
+  contact.residual_friction_angle = 0.3;
+  auto m = mechanics<2>(model, contact, parameters, 29.4e9, 0.2,
+                        std::make_shared<Team>(threads, WhenCrowded::stay));
+  for (int g = 0; g < model.gridpoint_count(); ++g) {
+    if (model.position[g][1] < 1e-9)
+      for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+    if (model.position[g][1] > 0.1 - 1e-9) m.constraints().prescribe_velocity(g, 1, -0.5);
+  }
+  for (int left = steps; left > 0; left -= batch) m.advance(std::min(batch, left));
+  return m;
+}
+
+MechanicsParameters crushing() {
+  auto p = quasi_static<2>(0.5);
+  p.time_step = 1e-6;
+  p.kinematics = Kinematics::finite;
+  p.found.is_on = true;
+  p.found.damping = 0.1;
+  p.zones_for_a_thread = 1;
+  return p;
+}
+
+void expect_equal(const Mechanics<2>& m, const Mechanics<2>& expected, const std::string& what) {
+  SCOPED_TRACE(what);
+  EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
+  EXPECT_TRUE(m.read().velocities() == expected.read().velocities());
+  EXPECT_TRUE(m.read().forces() == expected.read().forces());
+  const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
+  EXPECT_EQ(a.contacts, b.contacts);
+  EXPECT_EQ(a.dissipated.energies, b.dissipated.energies);
+  EXPECT_EQ(m.totals().unbalanced_ratio(), expected.totals().unbalanced_ratio());
+}
+
+constexpr int kCrushingSteps = 1200;
+
+// Promise: bits depend neither on threads and instruction sets, nor on batches, nor on the time and the
+// width of a search.
+TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
+  const ModelOf<2> model = tessellated(40, 0.1, 0.1, 3);
+  const auto expected = crushed(model, crushing(), 1, kCrushingSteps, kCrushingSteps);
+  int handed_over = 0, pressed = 0;
+  for (const bool face : expected.body().found->is_handed_over) handed_over += face ? 1 : 0;
+  for (const auto& pair : expected.body().found->pairs)
+    pressed += pair.slot >= 0 &&
+               expected.body().found->arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes] > 0.0;
+  EXPECT_GT(handed_over, 5);
+  EXPECT_GT(pressed, 3);
+  auto never = crushing();
+  never.found.is_on = false;
+  const EnergyLedger e = expected.totals().energy();
+  const EnergyLedger first = crushed(model, never, 1, kCrushingSteps, kCrushingSteps).totals().energy();
+  EXPECT_LT(std::abs(e.error()), 1.1 * std::abs(first.error()));
+  EXPECT_GT(e.dissipated.of("contact_area"), 0.0);
+  for (const int threads : {2, 3})
+    expect_equal(crushed(model, crushing(), threads, kCrushingSteps, kCrushingSteps), expected,
+                 std::to_string(threads) + " threads");
+  for (const int batch : {1, 50})
+    expect_equal(crushed(model, crushing(), 1, batch, kCrushingSteps), expected,
+                 "batches of " + std::to_string(batch));
+  for (const InstructionSet set : usable_instruction_sets()) {
+    auto parameters = crushing();
+    parameters.instructions = set;
+    expect_equal(crushed(model, parameters, 2, 100, kCrushingSteps), expected, name(set));
+  }
+  for (const auto& [skin, reach] : {std::pair{0.05, 0.01}, {0.5, 0.1}, {0.2, 0.2}}) {
+    auto parameters = crushing();
+    parameters.found.skin = skin;
+    parameters.found.reach = reach;
+    const auto m = crushed(model, parameters, 1, 100, kCrushingSteps);
+    EXPECT_EQ(m.body().found->searches > expected.body().found->searches, reach < 0.05);
+    expect_equal(m, expected, "reach " + std::to_string(reach));
+  }
+  {
+    const SmallChunks few(7);
+    const ModelOf<2> cut = tessellated(40, 0.1, 0.1, 3);
+    ASSERT_GT(cut.chunks().count(), 1);
+    const auto m = crushed(cut, crushing(), 2, 100, kCrushingSteps);  // its sums have other last digits
+    EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
+    EXPECT_TRUE(m.read().forces() == expected.read().forces());
+  }
+  auto parameters = crushing();
+  parameters.layout.fewest_blocks = 2;
+  expect_equal(crushed(model, parameters, 1, 100, kCrushingSteps), expected, "other bundles");
+}
+
+// Promise: a state that is copied at any step goes on with the same bits.
+TEST(FoundContacts, CopiedStatesGoOnWithTheSameBits) {
+  const ModelOf<2> model = tessellated(40, 0.1, 0.1, 3);
+  const auto expected = crushed(model, crushing(), 1, kCrushingSteps, kCrushingSteps);
+  for (const int step : {63, 64, 65, 700, 1023, 1024, 1025}) {
+    auto half = crushed(model, crushing(), 1, step, step);
+    auto other = crushed(model, crushing(), 1, 1, 1);
+    copy_state(half, other);
+    EXPECT_EQ(other.totals().energy().contacts, half.totals().energy().contacts);
+    other.advance(kCrushingSteps - step);
+    expect_equal(other, expected, "copied at step " + std::to_string(step));
+  }
+}
+
+// Promise: loose blocks in a box keep their energy without friction, and none passes another one.
+TEST(FoundContactsVerification, LoosePileKeepsItsEnergy) {
+  for (const auto& [friction, damping] : {std::pair{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.3}}) {
+    ModelOf<2> model = empty_model();
+    add_block(model, rectangle(-0.15, -0.05, 0.35, 0.05));
+    add_block(model, rectangle(-0.15, 0.0, 0.05, 0.4));
+    add_block(model, rectangle(0.15, 0.0, 0.05, 0.4));
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 5; ++j) {
+        const Vec<2> at{{-0.08 + 0.052 * i, 0.02 + 0.055 * j}};
+        add_block(model, rectangle(at[0], at[1], 0.03 + 0.002 * (i % 3), 0.03, 0.3 * i + 0.7 * j,
+                                   at + Vec<2>{{0.015, 0.015}}));
+      }
+    auto parameters = flying(kGravity, 0.3);
+    parameters.found.damping = damping;
+    auto m = mechanics<2>(model, rubbing(1e10, friction), parameters, 30e9);
+    for (int b = 0; b < 3; ++b) hold(m, b);
+    while (m.time() < 0.1) m.advance(500);
+    const EnergyLedger e = m.totals().energy();
+    // Friction that comes and goes within a few steps is booked to the first order of the step.
+    EXPECT_LT(std::abs(e.error()), (friction > 0.0 ? 2e-3 : 4e-6) * e.gravity);
+    EXPECT_EQ(e.dissipated.of("friction") > 0.01 * e.gravity, friction > 0.0);
+    for (int b = 3; b < model.block_count(); ++b) EXPECT_GT(lowest(m, b), -1e-3);
+  }
+}
+
+TEST(FoundContacts, BodiesThatCannotHaveThemAreRefused) {
+  const ModelOf<2> model = two_rows(2, 0.01);
+  auto small = flying(0.0, 0.5);
+  small.kinematics = Kinematics::small;
+  EXPECT_THROW(mechanics<2>(model, mortar_contact(), small), Error);
+  EXPECT_THROW(mechanics<2>(model, elastic_contact(), flying(0.0, 0.5)), Error);
+  auto in_space = quasi_static<3>();
+  in_space.found.is_on = true;
+  const ModelOf<3> solid = five_tetrahedra();
+  EXPECT_THROW(mechanics<3>(solid, mortar_contact(), in_space), Error);
+}
+
+}  // namespace
+}  // namespace pyroclast
