@@ -90,7 +90,7 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
 /// Reads [contacts.found].
 void read_found(const Section& contacts, const ContactParameters& parameters, FoundParameters& found) {
   if (!found.is_on) {
-    contacts.know({kFoundTable});
+    if (const auto s = contacts.optional_section(kFoundTable)) s->know({"like", "damping"});
     return;
   }
   const std::array<std::string, 2> of_matrix{parameters.matrix, parameters.matrix};
