@@ -26,24 +26,39 @@ std::vector<Vec<Dim>> centroids(const ModelOf<Dim>& model, const ZoneGeometry<Di
   return found;
 }
 
-/// Returns a face between two cells: a bent face counts as the plane of its contacts' mean frame.
+/// Returns the area vector of a face, m2: of a bent one shorter than its area.
+template <int Dim>
+Vec<Dim> area_vector(const ModelOf<Dim>& model, int face) {
+  const int first = model.face_contacts[face], last = model.face_contacts[face + 1];
+  Vec<Dim> vector;
+  if constexpr (Dim == 2) {
+    for (int c = first; c < last; ++c) vector += model.contacts[c].normal * model.contacts[c].area;
+  } else {
+    const auto corner = [&](int c) {
+      return model.position[model.contacts[c].a] - model.position[model.contacts[first].a];
+    };
+    for (int c = first + 1; c + 1 < last; ++c) vector += cross(corner(c), corner(c + 1)) * 0.5;
+  }
+  return vector;
+}
+
+/// Returns a face between two cells: a bent face counts as a plane.
 template <int Dim>
 CellFace cell_face(const ModelOf<Dim>& model, int face, std::array<int, 2> cells, const Vec<Dim>& from,
                    const Vec<Dim>& to) {
-  Vec<Dim> centre, vector;
+  Vec<Dim> centre;
   double area = 0.0;
   for (int c = model.face_contacts[face]; c < model.face_contacts[face + 1]; ++c) {
-    const Contact<Dim>& contact = model.contacts[c];
-    centre += model.position[contact.a] * contact.area;
-    vector += contact.normal * contact.area;
-    area += contact.area;
+    centre += model.position[model.contacts[c].a] * model.contacts[c].area;
+    area += model.contacts[c].area;
   }
   centre *= 1.0 / area;
-  const Vec<Dim> line = to - from;
+  const Vec<Dim> vector = area_vector(model, face), line = to - from;
   const double length = norm(line);
   const double share =
       std::clamp(dot(vector, centre - from) / dot(vector, line), kLeastShare, 1.0 - kLeastShare);
-  return {cells, norm(vector), {share * length, (1.0 - share) * length}};
+  const double area_across = std::abs(dot(vector, line)) / length;
+  return {cells, 0.5 * (norm(vector) + area_across), {share * length, (1.0 - share) * length}};
 }
 
 }  // namespace

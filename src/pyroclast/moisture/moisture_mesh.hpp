@@ -10,13 +10,14 @@ namespace pyroclast {
 
 /// Face through which water goes from one cell to another.
 ///
-/// Its transmissibility is area / (lengths[0] / K_0 + lengths[1] / K_1), with the lengths along the line of
-/// the cells' centroids ("orthogonal correction": Jasak 1996). It is above zero for any cells. With the area
-/// across this line random cells would be 2 % tighter than the material, with the lengths across the face 2 %
-/// more open.
+/// Its transmissibility is area / (lengths[0] / K_0 + lengths[1] / K_1), with the lengths along the line of the
+/// cells' centroids. It is above zero for any cells. The area is the mean of that of the face and that across
+/// this line: of the "orthogonal" and the "minimum" correction (Jasak 1996). Random cells in the plane, in
+/// space, and in space with short edges merged are 0.0, 0.2 and 1.8 % more open than the material by the
+/// first, and 2.2, 0.9 and 0.9 % tighter by the second.
 struct CellFace {
   std::array<int, 2> cells;
-  double area;                    ///< m2; a bent face counts as its mean plane
+  double area;                    ///< m2, see above; a bent face counts as a plane
   std::array<double, 2> lengths;  ///< along this line, from each centroid to the face, m
 };
 
