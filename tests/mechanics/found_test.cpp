@@ -314,6 +314,44 @@ TEST(FoundContacts, CopiedStatesGoOnWithTheSameBits) {
   }
 }
 
+// Promise: found contacts follow new properties as first ones do: the ledger closes, nothing that was lost
+// comes back, and a copied state goes on with the same bits.
+TEST(FoundContacts, FollowAChangeOfProperties) {
+  const ModelOf<2> model = tessellated(40, 0.1, 0.1, 3);
+  const auto heat = [&](Mechanics<2>& m) {
+    BodyProperties p;
+    for (int z = 0; z < model.zone_count(); ++z)
+      p.zones.push_back(zone_properties<2>(20e9, 0.2, 1e-6 * (z % 100)));
+    auto contact = mortar_contact();
+    contact.normal_stiffness *= 0.6;
+    contact.shear_stiffness *= 0.6;
+    for (int c = 0; c < model.contact_count(); ++c) {  // each contact has its own temperature
+      contact.friction_angle = contact.residual_friction_angle = 0.3 - 1e-4 * (c % 100);
+      p.contacts.add(contact);
+      p.of_contact.push_back(c);
+    }
+    p.contacts.add(contact);
+    p.of_interface = {model.contact_count()};
+    m.set_properties(std::move(p));
+  };
+  auto m = crushed(model, crushing(), 1, 900, 900);
+  const EnergyLedger before = m.totals().energy();
+  heat(m);
+  const EnergyLedger after = m.totals().energy();
+  EXPECT_NE(after.contacts, before.contacts);
+  EXPECT_GE(after.dissipated.total(), before.dissipated.total());
+  EXPECT_NEAR(after.error(), before.error(), 1e-9 * turnover(after));
+  m.advance(500);
+  auto other = crushed(model, crushing(), 2, 1, 1);
+  copy_state(m, other);
+  EXPECT_EQ(other.totals().energy().contacts, m.totals().energy().contacts);
+  const double error = m.totals().energy().error();
+  EXPECT_LT(std::abs(error), 2e-4 * turnover(m.totals().energy()));
+  m.advance(300);
+  other.advance(300);
+  expect_equal(other, m, "copied after a change of properties");
+}
+
 // Promise: loose blocks in a box keep their energy without friction, and none passes another one.
 TEST(FoundContactsVerification, LoosePileKeepsItsEnergy) {
   for (const auto& [friction, damping] : {std::pair{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.3}}) {

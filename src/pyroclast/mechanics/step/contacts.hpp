@@ -66,10 +66,11 @@ struct Contacts {
   // flatten, because lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
   [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
+    [[maybe_unused]] const bool hands_over = !s.handed_over.empty();
     for (int pack = first; pack < last; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
       if constexpr (Dim == 2 && kKinematics == Kinematics::finite)
-        if (!s.handed_over.empty() && s.handed_over[pack] != 0) {
+        if (hands_over && s.handed_over[pack] != 0) {
           update_handed_over<kMeasure>(s, pack);
           continue;
         }
@@ -81,8 +82,7 @@ struct Contacts {
   /// Updates a pack of faces of which found pairs press some: these keep their history, and bear nothing.
   template <bool kMeasure>
   [[gnu::flatten, gnu::noinline]] static void update_handed_over(State<Dim>& s, int pack) {
-    const unsigned lanes = s.handed_over[pack];
-    const auto handed_over = Real::Truth::from_bits(lanes);
+    const auto handed_over = Real::Truth::from_bits(s.handed_over[pack]);
     const auto area_of = [&](const PointPack& point) {
       return select(handed_over, Real(0.0), Real::load(point.area));
     };
@@ -97,7 +97,7 @@ struct Contacts {
     HistoryOfFaces history;
     history.keep(s, pack);
     update_pack<Kinematics::finite, kMeasure>(s, pack, area_of);
-    history.put_back(s, pack, lanes);
+    history.put_back(s, pack, handed_over);
   }
 
   /// Internal variables and losses of a pack of faces in the plane.
@@ -112,11 +112,11 @@ struct Contacts {
       take(lines, s.internals.data() + s.first_internal[pack], kPoints * kInternals);
       take(lines + kPoints * kInternals, s.loss.data() + s.first_loss[pack], kPoints * kLosses);
     }
-    void put_back(const State<Dim>& s, int pack, unsigned lanes) const {
+    /// \param lanes  true where the faces keep it
+    void put_back(const State<Dim>& s, int pack, const typename Real::Truth& lanes) const {
       const auto put = [&](Line* line, const Line* kept, int count) {
         for (int i = 0; i < count; ++i)
-          for (int lane = 0; lane < kLanes; ++lane)
-            if ((lanes >> static_cast<unsigned>(lane) & 1U) != 0) line[i].number[lane] = kept[i].number[lane];
+          select(lanes, Real::load(kept[i].number), Real::load(line[i].number)).store(line[i].number);
       };
       put(s.internals.data() + s.first_internal[pack], lines, kPoints * kInternals);
       put(s.loss.data() + s.first_loss[pack], lines + kPoints * kInternals, kPoints * kLosses);

@@ -166,11 +166,17 @@ class Step {
         for (int j = 0; j < Dim; ++j) total[j] = mass * gravity[j];
         if constexpr (kMeasure) sums.applied += norm(total);
       }
-      total = C::template add_forces<kKinematics, true>(s, pack, total);
-      if constexpr (kKinematics == Kinematics::finite)
-        if (s.found) total += R::load(&s.found->force[slot_of(pack, 0)]);
-      R::store(total, scratch.sum[i].c);
+      R::store(C::template add_forces<kKinematics, true>(s, pack, total), scratch.sum[i].c);
     }
+    if constexpr (kKinematics == Kinematics::finite)
+      if (s.found) add_found(s, bundle, scratch);
+  }
+
+  /// Adds the forces of found contacts.
+  static void add_found(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
+    for (int i = 0; i < bundle.packs; ++i)
+      R::store(R::load(scratch.sum[i].c) + R::load(&s.found->force[slot_of(bundle.first_pack + i, 0)]),
+               scratch.sum[i].c);
   }
 
  private:
