@@ -13,7 +13,7 @@ namespace {
 
 using namespace bodies;
 
-constexpr double kGravity = 9.81, kDensity = 2400.0;
+constexpr double kGravity = 9.81;
 
 std::vector<Vec<2>> rectangle(double x, double y, double width, double height, double angle = 0.0,
                               const Vec<2>& about = {}) {
