@@ -55,9 +55,11 @@ class Volumes(unittest.TestCase):
         labels = np.zeros((20, 20, 30), int)
         labels[4:16, 4:16, 4:15] = 1
         labels[4:16, 4:16, 15:26] = 2
-        for gap in (0.0, 1.0):  # the rims are rounded, so that the extremes are off by some hundredths
+        for gap in (0.0, 1.0):
             left, right = volumes.stones_of_labels(labels, "1 mm", gap=f"{gap} mm")
-            self.assertAlmostEqual(1e3 * (right.vertices[:, 0].min() - left.vertices[:, 0].max()), gap, delta=0.1)
+            # smoothing rounds the rims, where the surface bends to one side
+            middle = [v[np.abs(v[:, 1:] - 10e-3).max(axis=1) < 3e-3, 0] for v in (left.vertices, right.vertices)]
+            self.assertAlmostEqual(1e3 * (middle[1].min() - middle[0].max()), gap, delta=0.05)
 
     def test_distance(self):
         ball, = volumes.stones_of_distance(lambda p: np.linalg.norm(p - 0.02, axis=1) - 0.01, ["0 mm"] * 3, ["40 mm"] * 3,

@@ -62,7 +62,7 @@ def stones_of_labels(volume: ArrayLike | str | Path, voxel: str | Quantity, *, m
     voxel: edge of a voxel, with its unit ("0.5 mm")
     matrix: label of the matrix
     phases: the phase of all stones, or of each label by its number; None: it is matrix
-    gap: least distance between stones that touch, with its unit
+    gap: distance between the faces of stones that touch, with its unit; at their rims it may be less
     Raises Error where there is no stone, labels are no whole numbers or have no phase. Warns of parts of less than 27
     voxels, which are left out.
     """
@@ -149,7 +149,8 @@ def _labels_of(volume: ArrayLike | str | Path) -> tuple[NDArray[np.int64], str]:
     if labels.ndim != 3 or not labels.size:
         raise Error(f"{source}a volume must be (slices, rows, columns) of labels, not {labels.shape}")
     if labels.dtype.kind not in "biuf" or not np.array_equal(labels, np.floor(labels)):
-        raise Error(f"{source}labels must be whole numbers: np.digitize(volume, bounds) numbers grey values between bounds")
+        raise Error(f"{source}labels must be whole numbers: np.digitize(volume, bounds) numbers grey values between "
+                    "bounds")
     return labels.astype(np.int64), source
 
 
@@ -190,7 +191,8 @@ def _read(file: Path) -> NDArray[Any]:
 def _smoothed(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Returns the smoothed distance of voxels from a mask's surface, in voxels, negative within."""
     from scipy import ndimage
-    signed = ndimage.distance_transform_edt(~mask) - ndimage.distance_transform_edt(mask)
+    # from the middle of a voxel to that of the nearest one on the other side; the surface lies half a voxel before
+    signed = ndimage.distance_transform_edt(~mask) - ndimage.distance_transform_edt(mask) + mask - 0.5
     smoothed: NDArray[np.float64] = ndimage.gaussian_filter(signed, _SMOOTH, mode="nearest")
     return smoothed
 
