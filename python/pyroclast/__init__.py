@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .errors import Error as Error
     from .live import grains as grains
     from .live import units as units
+    from .live import volumes as volumes
     from .live.decks import Deck as Deck
     from .live.functions import Function as Function
     from .live.laws import Law as Law
@@ -69,7 +70,7 @@ if TYPE_CHECKING:
     from .study.study import Study as Study
 else:
     # Imported when first asked for: figures must not need the compiled part.
-    _MODULES = {"grains": "live.grains", "parallel": "parallel", "units": "live.units"}
+    _MODULES = {"grains": "live.grains", "parallel": "parallel", "units": "live.units", "volumes": "live.volumes"}
     _PLACES = {
         "_core": ("Body", "commit", "instruction_sets", "version"),
         "errors": ("DeckError", "Diagnostic", "Error"),

@@ -56,7 +56,7 @@ std::string shaped(const std::string& deck, const std::string& shape) {
 // blocks.
 TEST(SolidDeck, BlocksFollowStonesOfAShape) {
   for (const char* const shape : {"kind = \"ellipse\"\nelongation = [1.2, 1.6]\nflatness = [1, 1.3]",
-"kind = \"harmonics\"\nelongation = [1, 1.4]\nroughness = [0.02, 0.05]"}) {
+                                  "kind = \"harmonics\"\nelongation = [1, 1.4]\nroughness = [0.02, 0.05]"}) {
     std::string deck = shaped(shipped_case("starter_3d"), shape);
     const auto begin = deck.find("rule = \"fit\"");
     deck.replace(begin, std::string("rule = \"fit\"").size(), "rule = \"follow\"");
@@ -143,6 +143,10 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
        {"aggregates.grain_shape.corners", "4"}},
       {shaped(solid(), "kind = \"ellipse\"\nelongation = [1, 2]\norientation = [\"0 deg\", \"9 deg\"]"),
        {"aggregates.grain_shape.orientation", "leave the key out"}},
+      {with(plane(), "[blocks]", "[aggregates.surfaces]\nobj = \"a.obj\"\n\n[blocks]"),
+       {"aggregates.surfaces", "a plane takes outlines"}},
+      {with(solid(), "[blocks]", "[aggregates.outlines]\ncsv = \"a.csv\"\n\n[blocks]"),
+       {"aggregates.outlines", "a solid takes surfaces"}},
       {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
        {"aggregates.grain_shape.flatness", "grains of a solid"}},
       {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),

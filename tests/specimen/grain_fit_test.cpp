@@ -185,7 +185,7 @@ Specimen<2> with_stone(std::vector<Vec<2>> points, int blocks) {
   p.blocks.count = blocks;
   p.blocks.shortest_edge = 0.3;
   const auto [outline, centre] = outline_around(std::move(points));
-  p.aggregates.stones = {{centre, outline->width(), "aggregate", "", outline}};
+  p.aggregates.stones = std::vector<Stone<2>>{{centre, outline->width(), "aggregate", "", outline}};
   p.aggregates.fraction = outline->extent() / p.region.extent();
   p.aggregates.d_min = p.aggregates.d_max = outline->width();
   return make_specimen(p);

@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "messages.hpp"
+#include "own_folder.hpp"
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_fit.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/stones_file.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -133,6 +136,44 @@ TEST(Shell, StonesAreAsNearAsTheirVertices) {
   const Grain<3> ball{{{0.0, 2.5, 0.0}}, 1.0};
   EXPECT_NEAR(approach(a, ball).gap, 1.0, 1e-12);
   EXPECT_NEAR(approach(ball, a).direction[1], -1.0, 1e-12);
+}
+
+// Promise: the file of stones keeps their places, phases and surfaces, and a fault in it is told with its
+// line.
+TEST(StonesFile, KeepsStonesAndTellsFaultsWithTheirLine) {
+  Random random(5);
+  const std::vector<std::string> phases{"aggregate", "pore"};
+  std::vector<Grain<3>> stones;
+  for (const GrainShape kind : kShapes) {
+    auto shape = draw_shell(shape_of(kind), random)->scaled(0.02);
+    stones.push_back({{{0.1 * static_cast<double>(stones.size()), 0.02, 0.03}},
+                      0.02,
+                      static_cast<int>(stones.size() % 2),
+                      0,
+                      std::move(shape)});
+  }
+  stones.push_back({{{0.5, 0.0, 0.0}}, 0.01});  // a ball, of triangles in the file
+  const auto file = own_folder() / "stones.obj";
+  const auto write = [&](const std::string& text) { std::ofstream(file) << text; };
+  const std::string text = stones_obj(stones, phases);
+  write(text);
+  const auto read = read_stones_obj(file, 1.0, "none");
+  ASSERT_EQ(read.size(), stones.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_NEAR(norm(read[i].centre - stones[i].centre), 0.0, 1e-9);
+    EXPECT_EQ(read[i].phase, phases[stones[i].phase]);
+    EXPECT_NEAR(read[i].shape->extent() / extent(stones[i]), 1.0, stones[i].shape ? 1e-6 : 0.01);
+    EXPECT_EQ(read[i].shape->corner_count(), stones[i].shape ? stones[i].shape->corner_count() : 0);
+  }
+  EXPECT_NEAR(read_stones_obj(file, 1e-3, "none")[0].diameter, 1e-3 * read[0].diameter, 1e-12);
+  const auto says = [&](const std::string& what) {
+    write(what);
+    return message([&] { read_stones_obj(file, 1.0, "none"); });
+  };
+  expect_in("no faces", says("v 0 0 0\n"));
+  expect_in("stones.obj:2: \"x\" is not a number", says("o a\nv 0 x 0\n"));
+  expect_in("stones.obj:3: there is no vertex 2: 1 lines v", says("o a\nv 0 0 0\nf 1 1 2\n"));
+  expect_in("stones.obj:1: ", says("o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
 }
 
 /// A stone in the middle of a cube whose blocks have a size of 1, from the radius of the ball of its volume.

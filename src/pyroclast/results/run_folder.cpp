@@ -50,6 +50,7 @@ constexpr auto kWritten = std::to_array<const char*>({
     "specimen/gradation.csv",
     "specimen/grain_fit.csv",
     "specimen/outlines.csv",
+    "specimen/stones.obj",
     "specimen/specimen.json",
     "fields/mesh.h5",
     "fields/frames.csv",

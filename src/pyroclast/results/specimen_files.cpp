@@ -12,6 +12,7 @@
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/grain_fit.hpp"
+#include "pyroclast/specimen/stones_file.hpp"
 
 namespace pyroclast {
 
@@ -83,6 +84,7 @@ std::string grain_fit_csv(const specimen::Specimen<Dim>& s) {
 /// Adds the stones as they were placed, and their gradation.
 template <int Dim>
 void add_stones(Files& files, const std::vector<specimen::Grain<Dim>>& stones,
+                [[maybe_unused]] const std::vector<std::string>& phases,
                 const specimen::SpecimenParameters& asked) {
   std::string csv = Dim == 2 ? "x_m,y_m,diameter_m,phase\n" : "x_m,y_m,z_m,diameter_m,phase\n";
   for (const auto& stone : stones) {
@@ -90,9 +92,12 @@ void add_stones(Files& files, const std::vector<specimen::Grain<Dim>>& stones,
     csv += fmt::format("{:.9g},{}\n", stone.diameter, stone.phase);
   }
   files["aggregates.csv"] = csv;
-  if constexpr (Dim == 2)
-    if (std::ranges::any_of(stones, [](const auto& stone) { return stone.shape != nullptr; }))
+  if (std::ranges::any_of(stones, [](const auto& stone) { return stone.shape != nullptr; })) {
+    if constexpr (Dim == 2)
       files["outlines.csv"] = outlines_csv(stones);
+    else
+      files["stones.obj"] = specimen::stones_obj(stones, phases);
+  }
   if (!stones.empty()) files["gradation.csv"] = gradation_csv(stones, asked);
 }
 
@@ -125,7 +130,7 @@ void add_made(Files& files, const specimen::Specimen<2>& s, const specimen::Spec
   json["seeds_redrawn"] = s.metrics.seeds_redrawn;
   json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
   files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.stones, asked);
+  add_stones(files, s.stones, s.phases, asked);
   if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 
@@ -155,7 +160,7 @@ void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::Spec
                                     {"stones", c.stones},
                                     {"without_a_block", c.without_a_block}});
   files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.stones, asked);
+  add_stones(files, s.stones, s.phases, asked);
   if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 

@@ -20,6 +20,7 @@
 #include "pyroclast/specimen/grading_curve.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/stones_file.hpp"
 #include "pyroclast/tables/measured_table.hpp"
 #include "pyroclast/tables/read_choice.hpp"
 
@@ -158,18 +159,20 @@ void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.sieves.push_back(a.d_max);
 }
 
-double area_of(const specimen::Stone& stone) {
-  return stone.shape ? stone.shape->extent() : specimen::circle_area(stone.diameter);
+template <int Dim>
+double extent_of(const specimen::Stone<Dim>& stone) {
+  return stone.shape ? stone.shape->extent() : specimen::extent_of_round<Dim>(stone.diameter);
 }
 
-/// Sets the gradation to that of the stones, which are known.
-void set_gradation_of_stones(specimen::AggregateParameters& a) {
-  std::vector<std::pair<double, double>> sizes;  // diameter and area
-  for (const specimen::Stone& stone : a.stones) sizes.emplace_back(stone.diameter, area_of(stone));
+/// Sets the gradation to that of stones that are known, and keeps these.
+template <int Dim>
+void set_known(std::vector<specimen::Stone<Dim>> stones, specimen::AggregateParameters& a) {
+  std::vector<std::pair<double, double>> sizes;  // diameter and extent
+  for (const auto& stone : stones) sizes.emplace_back(stone.diameter, extent_of(stone));
   std::ranges::stable_sort(sizes, {}, &std::pair<double, double>::first);
   double passed = 0.0;
-  for (const auto& [size, area] : sizes) {
-    passed += area;
+  for (const auto& [size, extent] : sizes) {
+    passed += extent;
     if (!a.sieves.empty() && a.sieves.back() == size) {
       a.passing.back() = passed;
       continue;
@@ -180,10 +183,11 @@ void set_gradation_of_stones(specimen::AggregateParameters& a) {
   for (double& share : a.passing) share /= passed;
   a.d_min = sizes.front().first;
   a.d_max = sizes.back().first;
+  a.stones = std::move(stones);
 }
 
-/// Columns of a table of stones: three, and the number of the phase, which may be missing.
-using StoneColumns = std::array<AskedColumn, 4>;
+/// Columns of a table of stones, the last for the number of the phase, which may be missing.
+using StoneColumns = std::vector<AskedColumn>;
 
 /// Function that returns the place of a row in its file.
 using PlaceOfRow = std::function<std::string(std::size_t row)>;
@@ -195,18 +199,22 @@ AskedColumn phase_column() {
 /// Reads stones that are known, from a table as a run writes it.
 /// \param add  function of the values by column, the first row of a stone, and a function that returns the
 ///             place of a row; returns the stone without its phase, and the row behind the stone
-template <class Add>
+template <int Dim, class Add>
 void read_known_stones(const Section& s, const std::filesystem::path& folder, const StoneColumns& asked,
                        specimen::AggregateParameters& a, Add add) {
-  constexpr std::size_t kWithoutPhase = 3;
+  const std::size_t without_phase = asked.size() - 1;
   const auto read = read_named_table(
-      s, folder, asked, {&meaning::z, &meaning::diameter, &meaning::radius, &meaning::area, &meaning::grain});
+      s, folder, asked,
+      Dim == 2
+          ? ColumnMeanings{&meaning::z, &meaning::diameter, &meaning::radius, &meaning::area, &meaning::grain}
+          : ColumnMeanings{&meaning::diameter, &meaning::radius, &meaning::area, &meaning::grain});
   auto phases = s.optional_texts("phases",
                                  "names of the phases, by their numbers from 0; without them all stones "
                                  "are of number 0, and of `phase`");
   if (phases.empty()) phases = {a.phase};
   if (!read || !s.ok()) return;
   a.place = fmt::format("{}: {}", s.where("csv"), s.path());
+  std::vector<specimen::Stone<Dim>> stones;
   try {
     std::vector<std::vector<double>> values;  // by column
     for (std::size_t i = 0; i < read->columns.size(); ++i)
@@ -216,41 +224,66 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
     };
     for (std::size_t row = 0; row < values[0].size();) {
       const std::string place = place_of(row);
-      const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
+      const double phase = values.size() > without_phase ? values[without_phase][row] : 0.0;
       auto [stone, end] = add(values, row, place_of);
       if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
         throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` names 0 to {}", place, phase,
                                 phases.size() - 1));
       stone.phase = phases[static_cast<std::size_t>(phase)];
       stone.place = place;
-      a.stones.push_back(std::move(stone));
+      stones.push_back(std::move(stone));
       row = end;
     }
   } catch (const Error& error) {
     s.error("csv", error.what());
     return;
   }
-  set_gradation_of_stones(a);
+  set_known(std::move(stones), a);
 }
 
 using Columns = std::vector<std::vector<double>>;
-using StoneAndEnd = std::pair<specimen::Stone, std::size_t>;
+template <int Dim>
+using StoneAndEnd = std::pair<specimen::Stone<Dim>, std::size_t>;
 
+template <int Dim>
 void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
   const Section own = s.section("stones",
-                                "places and diameters of all circles, in the place of a grading: "
-                                "`specimen/aggregates.csv` of a run, or "
-                                "a table of x, y, diameter or radius, and the number of a phase or none");
-  const StoneColumns asked{{{"x", unit::length, {{&meaning::x}}},
-                            {"y", unit::length, {{&meaning::y}}},
-                            {"diameter", unit::length, {{&meaning::diameter}, {&meaning::radius, 2.0}}},
-                            phase_column()}};
-  read_known_stones(
+                                "places and diameters of all circles, in a solid of balls, in the place of a "
+                                "grading: `specimen/aggregates.csv` of a run, or a table of x, y, in a solid "
+                                "z, diameter or radius, and the number of a phase or none");
+  StoneColumns asked{{"x", unit::length, {{&meaning::x}}}, {"y", unit::length, {{&meaning::y}}}};
+  if (Dim == 3) asked.push_back({"z", unit::length, {{&meaning::z}}});
+  asked.push_back({"diameter", unit::length, {{&meaning::diameter}, {&meaning::radius, 2.0}}});
+  asked.push_back(phase_column());
+  read_known_stones<Dim>(
       own, folder, asked, a, [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
-        if (!(values[2][row] > 0.0))
+        if (!(values[Dim][row] > 0.0))
           throw Error(fmt::format("{}: the diameter must be greater than 0", place_of(row)));
-        return StoneAndEnd{{{{values[0][row], values[1][row]}}, values[2][row], {}, {}}, row + 1};
+        Vec<Dim> centre;
+        for (int d = 0; d < Dim; ++d) centre[d] = values[d][row];
+        return StoneAndEnd<Dim>{{centre, values[Dim][row], {}, {}}, row + 1};
       });
+}
+
+/// Reads the surfaces of stones in space that are known.
+void read_surfaces(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  const Section own = s.section(
+      "surfaces",
+      "surfaces of all stones of a solid, in the place of a grading: `specimen/stones.obj` of a run, or a "
+      "file "
+      "in the Wavefront format; each object (line o) is a stone of the phase that its line usemtl names");
+  const std::string file = own.text("obj", "file beside the deck");
+  const double length = own.quantity("unit", unit::length, Range::positive().usually(1e-6, 1.0), 1.0,
+                                     "length of 1 in the file, \"1 m\" without this key");
+  if (!own.ok() || !own.has("obj")) return;
+  a.place = fmt::format("{}: {}", own.where("obj"), own.path());
+  try {
+    auto stones = specimen::read_stones_obj(folder / file, length, a.phase);
+    own.names_file("obj", folder / file);
+    set_known(std::move(stones), a);
+  } catch (const Error& error) {
+    own.error("obj", error.what());
+  }
 }
 
 /// Reads outlines that are known: points of the outline of each grain, in turn.
@@ -261,26 +294,26 @@ void read_outlines(const Section& s, const std::filesystem::path& folder, specim
                 "run, or a table of the number of the grain, x, y of a point of its outline, and "
                 "the number of a phase or none; points of a grain follow each other, and the last may repeat "
                 "the first");
-  const StoneColumns asked{{{"grain", unit::dimensionless, {{&meaning::grain}, {&meaning::index}}},
-                            {"x", unit::length, {{&meaning::x}}},
-                            {"y", unit::length, {{&meaning::y}}},
-                            phase_column()}};
-  read_known_stones(own, folder, asked, a,
-                    [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
-                      std::vector<Vec<2>> points;
-                      std::size_t end = row;
-                      for (; end < values[0].size() && values[0][end] == values[0][row]; ++end)
-                        points.push_back({{values[1][end], values[2][end]}});
-                      if (const auto repeated = specimen::repeated_corner(points))
-                        throw Error(fmt::format("{}: the point repeats the one before: leave the row out",
-                                                place_of(row + *repeated)));
-                      try {
-                        const auto [outline, centre] = specimen::outline_around(points);
-                        return StoneAndEnd{{centre, outline->width(), {}, {}, outline}, end};
-                      } catch (const Error& error) {
-                        throw Error(fmt::format("{}: {}", place_of(row), error.what()));
-                      }
-                    });
+  const StoneColumns asked{{"grain", unit::dimensionless, {{&meaning::grain}, {&meaning::index}}},
+                           {"x", unit::length, {{&meaning::x}}},
+                           {"y", unit::length, {{&meaning::y}}},
+                           phase_column()};
+  read_known_stones<2>(own, folder, asked, a,
+                       [](const Columns& values, std::size_t row, const PlaceOfRow& place_of) {
+                         std::vector<Vec<2>> points;
+                         std::size_t end = row;
+                         for (; end < values[0].size() && values[0][end] == values[0][row]; ++end)
+                           points.push_back({{values[1][end], values[2][end]}});
+                         if (const auto repeated = specimen::repeated_corner(points))
+                           throw Error(fmt::format("{}: the point repeats the one before: leave the row out",
+                                                   place_of(row + *repeated)));
+                         try {
+                           const auto [outline, centre] = specimen::outline_around(points);
+                           return StoneAndEnd<2>{{centre, outline->width(), {}, {}, outline}, end};
+                         } catch (const Error& error) {
+                           throw Error(fmt::format("{}: {}", place_of(row), error.what()));
+                         }
+                       });
 }
 
 /// Reads the least and the largest of numbers that are drawn.
@@ -362,16 +395,22 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
                                               const DeckSpace& space) {
   specimen::AggregateParameters a;
   a.phase = s.text("phase", "aggregate", kPhase);
-  s.know({"stones", "outlines", "grain_shape", "fraction", "minimum_gap", "attempts", "passing", "passing_by",
-          "d_min", "d_max", "fuller_exponent", "sieves"});
+  s.know({"stones", "outlines", "surfaces", "grain_shape", "fraction", "minimum_gap", "attempts", "passing",
+          "passing_by", "d_min", "d_max", "fuller_exponent", "sieves"});
   if (s.has("stones")) {
     if (space.is_solid())
-      s.error("stones", "are circles of a plane; a solid cannot take stones from a list yet");
-    read_stones(s, folder, a);
+      read_stones<3>(s, folder, a);
+    else
+      read_stones<2>(s, folder, a);
+    return a;
+  }
+  if (s.has("surfaces")) {
+    if (!space.is_solid()) s.error("surfaces", "are of stones in space; a plane takes outlines");
+    read_surfaces(s, folder, a);
     return a;
   }
   if (s.has("outlines")) {
-    if (space.is_solid()) s.error("outlines", "are lines in a plane; a solid cannot take them");
+    if (space.is_solid()) s.error("outlines", "are lines in a plane; a solid takes surfaces");
     read_outlines(s, folder, a);
     return a;
   }
@@ -415,11 +454,15 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std
   return list;
 }
 
-void set_fraction(double area_of_specimen, specimen::AggregateParameters& a) {
-  if (a.stones.empty()) return;
-  double area = 0.0;
-  for (const specimen::Stone& stone : a.stones) area += area_of(stone);
-  a.fraction = area / area_of_specimen;
+void set_fraction(double extent_of_specimen, specimen::AggregateParameters& a) {
+  if (!a.are_known()) return;
+  double extent = 0.0;
+  std::visit(
+      [&](const auto& list) {
+        for (const auto& stone : list) extent += extent_of(stone);
+      },
+      a.stones);
+  a.fraction = extent / extent_of_specimen;
 }
 
 void check_size(const Section& s, const AskedSpecimen& p) {
@@ -427,7 +470,7 @@ void check_size(const Section& s, const AskedSpecimen& p) {
   double narrowest = size[0];
   for (int i = 1; i < p.dimension(); ++i) narrowest = std::min(narrowest, size[i]);
   const double largest = p.aggregates.d_max;
-  if (p.aggregates.fraction == 0.0 || !p.aggregates.stones.empty()) return;
+  if (p.aggregates.fraction == 0.0 || p.aggregates.are_known()) return;
   if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
     s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
                                  narrowest));

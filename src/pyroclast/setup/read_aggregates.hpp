@@ -20,7 +20,7 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std
                                                   const DeckSpace& space);
 
 /// Sets the fraction to the share of the specimen that known stones take.
-void set_fraction(double area_of_specimen, specimen::AggregateParameters& a);
+void set_fraction(double extent_of_specimen, specimen::AggregateParameters& a);
 
 /// Records an error where the largest aggregate has no place, and warns where the specimen is only a few of
 /// them wide.

@@ -63,7 +63,7 @@ void let_materials_stand_in(const Section& root, std::span<const ReadBearing> be
 
 /// Tells whether known stones could not be read.
 bool lacks_stones(const Section& s) {
-  return (s.has("stones") || s.has("outlines")) && !s.ok();
+  return (s.has("stones") || s.has("outlines") || s.has("surfaces")) && !s.ok();
 }
 
 /// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
@@ -105,7 +105,8 @@ void check_phases(const Section& s, const specimen::SpecimenParameters& p,
 std::string first_phase(const specimen::Inclusions& inclusions) {
   if (const auto* fibres = std::get_if<specimen::FibreParameters>(&inclusions)) return fibres->phase;
   const auto& circles = std::get<specimen::AggregateParameters>(inclusions);
-  return circles.stones.empty() ? circles.phase : circles.stones.front().phase;
+  if (!circles.are_known()) return circles.phase;
+  return std::visit([](const auto& list) { return list.front().phase; }, circles.stones);
 }
 
 }  // namespace
@@ -189,9 +190,8 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
       "when a block is aggregate");
   if (p.superposition == specimen::Superposition::follow && p.blocks.cells)
     superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");
-  const bool has_shapes = std::ranges::any_of(specimen::stone_kinds(p), [](const auto* kind) {
-    return kind->shape.kind != specimen::GrainShape::circle;
-  });
+  const bool has_shapes = std::ranges::any_of(specimen::stone_kinds(p),
+                                              [](const auto* kind) { return specimen::has_shapes(*kind); });
   if (space.is_solid() && has_shapes && p.superposition != specimen::Superposition::follow &&
       p.superposition != specimen::Superposition::centroid)
     superposition.error("rule",

@@ -97,12 +97,15 @@ struct Shell::Mesh {
   std::vector<std::array<Vec<3>, 3>> normals_of_edges;  ///< of the edge from each corner on
   std::vector<double> areas;
   std::vector<int> side;  ///< of triangles
+  bool is_smooth;
+  Vec<3> given_centre{};
   int sides = 1;
   double volume = 0.0, area = 0.0, bounding = 0.0, inner = 0.0;
   std::vector<int> order;
   std::vector<Box> boxes;
 
-  Mesh(std::vector<Vec<3>> at, std::vector<Triangle> of) : vertices(std::move(at)), triangles(std::move(of)) {
+  Mesh(std::vector<Vec<3>> at, std::vector<Triangle> of, bool smooth)
+      : vertices(std::move(at)), triangles(std::move(of)), is_smooth(smooth) {
     centre();
     find_normals();
     order.resize(triangles.size());
@@ -128,6 +131,7 @@ struct Shell::Mesh {
     if (!(volume > 0.0)) throw Error("the surface of a stone holds no volume, or is turned inside out");
     const Vec<3> middle = origin + moment * (1.0 / six);
     for (Vec<3>& v : vertices) v -= middle;
+    given_centre = middle;
   }
 
   void find_normals() {
@@ -158,7 +162,7 @@ struct Shell::Mesh {
         if (other == triangle_at.end()) throw Error("the surface of a stone is not closed");
         normals_of_edges[t][i] = normals[t] + normals[other->second];
         for (const int beside : around[from])
-          if (dot(normals[beside], normals[t]) > kCosineOfEdge)
+          if (is_smooth || dot(normals[beside], normals[t]) > kCosineOfEdge)
             normals_at[t][i] += areas[beside] * normals[beside];
       }
     sides = 0;
@@ -171,7 +175,7 @@ struct Shell::Mesh {
         open.pop_back();
         for (int i = 0; i < 3; ++i) {
           const int next = triangle_at.at({triangles[here][(i + 1) % 3], triangles[here][i]});
-          if (side[next] >= 0 || dot(normals[next], normals[here]) <= kCosineOfEdge) continue;
+          if (side[next] >= 0 || (!is_smooth && dot(normals[next], normals[here]) <= kCosineOfEdge)) continue;
           side[next] = sides;
           open.push_back(next);
         }
@@ -344,8 +348,8 @@ std::vector<std::size_t> spread_over(const std::vector<SurfacePoint<3>>& trials,
 
 }  // namespace
 
-Shell::Shell(std::vector<Vec<3>> vertices, std::vector<Triangle> triangles)
-    : mesh_(std::make_shared<const Mesh>(std::move(vertices), std::move(triangles))) {}
+Shell::Shell(std::vector<Vec<3>> vertices, std::vector<Triangle> triangles, bool is_smooth)
+    : mesh_(std::make_shared<const Mesh>(std::move(vertices), std::move(triangles), is_smooth)) {}
 
 NearestPoint<3> Shell::nearest(const Vec<3>& place) const {
   NearestPoint<3> found = mesh_->nearest(place * (1.0 / factor_));
@@ -437,6 +441,19 @@ std::vector<SurfacePoint<3>> Shell::points(double spacing, std::span<const Vec<3
     }
   }
   return points;
+}
+
+double Shell::width() const {
+  return width_across(
+      *std::ranges::max_element(mesh_->vertices, {}, [](const Vec<3>& v) { return dot(v, v); }));
+}
+
+bool Shell::is_smooth() const {
+  return mesh_->is_smooth;
+}
+
+const Vec<3>& Shell::given_centre() const {
+  return mesh_->given_centre;
 }
 
 bool Shell::has_vertex_closer(const Shell& other, const Vec<3>& from, double gap) const {
@@ -674,6 +691,12 @@ std::vector<Vec<3>> points_of_ball(int count, double radius) {
   return points;
 }
 
+Shell ball_of_shell(double radius) {
+  Triangulated ball = ball_of_triangles();
+  for (Vec<3>& v : ball.vertices) v *= radius;
+  return {std::move(ball.vertices), std::move(ball.triangles), true};
+}
+
 std::shared_ptr<const Shell> draw_shell(const ShapeParameters& p, Random& random) {
   if (p.kind == GrainShape::circle) return nullptr;
   const double elongation = random.uniform(p.elongation.low, p.elongation.high);
@@ -697,7 +720,7 @@ std::shared_ptr<const Shell> draw_shell(const ShapeParameters& p, Random& random
   for (Vec<3>& v : drawn.vertices) v = turn({{v[0] * elongation, v[1], v[2] / flatness}});
   if (p.kind == GrainShape::polygon)
     while (drawn.longest_edge() > 2.0 * kLongestEdge) drawn.halve();
-  const Shell shell(std::move(drawn.vertices), std::move(drawn.triangles));
+  const Shell shell(std::move(drawn.vertices), std::move(drawn.triangles), p.kind != GrainShape::polygon);
   const double width = shell.width_across(turn({{1.0, 0.0, 0.0}}));
   return std::static_pointer_cast<const Shell>(shell.scaled(1.0 / width));
 }

@@ -22,7 +22,8 @@ class Shell final : public Surface<3> {
   /// edge of a triangle is walked once the other way by another one, and the surface holds a volume.
   /// \param vertices   m
   /// \param triangles  vertices of each, counter-clockwise seen from outside
-  Shell(std::vector<Vec<3>> vertices, std::vector<Triangle> triangles);
+  /// \param is_smooth  true where triangles stand for a curved surface at any angle
+  Shell(std::vector<Vec<3>> vertices, std::vector<Triangle> triangles, bool is_smooth = false);
 
   NearestPoint<3> nearest(const Vec<3>& place) const override;
   double bounding_radius() const override;
@@ -49,6 +50,11 @@ class Shell final : public Surface<3> {
   /// Returns the largest extent across an axis, m: of a stone as long as wide across its length the hole of a
   /// sieve that it passes.
   double width_across(const Vec<3>& axis) const;
+  /// Returns the same across the line from the centroid to the farthest vertex, m.
+  double width() const;
+  bool is_smooth() const;  ///< Tells whether triangles stand for a curved surface at any angle.
+  /// Returns the place of the centroid among the vertices as they were given, m.
+  const Vec<3>& given_centre() const;
 
  private:
   struct Mesh;
@@ -62,6 +68,9 @@ class Shell final : public Surface<3> {
 
 /// Returns points that are spread over a ball around the origin by Fibonacci's spiral.
 std::vector<Vec<3>> points_of_ball(int count, double radius);
+
+/// Returns the shell of a ball, m.
+Shell ball_of_shell(double radius);
 
 /// Draws the shape of a stone in space whose width is 1, turned at random. A ball draws nothing and returns
 /// none.

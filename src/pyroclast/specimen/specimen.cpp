@@ -38,7 +38,7 @@ void require(bool condition, std::string_view what, double value, std::string_vi
 }
 
 void require_valid(const AggregateParameters& p) {
-  if (!p.stones.empty()) return;  // add_stones tests them
+  if (p.are_known()) return;  // add_stones tests them
   require(p.fraction >= 0.0 && p.fraction < 1.0, "The aggregate fraction", p.fraction, "0 to below 1");
   if (p.fraction == 0.0) return;
   require(p.d_min > 0.0, "The smallest aggregate diameter", p.d_min, "a positive length");
@@ -116,44 +116,57 @@ std::string side_under(const Grain<2>& grain, const Region& region, double toler
   return {};
 }
 
+/// Nothing that a stone in space lies on is named yet.
+std::string side_under(const Grain<3>& /*stone*/, const Prism& /*body*/, double /*tolerance*/) {
+  return {};
+}
+
+/// Returns the room of stones with a shape.
+Room<2> room_of_shapes(const Region& region) {
+  return room_of_blocks(region);
+}
+Room<3> room_of_shapes(const Prism& body) {
+  return room_in(body);
+}
+
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
-void add_listed(const AggregateParameters& asked, int kind, Specimen<2>& specimen) {
-  const Room<2> of_circles = room_in(specimen.outline), of_outlines = room_of_blocks(specimen.outline);
-  GrainGrid<2> grid(specimen.outline.box().low, specimen.outline.box().high, 2.0 * asked.d_min);
-  for (const Grain<2>& circle : specimen.stones) grid.insert(circle);
-  std::vector<Grain<2>> circles;
-  for (const Stone& stone : asked.stones) {
+template <int Dim>
+void add_listed(const AggregateParameters& asked, int kind, Specimen<Dim>& specimen) {
+  const auto* const listed = std::get_if<std::vector<Stone<Dim>>>(&asked.stones);
+  if (!listed) throw Error(fmt::format("{}: the stones belong to another dimension", asked.place));
+  const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_shapes(specimen.outline);
+  GrainGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
+  for (const Grain<Dim>& stone : specimen.stones) grid.insert(stone);
+  std::vector<Grain<Dim>> stones;
+  for (const Stone<Dim>& stone : *listed) {
     const double tolerance = kTouching * stone.diameter;
     const auto fail = [&](std::string_view what) {
-      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({:.6g}, {:.6g}) mm {}", asked.place,
-                              stone.place, 1e3 * stone.diameter, 1e3 * stone.centre[0], 1e3 * stone.centre[1],
-                              what));
+      std::vector<std::string> at;
+      for (const double x : stone.centre.c) at.push_back(fmt::format("{:.6g}", 1e3 * x));
+      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({}) mm {}", asked.place, stone.place,
+                              1e3 * stone.diameter, fmt::join(at, ", "), what));
     };
-    const Grain<2> circle{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
-                          stone.shape};
-    if (!lies_within(circle, stone.shape ? of_outlines : of_circles, -tolerance))
-      fail("does not lie in the specimen, all of it" + side_under(circle, specimen.outline, tolerance));
-    if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
-    grid.insert(circle);
-    circles.push_back(circle);
+    const Grain<Dim> grain{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
+                           stone.shape};
+    if (!lies_within(grain, stone.shape ? of_shapes : of_round, -tolerance))
+      fail("does not lie in the specimen, all of it" + side_under(grain, specimen.outline, tolerance));
+    if (grid.overlaps(grain, -tolerance)) fail("lies on another: stones may touch, and not overlap");
+    grid.insert(grain);
+    stones.push_back(grain);
   }
-  std::stable_sort(circles.begin(), circles.end(),
-                   [](const Grain<2>& a, const Grain<2>& b) { return a.diameter > b.diameter; });
-  specimen.stones.insert(specimen.stones.end(), circles.begin(), circles.end());
+  std::ranges::stable_sort(stones, std::greater<>(), &Grain<Dim>::diameter);
+  specimen.stones.insert(specimen.stones.end(), stones.begin(), stones.end());
 }
 
 /// Adds stones of one kind to those that the specimen has.
 template <int Dim>
 void add_stones(const AggregateParameters& asked, int kind, Random& random, Specimen<Dim>& specimen) {
   specimen.fraction_asked += asked.fraction;
-  const int phase = asked.stones.empty() ? place_in(specimen.phases, asked.phase) : -1;
-  if constexpr (Dim == 2) {
-    if (!asked.stones.empty()) return add_listed(asked, kind, specimen);
-    if (asked.fraction > 0.0 && asked.shape.kind != GrainShape::circle)
-      return draw_and_place(room_of_blocks(specimen.outline), asked, phase, kind, random, specimen.stones);
-  }
-  if (asked.fraction > 0.0)
-    draw_and_place(room_in(specimen.outline), asked, phase, kind, random, specimen.stones);
+  if (asked.are_known()) return add_listed(asked, kind, specimen);
+  if (asked.fraction == 0.0) return;
+  draw_and_place(
+      asked.shape.kind == GrainShape::circle ? room_in(specimen.outline) : room_of_shapes(specimen.outline),
+      asked, place_in(specimen.phases, asked.phase), kind, random, specimen.stones);
 }
 
 void add_fibres(const FibreParameters& kind, Random& random, Specimen<2>& specimen) {
@@ -197,8 +210,7 @@ void require_of_space(const SpecimenParameters& p) {
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
   if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
   for (const auto* const kind : stone_kinds(p)) {
-    if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
-    if (kind->shape.kind != GrainShape::circle && p.superposition != Superposition::follow &&
+    if (has_shapes(*kind) && p.superposition != Superposition::follow &&
         p.superposition != Superposition::centroid)
       throw Error("shapes of a solid are superposed by the centroids of blocks, or followed");
   }
@@ -215,7 +227,7 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
   std::vector<SizeClass> classes;
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     const auto& asked = *kinds[kind];
-    if (asked.fraction == 0.0) continue;
+    if (asked.fraction == 0.0 || asked.are_known()) continue;
     for (std::size_t i = 1; i < asked.sieves.size(); ++i) {
       const double from = asked.sieves[i - 1], to = asked.sieves[i];
       SizeClass& its = classes.emplace_back(SizeClass{.kind = kind, .from = from, .to = to});
@@ -241,11 +253,24 @@ void add_once(const std::string& name, std::vector<std::string>& names) {
 
 /// Adds the phases of stones.
 void add_phases_of(const AggregateParameters& kind, std::vector<std::string>& names) {
-  if (kind.stones.empty()) add_once(kind.phase, names);
-  for (const Stone& stone : kind.stones) add_once(stone.phase, names);
+  if (!kind.are_known()) add_once(kind.phase, names);
+  std::visit(
+      [&](const auto& list) {
+        for (const auto& stone : list) add_once(stone.phase, names);
+      },
+      kind.stones);
 }
 
 }  // namespace
+
+bool has_shapes(const AggregateParameters& kind) {
+  if (!kind.are_known()) return kind.shape.kind != GrainShape::circle;
+  return std::visit(
+      [](const auto& list) {
+        return std::ranges::any_of(list, [](const auto& stone) { return stone.shape != nullptr; });
+      },
+      kind.stones);
+}
 
 std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& parameters) {
   std::vector<const AggregateParameters*> kinds{&parameters.aggregates};

@@ -39,13 +39,16 @@ struct Fibre {
 };
 
 /// Stone that is known, read from a list.
+template <int Dim>
 struct Stone {
-  Vec<2> centre;                                 ///< m
-  double diameter;                               ///< m, as of a grain
-  std::string phase;                             ///< phase of the stone
-  std::string place;                             ///< place that states the stone, "stones.csv:7", for errors
-  std::shared_ptr<const Surface<2>> shape = {};  ///< shape around the centre; none: a circle
+  Vec<Dim> centre;    ///< m
+  double diameter;    ///< m, as of a grain
+  std::string phase;  ///< phase of the stone
+  std::string place;  ///< place that states the stone, "stones.csv:7", for errors
+  std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
+/// Stones that are known, of a plane or of a solid.
+using KnownStones = std::variant<std::vector<Stone<2>>, std::vector<Stone<3>>>;
 
 enum class GrainShape : std::uint8_t {
   circle,    ///< a ball in a solid
@@ -84,11 +87,16 @@ struct AggregateParameters {
   /// Share of the area that passes each sieve, from 0 to 1; empty: by Fuller's curve. With these shares nf is
   /// 1, for which a curve is straight between sieves.
   std::vector<double> passing = {};
-  std::vector<Stone> stones = {};  ///< stones as they lie; then nothing is drawn or placed
+  KnownStones stones = {};  ///< stones as they lie; with any nothing is drawn or placed
   ShapeParameters shape = {};
   double minimum_gap = 0.0;  ///< smallest distance between aggregates and to the outline, m
   int attempts = 0;          ///< random centres tried for one aggregate before placing fails
   std::string place = "";    ///< place that asks for them, "mine.toml:12: aggregates", for errors
+
+  /// Tells whether the stones are known.
+  bool are_known() const {
+    return std::visit([](const auto& list) { return !list.empty(); }, stones);
+  }
 };
 
 /// Fibres asked for: each at a random place, in a random direction.
@@ -168,6 +176,9 @@ struct SpecimenParameters {
 
 /// Throws Error when a parameter other than the region is out of range.
 void require_valid(const SpecimenParameters& parameters);
+
+/// Tells whether stones of a kind have shapes, and are not all round.
+bool has_shapes(const AggregateParameters& kind);
 
 /// Returns the kinds of stones: the aggregates, then the inclusions that are stones.
 std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& parameters);
