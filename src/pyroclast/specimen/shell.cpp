@@ -17,6 +17,10 @@ namespace {
 
 /// Cosine of the angle between triangles above which they stand for a curved surface.
 const double kCosineOfEdge = std::cos(std::numbers::pi / 6.0);
+/// The same of a smooth surface: it has edges only where a side of the body cuts it.
+constexpr double kCosineOfCut = 0.5;
+/// Least area of a side that has a point, over that of a point.
+constexpr double kLeastSide = 0.05;
 /// Halvings of the edges of an icosahedron for a curved shape: 1,280 triangles.
 constexpr int kHalvingsOfBall = 3;
 /// Longest edge of a polyhedron's triangle, over the width: vertices stand for the surface where shells meet.
@@ -162,8 +166,7 @@ struct Shell::Mesh {
         if (other == triangle_at.end()) throw Error("the surface of a stone is not closed");
         normals_of_edges[t][i] = normals[t] + normals[other->second];
         for (const int beside : around[from])
-          if (is_smooth || dot(normals[beside], normals[t]) > kCosineOfEdge)
-            normals_at[t][i] += areas[beside] * normals[beside];
+          if (!is_edge(beside, t)) normals_at[t][i] += areas[beside] * normals[beside];
       }
     sides = 0;
     for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
@@ -175,13 +178,19 @@ struct Shell::Mesh {
         open.pop_back();
         for (int i = 0; i < 3; ++i) {
           const int next = triangle_at.at({triangles[here][(i + 1) % 3], triangles[here][i]});
-          if (side[next] >= 0 || (!is_smooth && dot(normals[next], normals[here]) <= kCosineOfEdge)) continue;
+          if (side[next] >= 0 || is_edge(next, here)) continue;
           side[next] = sides;
           open.push_back(next);
         }
       }
       ++sides;
     }
+  }
+
+  /// Tells whether two triangles meet at an edge; one without an area has none.
+  bool is_edge(int a, int b) const {
+    return areas[a] > 0.0 && areas[b] > 0.0 &&
+           dot(normals[a], normals[b]) <= (is_smooth ? kCosineOfCut : kCosineOfEdge);
   }
 
   int add_box(int first, int count) {
@@ -412,6 +421,7 @@ std::vector<SurfacePoint<3>> Shell::points(double spacing, std::span<const Vec<3
   std::vector<SurfacePoint<3>> points;
   for (const int number : order) {
     double parts = area[number] / of_point;
+    if (parts < kLeastSide && sides.size() > 1) continue;
     if (relative) {
       const auto few = mesh_->trials(sides[number], area[number], kTrialsOfPoint);
       double mean = 0.0;

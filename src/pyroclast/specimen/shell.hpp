@@ -22,7 +22,7 @@ class Shell final : public Surface<3> {
   /// edge of a triangle is walked once the other way by another one, and the surface holds a volume.
   /// \param vertices   m
   /// \param triangles  vertices of each, counter-clockwise seen from outside
-  /// \param is_smooth  true where triangles stand for a curved surface at any angle
+  /// \param is_smooth  true where triangles stand for a curved surface up to an angle of 60 degrees, not 30
   Shell(std::vector<Vec<3>> vertices, std::vector<Triangle> triangles, bool is_smooth = false);
 
   NearestPoint<3> nearest(const Vec<3>& place) const override;
@@ -52,7 +52,7 @@ class Shell final : public Surface<3> {
   double width_across(const Vec<3>& axis) const;
   /// Returns the same across the line from the centroid to the farthest vertex, m.
   double width() const;
-  bool is_smooth() const;  ///< Tells whether triangles stand for a curved surface at any angle.
+  bool is_smooth() const;  ///< Tells whether triangles stand for a curved surface up to 60 degrees.
   /// Returns the place of the centroid among the vertices as they were given, m.
   const Vec<3>& given_centre() const;
 
