@@ -118,7 +118,7 @@ def stones_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low
     ends = [_closed(axis, _BEYOND * step) for axis in axes]
     field = np.pad(field, 1, constant_values=step)
     vertices, triangles = _surface(field, *ends)
-    vertices = np.clip(vertices, *corners)
+    vertices = np.clip(vertices, np.asarray(corners[0]), np.asarray(corners[1]))
     return _parts(vertices, triangles, phase, _FEWEST_VOXELS * step**3)
 
 
