@@ -132,8 +132,9 @@ TEST_P(EveryInstructionSet, GivesTheSameBits) {
     return outcome(m);
   };
   const auto expected = run(InstructionSet::portable, 1);
-  for (InstructionSet set : usable_instruction_sets())
-    for (int threads : {1, 2, 3}) EXPECT_TRUE(run(set, threads) == expected) << name(set) << ' ' << threads;
+  const auto sets = usable_instruction_sets();
+  for (InstructionSet set : sets) EXPECT_TRUE(run(set, 2) == expected) << name(set);
+  for (int threads : {1, 3}) EXPECT_TRUE(run(sets.back(), threads) == expected) << threads;
 }
 
 TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
