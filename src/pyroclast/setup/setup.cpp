@@ -79,7 +79,7 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
       false, "which blocks may touch");
   if (m.found.is_on && space.is_solid())
     s.error("contacts", "contacts of a solid are not found yet: contacts = \"first\"");
-  else if (m.found.is_on && m.kinematics == Kinematics::small)
+  else if (m.found.is_on && m.kinematics == Kinematics::small && s.ok())
     s.error("contacts", "blocks that meet others turn: kinematics = \"finite\" is needed");
   m.safety =
       s.number("safety", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.3, 0.95),
