@@ -177,6 +177,14 @@ def crushed_across(specimen: Specimen, temperature: float, level: float) -> Resu
     return _run(_crosswise(), f"across-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
 
 
+def _strength_in(run: Results, name: str, why_none: str | None) -> float:
+    """A result of the last stage. Raises ValueError that says why where it has none: no strength is not one of 0."""
+    value = run.summary["stages"][-1]["results"][name]
+    if value is None:
+        raise ValueError(f"{run.folder}: no {name}: {why_none}")
+    return value
+
+
 def rim_heated(specimen: Specimen, level: float) -> Results:
     """A solid heated from its rim under a share of its strength, which is held."""
     changes = specimen.settings(3000) + [f"stages[1].level={level:g}", *specimen.of_strength(level)]
@@ -191,7 +199,7 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
     if temperature > 20.0:
         changes += specimen.of_strength(level)
     if residual and temperature > 500.0:
-        changes.append("stages[4].stop_strain=0.03")  # the peak comes at strains up to 0.02
+        changes.append("stages[4].stop_strain=0.03")  # the peak comes at strains up to 0.0162
     kind = "residual" if residual else "hot"
     run = _run(specimen.deck(CRUSHED), f"{kind}-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
     stages = run.summary["stages"]
@@ -200,9 +208,7 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
     if stages[-1]["kind"] != "compress":
         return Crushed(0.0, None, None, failed, None, run)
     found = stages[-1]["results"]
-    if found["f_c_MPa"] is None:
-        raise ValueError(f"{run.folder}: no f_c: {found['f_c_none_because']}")
-    return Crushed(found["f_c_MPa"], found["E_GPa"], found["strain_at_peak"], failed, found["quasi_static"], run)
+    return Crushed(_strength_in(run, "f_c_MPa", found.get("f_c_none_because")), found["E_GPa"], found["strain_at_peak"], failed, found["quasi_static"], run)
 
 
 def cold(specimen: Specimen) -> Crushed:
@@ -262,7 +268,8 @@ class Test:
             row.update(_of_heating(run, self.specimen.in_space))
         elif self.kind == "across":
             run = crushed_across(self.specimen, self.to, self.level)
-            row.update(f_c_MPa=run.summary["stages"][-1]["results"]["peak_push_N"] / HEIGHT / 1e6)
+            push = _strength_in(run, "peak_push_N", "the stage ended before a peak of the push")
+            row.update(f_c_MPa=push / HEIGHT / 1e6)
         elif self.kind in ("heated", "restrained"):
             run = heated(self.specimen, self.level, self.to, "fixed" if self.kind == "restrained" else "force")
             row.update(_of_heating(run, self.specimen.in_space))

@@ -94,19 +94,6 @@ MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& g
   return mesh;
 }
 
-std::vector<double> means_of_cells(const Model& model, const MoistureMesh& mesh,
-                                   const std::vector<double>& zone_volume,
-                                   const std::vector<double>& of_zones) {
-  std::vector<double> means(mesh.volume.size());
-  for (int cell = 0; cell < mesh.cell_count(); ++cell) {
-    const int b = mesh.block[cell];
-    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
-      means[cell] += zone_volume[z] * of_zones[z];
-    means[cell] /= mesh.volume[cell];
-  }
-  return means;
-}
-
 template MoistureMesh moisture_mesh(const ModelOf<2>&, const ZoneGeometry<2>&, const std::vector<bool>&,
                                     const std::vector<OutlineFace<2>>&);
 template MoistureMesh moisture_mesh(const ModelOf<3>&, const ZoneGeometry<3>&, const std::vector<bool>&,

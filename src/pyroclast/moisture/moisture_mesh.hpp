@@ -48,9 +48,4 @@ template <int Dim>
 MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                            const std::vector<bool>& takes_part, const std::vector<OutlineFace<Dim>>& outer);
 
-/// Returns the means over cells of a quantity of zones, weighted by volume.
-std::vector<double> means_of_cells(const Model& model, const MoistureMesh& mesh,
-                                   const std::vector<double>& zone_volume,
-                                   const std::vector<double>& of_zones);
-
 }  // namespace pyroclast
