@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "moisture/pores.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/moisture/moisture.hpp"
 #include "thermal/bodies.hpp"
 
@@ -31,19 +32,7 @@ struct MoistBody {
       if (is_there(outer[f])) found.push_back(static_cast<int>(f));
     return found;
   }
-  std::vector<Vec<Dim>> centroids() const {
-    std::vector<Vec<Dim>> found;
-    for (int b = 0; b < model.block_count(); ++b) {
-      Vec<Dim> sum;
-      double volume = 0.0;
-      for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
-        for (const int g : model.zones[z]) sum += model.position[g] * (geometry.volume[z] / (Dim + 1));
-        volume += geometry.volume[z];
-      }
-      found.push_back(sum * (1.0 / volume));
-    }
-    return found;
-  }
+  std::vector<Vec<3>> centroids() const { return block_centroids(model); }
   std::vector<double> everywhere(double temperature) const {
     return std::vector<double>(moisture.mesh().volume.size(), temperature);
   }

@@ -67,22 +67,6 @@ struct Items {
   }
 };
 
-/// Returns the centroid of each block.
-std::vector<Vec<3>> centroids(const Model& model) {
-  const auto volume = model.zone_volumes();
-  std::vector<Vec<3>> moment(model.block_count());
-  std::vector<double> whole(model.block_count());
-  for (int block = 0; block < model.block_count(); ++block) {
-    for (int z = model.block_zones[block]; z < model.block_zones[block + 1]; ++z) {
-      whole[block] += volume[z];
-      for (int g : model.gridpoints_of_zone(z))
-        moment[block] += volume[z] / (model.dimension() + 1) * model.place(g);
-    }
-    moment[block] = (1.0 / whole[block]) * moment[block];
-  }
-  return moment;
-}
-
 /// Returns the distance of a point from the nearest gridpoint, m.
 double distance_of(const Model& model, const Vec<3>& point) {
   double least = std::numeric_limits<double>::infinity();
@@ -122,7 +106,7 @@ Items items_of(const Model& model, const SetParameters& set) {
       }
       break;
     case SetOf::blocks: {
-      const auto middle = centroids(model);
+      const auto middle = block_centroids(model);
       for (int block = 0; block < model.block_count(); ++block) {
         std::vector<int> members(model.block_gridpoints[block + 1] - model.block_gridpoints[block]);
         std::iota(members.begin(), members.end(), model.block_gridpoints[block]);
@@ -167,6 +151,21 @@ std::vector<int> chosen(const Items& items, const std::vector<int>* within, cons
 }
 
 }  // namespace
+
+std::vector<Vec<3>> block_centroids(const Model& model) {
+  const auto volume = model.zone_volumes();
+  std::vector<Vec<3>> moment(model.block_count());
+  std::vector<double> whole(model.block_count());
+  for (int block = 0; block < model.block_count(); ++block) {
+    for (int z = model.block_zones[block]; z < model.block_zones[block + 1]; ++z) {
+      whole[block] += volume[z];
+      for (int g : model.gridpoints_of_zone(z))
+        moment[block] += volume[z] / (model.dimension() + 1) * model.place(g);
+    }
+    moment[block] = (1.0 / whole[block]) * moment[block];
+  }
+  return moment;
+}
 
 void add_sets(Model& model, const std::vector<SetParameters>& sets) {
   const double slack = kOnBound * size_of(model);

@@ -83,4 +83,7 @@ std::vector<Face> faces_in(const Model& model, const std::vector<int>& set);
 /// thickness in 2D, a third of a triangle in 3D. All are zero where the set has no face.
 std::vector<double> tributary_areas(const std::vector<int>& set, const std::vector<Face>& faces);
 
+/// Returns the centroid of each block, m; in 2D the third component is 0.
+std::vector<Vec<3>> block_centroids(const Model& model);
+
 }  // namespace pyroclast

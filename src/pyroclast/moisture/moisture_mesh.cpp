@@ -3,28 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pyroclast/model/sets.hpp"
+
 namespace pyroclast {
 
 namespace {
 
 /// Share of the line of centroids that each cell keeps where a bent face would take all of it.
 constexpr double kLeastShare = 0.02;
-
-template <int Dim>
-std::vector<Vec<Dim>> centroids(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry) {
-  std::vector<Vec<Dim>> found(model.block_count());
-  for (int b = 0; b < model.block_count(); ++b) {
-    double volume = 0.0;
-    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
-      Vec<Dim> sum;
-      for (const int g : model.zones[z]) sum += model.position[g];
-      found[b] += sum * (geometry.volume[z] / (Dim + 1));
-      volume += geometry.volume[z];
-    }
-    found[b] *= 1.0 / volume;
-  }
-  return found;
-}
 
 /// Returns the area vector of a face, m2: of a bent one shorter than its area.
 template <int Dim>
@@ -77,7 +63,8 @@ MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& g
     mesh.block.push_back(b);
     mesh.material.push_back(model.block_material[b]);
   }
-  const std::vector<Vec<Dim>> centroid = centroids(model, geometry);
+  std::vector<Vec<Dim>> centroid;
+  for (const Vec<3>& at : block_centroids(model)) centroid.push_back(resized<Dim>(at));
   const std::vector<int> block_of = gridpoint_blocks(model);
   for (int face = 0; face < model.face_count(); ++face) {
     const Contact<Dim>& first = model.contacts[model.face_contacts[face]];
