@@ -36,6 +36,17 @@ COLUMNS = ("deck", "physics_version", "test", "concrete", "blocks", "seed", "lev
            "across_400", "interface_400", "not_converged", "energy_error_percent", "steps")
 
 
+def remembering(cracks: float, full_at: int = 400, closing: float | None = None) -> tuple[str, ...]:
+    """Contacts that remember their load: A without load from full_at (degC) on, none to 100 degC, a line between."""
+    table = f'[["20 degC", 0], ["100 degC", 0], ["{full_at} degC", {cracks:g}], ["800 degC", {cracks:g}]]'
+    own = ("contacts.mortar_mortar.law=remembers", f"contacts.mortar_mortar.cracks={{table={table}}}")
+    return own + (() if closing is None else (f"contacts.mortar_mortar.p_close={closing:g} MPa",))
+
+
+FITTED_A = 0.41  # fitted in the plane: validation/hot_concrete memory_fit
+REMEMBERS = {"concrete": "remembers", "changes": remembering(FITTED_A)}
+
+
 @dataclasses.dataclass(frozen=True)
 class Specimen:
     """A specimen and its concrete."""
@@ -144,7 +155,7 @@ most_steps = 100000
 
 [[stages]]
 kind = "drive"
-duration = "1.2 s"
+duration = "2.4 s"
 look_interval = "2 ms"
 
 [[stages.until]]
