@@ -127,7 +127,7 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
   }
   for (const char* name :
        {"biaxial", "biaxial_3d", "brazilian", "compression", "cube_3d", "cyclic", "delamination_heat",
-        "direct_tension", "disc_3d", "fire_long", "fire_one_side", "hot_compression", "notched_beam",
+        "direct_tension", "disc_3d", "fire_long", "fire_one_side", "hot_compression", "kalifa_m100", "notched_beam",
         "restrained_heating", "ring_cooling", "starter", "thermal_wall", "transient_heating", "wall_bent"})
     for (const auto& said : warned(shipped_case(name))) ADD_FAILURE() << name << ": " << said;
   EXPECT_EQ(warned(shipped_case("residual_capacity")).size(), 1u);  // properties come back on cooling

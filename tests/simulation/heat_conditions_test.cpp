@@ -98,7 +98,7 @@ TEST(ReadHeat, EveryKindOfBoundaryIsReadInSi) {
   EXPECT_EQ(radiated.emissivity(0.0), 0.7);
   EXPECT_NEAR(radiated.gas_temperature(600.0), 70.0, 1e-9);
   EXPECT_TRUE(std::holds_alternative<Adiabatic>(heat.boundaries[4].condition));
-  EXPECT_EQ(heat.boundaries[4].faces.part, HeatedFaces::kBox);
+  EXPECT_EQ(heat.boundaries[4].faces.part, BoundaryFaces::kBox);
   EXPECT_EQ(heat.boundaries[4].faces.box_high, (Vec<3>{{0.075, 0.0}}));
 }
 
@@ -221,7 +221,7 @@ TEST(MakeConduction, TheOutlineIsTheSpecimensOwnUnderThePlatensToo) {
 }
 
 /// Heat that comes in through a part of the outline in a second, over a flux of 1 W/m2: its area.
-double heated_area(const ModelOf<2>& body, const HeatedFaces& faces) {
+double heated_area(const ModelOf<2>& body, const BoundaryFaces& faces) {
   HeatConditions heat = heat_conditions({{faces, HeatFlux{Curve::constant(1.0)}, ""}});
   const auto conduction = make_conduction(body, alike_materials(), heat, {20.0, 100.0});
   advance_to(*conduction, 1.0);
@@ -235,17 +235,17 @@ TEST(MakeConduction, EachPartOfTheOutlineIsHeatedOverItsArea) {
                                    {"right", high},
                                    {"bottom", wide},
                                    {"top", wide},
-                                   {HeatedFaces::kOutline, 2.0 * (wide + high)}})
+                                   {BoundaryFaces::kOutline, 2.0 * (wide + high)}})
     EXPECT_NEAR(heated_area(body, {.part = part}), area, 1e-9 * area) << part;
   // A box takes whole faces: those with their centres in it. They are at most some 5 mm long.
-  EXPECT_NEAR(heated_area(body, {HeatedFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}}), 0.5 * high,
+  EXPECT_NEAR(heated_area(body, {BoundaryFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}}), 0.5 * high,
               0.0025 * kSpecimenThickness);
 }
 
 TEST(MakeConduction, ABoxThatMeetsNoFaceIsAnErrorThatNamesIt) {
   const auto body = small_body();
-  const HeatedFaces inside{HeatedFaces::kBox, {{0.01, 0.01}}, {{0.02, 0.02}}};
-  HeatBoundaryCondition boundary = on(HeatedFaces::kBox, convection(25.0, Curve::constant(100.0)));
+  const BoundaryFaces inside{BoundaryFaces::kBox, {{0.01, 0.01}}, {{0.02, 0.02}}};
+  HeatBoundaryCondition boundary = on(BoundaryFaces::kBox, convection(25.0, Curve::constant(100.0)));
   boundary.faces = inside;
   boundary.place = "deck.toml:7: heat.boundaries[0]";
   const HeatConditions heat = heat_conditions({boundary});
@@ -256,7 +256,7 @@ TEST(MakeConduction, ABoxThatMeetsNoFaceIsAnErrorThatNamesIt) {
 
 TEST(MakeConduction, ConditionsThatContradictEachOtherOnOneFaceAreAnError) {
   const auto body = small_body();
-  const HeatedFaces lower_left{HeatedFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}};
+  const BoundaryFaces lower_left{BoundaryFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}};
   const PrescribedTemperature held{Curve::constant(50.0)};
   EXPECT_TRUE(mentions(
       message_of(body, heat_conditions({on("left", held), {lower_left, held, "deck.toml:9"}})), "already"));

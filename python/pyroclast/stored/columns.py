@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 else:
     Array = np.ndarray  # figures run with a NumPy that has no types yet
 
-_IN_SI = {"K/s": 1.0, "s": 1.0, "m": 1.0, "m2": 1.0, "N": 1.0, "J": 1.0, "degC": 1.0, "MPa": 1e6}
+_IN_SI = {"K/s": 1.0, "s": 1.0, "m": 1.0, "m2": 1.0, "N": 1.0, "J": 1.0, "kg": 1.0, "degC": 1.0,
+          "MPa": 1e6}
 """Units of the program's columns, longer ends of names first, with their factors to SI."""
 
 

@@ -12,7 +12,7 @@ from ..errors import Error
 from .columns import Array
 from .frames import Frame
 from .results import Results, number_of, results_with
-from .run_facts import HEAT
+from .run_facts import HEAT, PROBE_PRESSURE
 
 _UNIFORM = 1.0  # K
 
@@ -154,6 +154,11 @@ class Heated:
         """Whether the specimen's temperatures never differed by more than 1 K."""
         spread = self.run.history["temperature_max_degC"] - self.run.history["temperature_min_degC"]
         return not (spread > _UNIFORM).any()  # a gap tells nothing
+
+    @property
+    def probe_pressures(self) -> dict[str, Array]:
+        """Pore pressure at each probe [MPa, less that of the atmosphere], (rows,) by name; empty without water."""
+        return {column.of: self.run.history[column.name] for column in self.run.facts.of_role(PROBE_PRESSURE)}
 
     @property
     def heats(self) -> bool:

@@ -16,6 +16,7 @@ PUT_IN, HELD, LOST, ENERGY_ERROR = "energy.put_in", "energy.held", "energy.lost"
 DAMAGED, BROKEN = "crack.damaged", "crack.broken"
 DAMAGED_EXTENT, BROKEN_EXTENT = "crack.damaged_extent", "crack.broken_extent"
 OPENING, HEAT = "crack.opening", "heat.held"
+WATER, PROBE_PRESSURE = "water", "probe.pressure"
 
 
 @dataclass(frozen=True)

@@ -243,6 +243,7 @@ int check(const RunOptions& options) {
   DeckOfRun opened = open_deck(options, false);
   Setup& setup = opened.setup;
   if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
+  if (setup.heat.moisture) require_one_process(options.ranks);
   opened.choices.before_making(opened);
   auto specimen = make_checked_specimen(setup.specimen, opened.team.get(), !setup.heat.uniform);
   Peaks peaks{peak_memory()};
@@ -274,6 +275,9 @@ int check(const RunOptions& options) {
                  describe_warnings({"cells keep their short edges, so heat takes 50 to 100 times the time "
                                     "that it takes with [blocks] shortest_edge = 0.35"}));
   }
+  if (const MoistureField* moisture = simulation->moisture())
+    fmt::print("water           {:.3g} kg in the pores at the start, its vapour at {:.3g} of saturation\n",
+               moisture->water().stored(), moisture->largest_pressure_ratio());
   if (const auto told = foretell_heat(setup, *simulation)) {
     fmt::print("                by heat alone {}\n", describe(*told));
     if (const std::string warning = warning_of(*told, setup); !warning.empty())

@@ -75,6 +75,15 @@ double seconds_per_evaluation(TemperatureField& field, double duration, double l
   return (seconds_of_thread() - start) / static_cast<double>(field.conduction()->work().stages - before);
 }
 
+/// Returns the processor time in which water flows for a duration, s, by that of the time to which the field
+/// was heated.
+double seconds_of_water(Simulation& simulation, double duration) {
+  const std::int64_t before = simulation.moisture()->water().state().steps;
+  const double seconds = seconds_of([&] { simulation.follow_heat(); });
+  const auto steps = static_cast<double>(simulation.moisture()->water().state().steps - before);
+  return steps > 0.0 ? seconds / steps * duration / simulation.heat().moisture->parameters.largest_step : 0.0;
+}
+
 /// Returns the size of the arrays of a frame, bytes.
 double frame_bytes(const Simulation& simulation) {
   constexpr int kInFiles = 3;  // files have all components of a vector, whatever the dimension
@@ -107,6 +116,7 @@ Rehearsal cost_of(const Forecast& forecast, double hottest, Simulation& simulati
                                               hottest - field.mean(), forecast.heating_duration);
     seconds +=
         cost.heat_evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
+    if (simulation.moisture()) seconds += seconds_of_water(simulation, forecast.heating_duration);
   }
   return cost;
 }

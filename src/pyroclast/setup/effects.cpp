@@ -114,6 +114,8 @@ std::vector<std::string> unused_sets(const Setup& setup) {
     for (const std::string& set : stage->sets()) used.push_back(set);
   for (const RecordParameters& record : setup.records) used.insert(used.end(), {record.set, record.other});
   for (const HeatBoundaryCondition& boundary : setup.heat.boundaries) used.push_back(boundary.faces.part);
+  if (setup.heat.moisture)
+    for (const auto& boundary : setup.heat.moisture->boundaries) used.push_back(boundary.faces.part);
   for (const auto& set : setup.sets) used.push_back(set.within);
   for (const specimen::FinerPart& part : setup.specimen.blocks.finer) used.push_back(part.name);
   std::vector<std::string> unused;

@@ -17,6 +17,7 @@
 #include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
+#include "pyroclast/setup/read_moisture.hpp"
 #include "pyroclast/setup/read_probes.hpp"
 #include "pyroclast/setup/read_references.hpp"
 #include "pyroclast/setup/read_sets.hpp"
@@ -161,39 +162,56 @@ bool is_cylinder(const AskedSpecimen& specimen) {
   return specimen.prism && specimen.prism->axis() == specimen::Prism::Axis::y;
 }
 
+/// Boundaries of a table of the deck: what flows through them, and the faces of each.
+struct DeckBoundaries {
+  const char* table;
+  const char* flow;
+  std::vector<BoundaryFaces> faces;
+};
+
+std::vector<DeckBoundaries> boundaries_of(const HeatConditions& heat) {
+  std::vector<DeckBoundaries> all{{"heat", "heat", {}}, {"moisture", "water", {}}};
+  for (const auto& boundary : heat.boundaries) all[0].faces.push_back(boundary.faces);
+  if (heat.moisture)
+    for (const auto& boundary : heat.moisture->boundaries) all[1].faces.push_back(boundary.faces);
+  return all;
+}
+
 /// Records an error for each boundary on a side or set that the specimen does not have.
-void check_heated_sides(const Section& root, const Setup& setup) {
-  std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
+void check_sides(const Section& root, const Setup& setup) {
+  std::vector<std::string> names{BoundaryFaces::kOutline, BoundaryFaces::kBox};
   for (const std::string& side : setup.specimen.sides()) names.push_back(side);
   if (is_cylinder(setup.specimen)) names.insert(names.end(), kQuartersOfRim.begin(), kQuartersOfRim.end());
   for (const auto& set : setup.sets)
     if (set.of != SetOf::contacts) names.push_back(set.name);
-  const auto heat = root.optional_section("heat");
-  if (!heat || setup.heat.boundaries.empty()) return;
-  const auto sections = heat->optional_sections("boundaries");
-  for (std::size_t i = 0; i < std::min(sections.size(), setup.heat.boundaries.size()); ++i) {
-    const std::string& part = setup.heat.boundaries[i].faces.part;
-    if (std::ranges::find(names, part) == names.end())
-      sections[i].error("faces", fmt::format("must be one of {}; got \"{}\"", fmt::join(names, ", "), part));
+  for (const DeckBoundaries& boundaries : boundaries_of(setup.heat)) {
+    const auto table = root.optional_section(boundaries.table);
+    if (!table || boundaries.faces.empty()) continue;
+    const auto sections = table->optional_sections("boundaries");
+    for (std::size_t i = 0; i < std::min(sections.size(), boundaries.faces.size()); ++i)
+      if (const std::string& part = boundaries.faces[i].part; std::ranges::find(names, part) == names.end())
+        sections[i].error("faces",
+                          fmt::format("must be one of {}; got \"{}\"", fmt::join(names, ", "), part));
   }
 }
 
 /// Records an error for a boundary on a plane of symmetry.
-void check_heated_symmetry(const Section& root, const HeatConditions& heat,
+void check_symmetric_sides(const Section& root, const HeatConditions& heat,
                            const std::vector<PlaneOfSymmetry>& symmetry) {
-  for (std::size_t i = 0; i < heat.boundaries.size(); ++i) {
-    const std::string& part = heat.boundaries[i].faces.part;
-    const Section boundary = root.section("heat").optional_sections("boundaries")[i];
-    if (part == HeatedFaces::kOutline && !symmetry.empty())
-      boundary.error("faces",
-                     fmt::format("\"outline\" has \"{}\", a plane of symmetry (specimen.symmetry), through "
-                                 "which no heat flows: name the other sides, a boundary each",
-                                 symmetry.front().side));
-    if (std::ranges::find(symmetry, part, &PlaneOfSymmetry::side) != symmetry.end())
-      boundary.error(
-          "faces",
-          fmt::format("no heat flows through \"{}\", a plane of symmetry (specimen.symmetry)", part));
-  }
+  for (const auto& [table, flow, all_faces] : boundaries_of(heat))
+    for (std::size_t i = 0; i < all_faces.size(); ++i) {
+      const std::string& part = all_faces[i].part;
+      const Section boundary = root.section(table).optional_sections("boundaries")[i];
+      if (part == BoundaryFaces::kOutline && !symmetry.empty())
+        boundary.error("faces",
+                       fmt::format("\"outline\" has \"{}\", a plane of symmetry (specimen.symmetry), through "
+                                   "which no {} flows: name the other sides, a boundary each",
+                                   symmetry.front().side, flow));
+      if (std::ranges::find(symmetry, part, &PlaneOfSymmetry::side) != symmetry.end())
+        boundary.error(
+            "faces",
+            fmt::format("no {} flows through \"{}\", a plane of symmetry (specimen.symmetry)", flow, part));
+    }
 }
 
 /// Warns of blocks that are coarser than any that were studied, or than a test heated under load allows
@@ -457,7 +475,6 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   const auto bearings = read.any_moves ? read_bearings(root, space) : std::vector<ReadBearing>();
   setup.sets = read_sets(root, space);
   setup.specimen = read_specimen(root, folder, space, setup.sets, bearings);
-  if (root.ok()) check_heated_sides(root, setup);
   setup.thickness = read_thickness(root.section("specimen"), space);
   if (setup.heat.uniform)
     root.know({"probes"});
@@ -467,6 +484,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   curves.set_cure(
       [&](const Interval& given) { return cure_of_short_curve(setup.heat, setup.temperatures, given); });
   if (!setup.heat.uniform) setup.heat.cracks = read_crack_heat(root, curves);
+  setup.heat.moisture = read_moisture(root, setup.specimen, space, setup.heat, time_curves, curves);
+  if (root.ok()) check_sides(root, setup);
   if (read.any_moves)
     read_moving(
         root, space, bearings, curves,
@@ -483,11 +502,13 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
     read_resting(root, curves, setup);
   const auto symmetry =
       read_symmetry(root, setup.specimen, setup.moving ? setup.moving->bearings : std::vector<Bearing>());
-  if (root.ok()) check_heated_symmetry(root, setup.heat, symmetry);
+  if (root.ok()) check_symmetric_sides(root, setup.heat, symmetry);
   if (setup.moving) setup.moving->symmetry = symmetry;
   setup.records = records;
   if (setup.moving) setup.moving->stress_free = read.stress_free;
   setup.curves = curves.curves();
+  if (setup.heat.moisture && root.ok())
+    warn_of_free_evaporation(root, *setup.heat.moisture, setup.block_materials);
   warn_of_healing(root, setup);
   warn_of_first_strain(root, setup);
   if (root.ok()) warn_of_even_temperatures(root, setup);

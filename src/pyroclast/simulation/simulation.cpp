@@ -117,6 +117,9 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, team_)) {
+  if (heat_.moisture)
+    moisture_ =
+        std::make_unique<MoistureField>(*model_, block_materials, numbers_, *heat_.moisture, heat_.initial);
   for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!moving) {
     materials_.block_materials = block_materials;
@@ -199,6 +202,11 @@ void Simulation::show_cracks_to_heat() {
   field_.set_gaps(std::move(gaps));
 }
 
+void Simulation::follow_heat() {
+  heating_time_ = field_.time();
+  if (moisture_) moisture_->follow(field_);
+}
+
 void Simulation::set_materials(ConcreteMaterials materials) {
   motion_->set_properties(properties_at(*model_, materials, field_, hottest_));
   materials_ = std::move(materials);
@@ -217,6 +225,10 @@ void Simulation::visit_state(StateVisitor& visitor) {
   {
     const StateVisitor::Scope scope(visitor, "field");
     field_.visit_state(visitor);
+  }
+  if (moisture_) {
+    const StateVisitor::Scope scope(visitor, "moisture");
+    moisture_->visit_state(visitor);
   }
   {
     const StateVisitor::Scope scope(visitor, "records");

@@ -17,6 +17,7 @@
 #include "pyroclast/simulation/acting/press.hpp"
 #include "pyroclast/simulation/acting/supports.hpp"
 #include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/simulation/moisture_field.hpp"
 #include "pyroclast/simulation/specimen_body.hpp"
 #include "pyroclast/simulation/watching/probe.hpp"
 #include "pyroclast/simulation/watching/records.hpp"
@@ -86,6 +87,8 @@ class Simulation {
   TemperatureField& field() { return field_; }
   const TemperatureField& field() const { return field_; }
   const std::vector<Probe>& probes() const { return probes_; }
+  /// Returns the water in the pores; null where the deck has none.
+  const MoistureField* moisture() const { return moisture_.get(); }
 
   /// Tells whether cracks hinder heat.
   bool cracks_hinder_heat() const { return heat_.cracks.has_value(); }
@@ -125,6 +128,9 @@ class Simulation {
   /// came.
   double heating_time() const { return heating_time_; }
   void set_heating_time(double time) { heating_time_ = time; }
+  /// Takes over the time to which the field has conducted heat; water flows until then. Throws Error, see
+  /// MoistureField::follow.
+  void follow_heat();
   /// Makes an exchange: hands the field's temperatures over to the mechanics, see Mechanics::set_properties.
   /// Zones that creep do so from now until the next look of the run.
   void hand_over();
@@ -148,6 +154,7 @@ class Simulation {
   ConcreteMaterials materials_;
   HeatConditions heat_;
   TemperatureField field_;
+  std::unique_ptr<MoistureField> moisture_;
   HottestTemperatures hottest_;
   BodyProperties earlier_;  ///< properties before the last exchange, whose memory serves the next one
   std::vector<Probe> probes_;

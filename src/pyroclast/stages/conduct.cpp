@@ -8,6 +8,7 @@
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/known_results.hpp"
+#include "pyroclast/stages/water_results.hpp"
 
 namespace pyroclast {
 
@@ -67,7 +68,7 @@ void Conduct::begin_flow(const Simulation& simulation) {
 bool Conduct::advance(Simulation& simulation, int) {
   if (!flow_.flows()) begin_flow(simulation);
   if (!flow_.advance(simulation.field())) return false;
-  simulation.set_heating_time(simulation.field().time());
+  simulation.follow_heat();
   simulation.see_temperatures();
   return true;
 }
@@ -103,6 +104,7 @@ StageReport Conduct::report(const History& history, RowRange rows, Outcome outco
   report.lines.push_back(fmt::format("mean {:.1f} degC, {:.1f} to {:.1f}, changing by {:.2g} K/s",
                                      last("temperature_degC"), last("temperature_min_degC"),
                                      last("temperature_max_degC"), rate));
+  tell_water(history, rows, report);
   if (outcome == Outcome::completed && keys_.steady_rate)
     report.warnings.push_back(
         fmt::format("no steady state: the temperatures still change by {:.2g} K/s, more than {:.2g} K/s",

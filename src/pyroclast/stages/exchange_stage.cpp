@@ -8,6 +8,7 @@
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/known_results.hpp"
+#include "pyroclast/stages/water_results.hpp"
 
 namespace pyroclast {
 
@@ -212,6 +213,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
     report.lines.push_back(load + "no failure " + conditions);
   else
     report.lines.push_back("no load by a platen: the run does not tell whether the specimen fails under one");
+  tell_water(history, rows, report);
   if (r.not_converged > 0)
     report.warnings.push_back(
         fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "

@@ -50,7 +50,7 @@ bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
     flow_.begin(coupling().increment, earliest({began_ + keys_.duration, next_frame_}));
   }
   if (!flow_.advance(simulation.field())) return false;
-  simulation.set_heating_time(simulation.field().time());
+  simulation.follow_heat();
   exchange.hand_over(simulation);
   return true;
 }

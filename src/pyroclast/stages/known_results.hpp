@@ -112,6 +112,16 @@ inline constexpr ResultInfo largest_thrust{
 inline constexpr ResultInfo steady{"steady", "1", "steady", "whether the temperatures no longer changed"};
 inline constexpr ResultInfo heating_time{"heating_time_s", "s", "heating time", "time since heating began",
                                          ResultOf::computation};
+inline constexpr ResultInfo largest_pore_pressure{
+    "largest_pore_pressure_MPa", "MPa", "largest pore pressure",
+    "largest pressure of the vapour in pores, less that of the atmosphere"};
+inline constexpr ResultInfo time_of_largest_pore_pressure{"time_of_largest_pore_pressure_s", "s",
+                                                          "time of it", "heating time of that pressure"};
+inline constexpr ResultInfo largest_pressure_ratio{
+    "largest_pore_pressure_over_saturation", "1", "largest pressure over saturation",
+    "largest pressure of the vapour over that above water of the same temperature"};
+inline constexpr ResultInfo water_left{"water_left_kg", "kg", "water lost",
+                                       "water that left the specimen since the start"};
 inline constexpr ResultInfo temperature_mean{"temperature_mean_degC", "degC", "mean temperature",
                                              "mean temperature over the volume"};
 inline constexpr ResultInfo temperature_min{"temperature_min_degC", "degC", "lowest temperature",

@@ -10,7 +10,6 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/base/rounding.hpp"
-#include "pyroclast/model/outline.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 
 namespace pyroclast {
@@ -82,61 +81,6 @@ std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<BlockM
 std::optional<GapHeat> gap_heat(const HeatConditions& heat) {
   if (!heat.cracks) return std::nullopt;
   return heat.cracks->law;
-}
-
-template <int Dim>
-struct Box {
-  Vec<Dim> low, high;
-};
-
-template <int Dim>
-Box<Dim> bounding_box(const std::vector<OutlineFace<Dim>>& outline, const ModelOf<Dim>& model) {
-  Box<Dim> box;
-  box.low.c.fill(std::numeric_limits<double>::infinity());
-  box.high.c.fill(-std::numeric_limits<double>::infinity());
-  for (const auto& face : outline)
-    for (int g : face.gridpoints)
-      for (int d = 0; d < Dim; ++d) {
-        box.low[d] = std::min(box.low[d], model.position[g][d]);
-        box.high[d] = std::max(box.high[d], model.position[g][d]);
-      }
-  for (int d = 0; d < Dim; ++d) {
-    box.low[d] = model.ranks().least(box.low[d]);
-    box.high[d] = model.ranks().largest(box.high[d]);
-  }
-  return box;
-}
-
-/// Returns the indices of the outline's faces on which a boundary acts.
-template <int Dim>
-std::vector<int> choose_faces(const ModelOf<Dim>& model, const std::vector<OutlineFace<Dim>>& outline,
-                              const HeatedFaces& faces, const Box<Dim>& specimen) {
-  const auto chosen_by = [&](const auto& predicate) {
-    std::vector<int> chosen;
-    for (std::size_t i = 0; i < outline.size(); ++i)
-      if (predicate(outline[i])) chosen.push_back(static_cast<int>(i));
-    return chosen;
-  };
-  const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // allows for rounding
-  Vec<Dim> slack;
-  slack.c.fill(tolerance);
-  if (faces.part == HeatedFaces::kOutline) return chosen_by([](const OutlineFace<Dim>&) { return true; });
-  if (faces.part != HeatedFaces::kBox) {
-    std::vector<int> side = model.set(faces.part);
-    std::ranges::sort(side);
-    return chosen_by([&](const OutlineFace<Dim>& face) {
-      return std::ranges::all_of(face.gridpoints, [&](int g) { return std::ranges::binary_search(side, g); });
-    });
-  }
-  const auto low = resized<Dim>(faces.box_low), high = resized<Dim>(faces.box_high);
-  auto chosen = chosen_by(in_box<Dim>(low - slack, high + slack));
-  if (!model.ranks().any(!chosen.empty()))
-    throw Error(fmt::format(
-        "no face of the outline has its centre in the box from ({:g}) to ({:g}) m; the specimen lies from "
-        "({:g}) to ({:g}) m",
-        fmt::join(low.c, ", "), fmt::join(high.c, ", "), fmt::join(specimen.low.c, ", "),
-        fmt::join(specimen.high.c, ", ")));
-  return chosen;
 }
 
 template <int Dim>
@@ -250,16 +194,10 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
                                                                      .largest_step = heat.largest_step,
                                                                      .gaps = gap_heat(heat)},
                                                       std::move(team));
-  const Box<Dim> specimen = bounding_box(conduction->outline(), model);
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {
     try {
-      const auto faces = choose_faces(model, conduction->outline(), boundary.faces, specimen);
-      if (!model.ranks().any(!faces.empty()))
-        throw Error(fmt::format(
-            "has no effect: no face of the outline lies wholly in \"{}\"; a face of the outline meets "
-            "no other block",
-            boundary.faces.part));
+      const auto faces = faces_of(model, conduction->outline(), boundary.faces);
       use.add(faces, boundary);
       apply(*conduction, faces, boundary.condition);
     } catch (const Error& e) {
@@ -286,7 +224,6 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   std::vector<bool> takes_part;
   for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
   const auto faces = outline(model, zone_geometry(model), takes_part);
-  const Box<Dim> specimen = bounding_box(faces, model);
   const ChunkList chunks =
       model.zone_chunks().of_some(static_cast<int>(faces.size()), [&](int face) { return faces[face].zone; });
   struct DrivenFaces {
@@ -295,8 +232,8 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   };
   std::vector<DrivenFaces> boundaries;
   for (const HeatBoundaryCondition& boundary : heat.boundaries)
-    boundaries.push_back({drive_of(boundary.condition, heat.initial, duration),
-                          choose_faces(model, faces, boundary.faces, specimen)});
+    boundaries.push_back(
+        {drive_of(boundary.condition, heat.initial, duration), faces_of(model, faces, boundary.faces)});
   std::pair<double, double> most{-1.0, 0.0};  // drive and area
   BoxSide side;
   for (int axis = 0; axis < Dim; ++axis)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,19 +8,13 @@
 #include <vector>
 
 #include "pyroclast/material/concrete.hpp"
+#include "pyroclast/simulation/acting/boundary_faces.hpp"
+#include "pyroclast/simulation/acting/moisture_conditions.hpp"
 #include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/thermal/heat_solver.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast {
-
-/// Faces of the specimen's outline, those under bearings included.
-struct HeatedFaces {
-  static constexpr const char *kOutline = "outline", *kBox = "box";
-
-  std::string part = kOutline;   ///< whole outline, the faces in a box, or else the name of a side or patch
-  Vec<3> box_low{}, box_high{};  ///< corners of the box, m; faces whose centres lie in it or on its bounds
-};
 
 /// Condition that holds the temperature of faces.
 struct PrescribedTemperature {
@@ -35,7 +28,7 @@ using HeatCondition = std::variant<PrescribedTemperature, HeatFlux, Convection, 
 
 /// One boundary condition of a deck.
 struct HeatBoundaryCondition {
-  HeatedFaces faces;
+  BoundaryFaces faces;
   HeatCondition condition;
   std::string place;  ///< file, line and key, for messages
 };
@@ -61,7 +54,8 @@ struct HeatConditions {
   double largest_step = 0.0;                  ///< s
   std::optional<Interval> temperature_range;  ///< range that the user states, °C
   std::vector<HeatBoundaryCondition> boundaries;
-  std::optional<CrackHeat> cracks;  ///< cracks that hinder heat; empty where none do
+  std::optional<CrackHeat> cracks;             ///< cracks that hinder heat; empty where none do
+  std::optional<MoistureConditions> moisture;  ///< water in the pores, which heat drives; empty: none
 };
 
 /// Fills in values that depend on the specimen. Where cracks split temperatures by the block size l, they do

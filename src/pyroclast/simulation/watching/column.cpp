@@ -48,8 +48,12 @@ const char* name_of(ColumnRole role) {
       return "heat.error";
     case ColumnRole::heat_flow:
       return "heat.flow";
+    case ColumnRole::water:
+      return "water";
     case ColumnRole::probe:
       return "probe";
+    case ColumnRole::probe_pressure:
+      return "probe.pressure";
     case ColumnRole::record:
       return "record";
     case ColumnRole::own:

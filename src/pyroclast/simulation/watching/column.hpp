@@ -29,7 +29,9 @@ enum class ColumnRole : std::uint8_t {
   heat_lost,             ///< likewise
   heat_error,            ///< likewise
   heat_flow,             ///< measure of how heat flows
+  water,                 ///< water in the pores: amounts, and extremes of its pressure
   probe,                 ///< temperature at a probe
+  probe_pressure,        ///< pore pressure at a probe
   record,                ///< record of the deck
   own                    ///< column of a stage from outside the program
 };

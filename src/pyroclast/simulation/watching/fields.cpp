@@ -32,6 +32,9 @@ bool moves(const S& s) {
 bool creeps(const S& s) {
   return s.moves() && s.motion().creeps();
 }
+bool is_moist(const S& s) {
+  return s.moisture() != nullptr;
+}
 bool parts_heat(const S& s) {
   return s.moves() && s.cracks_hinder_heat();
 }
@@ -46,11 +49,15 @@ void put(double* to, const SymmetricTensor<3>& t) {
   std::ranges::copy(t, to);
 }
 
+int block_of_zone(const R& r, int zone) {
+  return r.model().block_of(r.model().gridpoints_of_zone(zone)[0]);
+}
+
 /// Returns the creep strain of a zone. In plane stress its component across the plane acts on nothing.
 SymmetricTensor<3> creep_of(const R& r, int zone) {
   if (!r.motion().creeps()) return {};
   const Model& model = r.model();
-  const int block = model.block_of(model.gridpoints_of_zone(zone)[0]);
+  const int block = block_of_zone(r, zone);
   const auto& creep = r.simulation().materials().block_materials[model.block_material[block]].creep;
   SymmetricTensor<3> strain = r.motion().read().creep_strain(zone);
   if (model.dimension() == 2 && creep) strain[2] = creep_across(strain[0], strain[1], creep->choices.poisson);
@@ -154,6 +161,16 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      "load](../understand/theory.md#creep-under-load); "
      "only where "
      "a phase creeps. ZZ acts on nothing"},
+    {"pore_pressure", unit::stress, Item::zone, ValueKind::number, true, is_moist,
+     [](R& r, int i, double* to) { *to = r.simulation().moisture()->pore_pressure(block_of_zone(r, i)); },
+     "pressure of the vapour in the pores of the block less that of the atmosphere, at least 0; only with "
+     "[water in pores](../understand/moisture.md)"},
+    {"saturation", unit::dimensionless, Item::zone, ValueKind::number, true, is_moist,
+     [](R& r, int i, double* to) { *to = r.simulation().moisture()->saturation(block_of_zone(r, i)); },
+     "likewise: share of the pores that liquid fills"},
+    {"water_content", unit::density, Item::zone, ValueKind::number, true, is_moist,
+     [](R& r, int i, double* to) { *to = r.simulation().moisture()->content(block_of_zone(r, i)); },
+     "likewise: liquid and vapour"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,
      [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "bearings stay at 20 °C"},
 });

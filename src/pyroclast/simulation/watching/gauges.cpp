@@ -131,6 +131,28 @@ constexpr auto kGas = std::to_array<ColumnOf<HeatSolver>>({
      [](const HeatSolver& h) { return *h.hottest_gas(); }},
 });
 
+using W = MoistureField;
+constexpr auto kWater = std::to_array<ColumnOf<W>>({
+    {"water_kg", "kg", ColumnRole::water, "held", "water in the pores",
+     [](const W& w) { return w.water().stored(); }},
+    {"water_released_kg", "kg", ColumnRole::water, "released",
+     "water that hydrates gave back to the pores since the start",
+     [](const W& w) { return w.water().state().ledger.released; }},
+    {"water_left_kg", "kg", ColumnRole::water, "left",
+     "water that left the specimen since the start, less what came in",
+     [](const W& w) { return w.water().state().ledger.left; }},
+    {"water_error_kg", "kg", ColumnRole::water, "error",
+     "water in the pores, less that at the start and what hydrates gave back, plus what left",
+     [](const W& w) { return w.water().imbalance(); }},
+    {"pore_pressure_max_MPa", "MPa", ColumnRole::water, "largest_pressure",
+     "largest pressure of the vapour in pores, less that of the atmosphere",
+     [](const W& w) { return w.largest_pore_pressure() * kMega; }},
+    {"pore_pressure_over_saturation_max", "1", ColumnRole::water, "largest_pressure_ratio",
+     "largest pressure of the vapour over that above water of the same temperature; above 1 where liquid "
+     "fills the pores",
+     [](const W& w) { return w.largest_pressure_ratio(); }},
+});
+
 double gap_extent(const S& s) {
   return s.field().conduction()->gap_area() / s.model().thickness;
 }
@@ -371,6 +393,12 @@ const Motion& motion_of(const Simulation& simulation) {
   return simulation.motion();
 }
 
+Column probe_pressure_column(const std::string& name) {
+  return {fmt::format("probe_{}_pore_MPa", name), "MPa",
+          "pore pressure of the block at a [[probes]] of the deck, less that of the atmosphere",
+          ColumnRole::probe_pressure, name};
+}
+
 Column probe_column(const std::string& name) {
   return {fmt::format("probe_{}_degC", name), "degC", "temperature at a [[probes]] of the deck",
           ColumnRole::probe, name};
@@ -411,6 +439,9 @@ std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   std::vector<Gauge> gauges{transport_gauge()};
   if (simulation.field().conduction()->hottest_gas()) gauges.push_back(make_gauge(kGas, solver_of, false));
   if (simulation.cracks_hinder_heat()) gauges.push_back(gap_gauge(simulation.model()));
+  if (simulation.moisture())
+    gauges.push_back(make_gauge(
+        kWater, [](const Simulation& s) -> const MoistureField& { return *s.moisture(); }, false));
   return gauges;
 }
 
@@ -422,7 +453,18 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
     for (const auto& probe : s.probes()) values.push_back(probe.read(s.field().gridpoints()));
     return values;
   };
-  return {std::move(gauge)};
+  std::vector<Gauge> gauges{std::move(gauge)};
+  if (!simulation.moisture()) return gauges;
+  Gauge& pressures = gauges.emplace_back();
+  for (const auto& probe : simulation.probes())
+    pressures.columns.push_back(probe_pressure_column(probe.name()));
+  pressures.read = [](const Simulation& s) {
+    std::vector<double> values;
+    for (const auto& probe : s.probes())
+      values.push_back(kMega * s.moisture()->pore_pressure(s.model().block_of(probe.gridpoint())));
+    return values;
+  };
+  return gauges;
 }
 
 std::vector<Column> possible_gauge_columns() {
@@ -439,7 +481,9 @@ std::vector<Column> possible_gauge_columns() {
   append(columns, columns_of(kGas));
   append(columns, heat_columns());
   append(columns, columns_of(kGaps));
+  append(columns, columns_of(kWater));
   columns.push_back(probe_column("NAME"));
+  columns.push_back(probe_pressure_column("NAME"));
   return columns;
 }
 

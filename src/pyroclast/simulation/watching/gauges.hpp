@@ -25,9 +25,9 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation);
 /// Returns gauges of the deck's records: one of temperatures, which also a stage of heat alone has, and one
 /// of motion.
 std::vector<Gauge> record_gauges(const Simulation& simulation);
-/// Returns gauges of rate and heat of a computed field.
+/// Returns gauges of rate and heat of a computed field, and of water in the pores.
 std::vector<Gauge> transport_gauges(const Simulation& simulation);
-/// Returns gauges of the temperatures at the probes.
+/// Returns gauges of the temperatures, and of pore pressures, at the probes.
 std::vector<Gauge> probe_gauges(const Simulation& simulation);
 /// Returns all columns that these gauges may have.
 std::vector<Column> possible_gauge_columns();

@@ -27,6 +27,8 @@ class Probe {
                                       const std::vector<double>& gridpoints);
 
   const std::string& name() const { return name_; }
+  /// Returns a corner of the zone that holds the point.
+  int gridpoint() const { return gridpoints_.front(); }
 
   /// Reads the field: a collective.
   /// \param gridpoints  value of each gridpoint

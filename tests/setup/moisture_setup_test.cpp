@@ -1,0 +1,108 @@
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "deck/diagnostics_of.hpp"
+#include "decks.hpp"
+#include "pyroclast/setup/setup.hpp"
+
+/// Decks with water in the pores.
+namespace pyroclast {
+namespace {
+
+std::string slab() {
+  return shipped_case("kalifa_m100");
+}
+
+/// The errors of a deck, a line each: key and message.
+std::string errors_in(const std::string& text) {
+  std::string lines;
+  try {
+    read_setup(Deck::parse(text, "deck.toml"), ".");
+  } catch (const DeckError& e) {
+    for (const Diagnostic& d : e.diagnostics()) lines += d.key + ": " + d.message + "\n";
+  }
+  return lines;
+}
+
+void expect_error(const std::string& from, const std::string& to, const std::string& message) {
+  const std::string errors = errors_in(with(slab(), from, to));
+  EXPECT_NE(errors.find(message), std::string::npos) << to << "\n" << errors;
+}
+
+TEST(MoistureSetup, TakesTheClassWhereNothingIsStated) {
+  const auto setup = read_setup(Deck::parse(slab(), "deck.toml"), ".");
+  ASSERT_TRUE(setup.heat.moisture);
+  const MoistureConditions& m = *setup.heat.moisture;
+  ASSERT_EQ(m.pores.size(), 2U);
+  EXPECT_FALSE(m.pores[0].of_concrete);
+  EXPECT_EQ(m.pores[0].material.permeability, 1e-20);
+  EXPECT_EQ(m.pores[0].material.permeability_ratio(300.0), 1.0);
+  EXPECT_TRUE(m.pores[1].of_concrete);
+  EXPECT_EQ(m.pores[1].material.permeability, 5.1e-20);
+  EXPECT_NEAR(m.pores[1].material.permeability_ratio(145.0), 10.0, 1e-3);
+  EXPECT_EQ(m.pores[1].material.cement, 415.0);
+  ASSERT_EQ(m.boundaries.size(), 2U);
+  const auto& air = std::get<MoistAir>(*m.boundaries[0].condition);
+  EXPECT_EQ(air.coefficient, 0.018);
+  EXPECT_NEAR(air.vapour_density(0.0), 0.0138, 1e-4);
+}
+
+TEST(MoistureSetup, RefusesWhatHasNoMeaning) {
+  expect_error("saturation = 0.77", "saturation = 1.2", "saturation: ");
+  expect_error("saturation = 0.77", "saturation = 0.77, humidity = 0.5",
+               "moisture.initial: one of saturation, humidity and content is needed");
+  expect_error("class = \"high strength\"", "class = \"strong\"", "materials.mortar.moisture.class: ");
+  expect_error("permeability = \"5.1e-20 m2\"", "permeability = 0",
+               "materials.mortar.moisture.permeability: ");
+  expect_error("porosity = 0.12", "porosity = 1.2", "materials.mortar.moisture.porosity: ");
+  expect_error("exponent = 2.27", "exponent = 1", "materials.mortar.moisture.exponent: ");
+  expect_error("moisture = { class = \"rock\" }", "moisture = { class = \"rock\", of = \"concrete\" }",
+               "materials.aggregate.moisture.of: \"concrete\" is for the matrix alone");
+  expect_error("moisture = { class = \"rock\" }\n", "",
+               "materials.aggregate.moisture: missing; [moisture] needs the pores of each phase");
+  expect_error("faces = \"left\"\nkind = \"air\"", "faces = \"lift\"\nkind = \"air\"",
+               "moisture.boundaries[0].faces: must be one of");
+  expect_error("faces = \"right\"\nkind = \"air\"", "faces = \"outline\"\nkind = \"sealed\"",
+               "acts on faces that have a condition already");
+  expect_error("faces = \"left\"\nkind = \"air\"", "faces = \"left\"\nkind = \"sealed\"\nhumidity = 0.5",
+               "moisture.boundaries[0].humidity: ");
+  expect_error("[moisture]\ninitial = { saturation = 0.77 }\n", "[moisture]\n", "moisture.initial: ");
+}
+
+TEST(MoistureSetup, PoresWithoutWaterAreRefused) {
+  std::string text = slab();
+  const auto from = text.find("[moisture]"), to = text.find("[[stages]]");
+  text.erase(from, to - from);
+  EXPECT_NE(errors_in(text).find("materials.mortar.moisture: has no meaning without the table [moisture]"),
+            std::string::npos)
+      << errors_in(text);
+}
+
+TEST(MoistureSetup, NeedsHeatThatFlows) {
+  const std::string text =
+      with(shipped_case("starter"), "[mechanics]", "[moisture]\ninitial = { saturation = 0.5 }\n[mechanics]");
+  EXPECT_NE(errors_in(text).find("moisture: needs [heat] with field = \"conduction\""), std::string::npos)
+      << errors_in(text);
+}
+
+TEST(MoistureSetup, WarnsOfWaterThatEvaporatesWithoutHeat) {
+  const auto setup = read_setup(
+      Deck::parse(
+          with(slab(),
+               "density = \"2350 kg/m3\"\nconductivity = { builtin = \"en1992_conductivity_upper\" }\n"
+               "specific_heat = { builtin = \"en1992_specific_heat_u3\" }",
+               "density = \"2350 kg/m3\"\nconductivity = { builtin = \"en1992_conductivity_upper\" }\n"
+               "specific_heat = \"1 kJ/kg/K\""),
+          "deck.toml"),
+      ".");
+  bool warned = false;
+  for (const Diagnostic& d : setup.warnings)
+    warned = warned || (d.key == "materials.mortar.specific_heat" &&
+                        d.message.find("evaporates without heat") != std::string::npos);
+  EXPECT_TRUE(warned);
+}
+
+}  // namespace
+}  // namespace pyroclast
