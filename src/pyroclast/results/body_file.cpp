@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -18,13 +17,11 @@
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/model/part.hpp"
-#include "pyroclast/results/file.hpp"
+#include "pyroclast/results/closing_table.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
 #include "pyroclast/results/specimen_files.hpp"
 
 namespace pyroclast {
-
-static_assert(std::endian::native == std::endian::little, "bodies hold numbers little end first");
 
 namespace {
 
@@ -34,13 +31,7 @@ using Json = nlohmann::json;
 constexpr int kBodyFormat = 1;
 constexpr const char* kBodyFile = "body.h5";
 constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
-constexpr std::array<char, 8> kBodyEnd{'p', 'y', 'r', 'o', 'b', 'o', 'd', 'y'};
-
-/// Last bytes of a body's file.
-struct BodyTrailer {
-  std::uint64_t table_begin = 0, table_bytes = 0, table_hash = 0;
-  std::array<char, 8> end{};
-};
+constexpr ClosingTable::Mark kBodyEnd{'p', 'y', 'r', 'o', 'b', 'o', 'd', 'y'};
 
 /// Tables of a deck that shape its body.
 constexpr const char* kTablesOfBody[] = {"specimen",      "aggregates", "inclusions", "blocks",
@@ -301,9 +292,7 @@ void write_body(const fs::path& folder, const BodyInputs& inputs, const Specimen
   file.append([&](const File& written) {
     const std::uint64_t begin = written.size();
     table["rest"] = hash_of_rest(table["arrays"], begin, written);
-    std::string bytes = table.dump();
-    const BodyTrailer trailer{begin, bytes.size(), XXH3_64bits(bytes.data(), bytes.size()), kBodyEnd};
-    return bytes.append(reinterpret_cast<const char*>(&trailer), sizeof(trailer));
+    return ClosingTable::bytes(begin, table.dump(), kBodyEnd);
   });
   file.close();
 }
@@ -315,24 +304,15 @@ BodyFile::BodyFile(const fs::path& folder) : path_(folder / kBodyFile) {
   };
   if (!fs::is_regular_file(path_)) fail("there is no body");
   const File file = File::to_read(path_);
-  const std::uint64_t size = file.size();
   std::string begin(kHdf5Begin.size(), '\0');
   if (!file.read(0, begin.data(), begin.size()) || begin != kHdf5Begin) fail("is no body of pyroclast");
-  BodyTrailer trailer;
-  if (size < sizeof(trailer) || !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)) ||
-      trailer.end != kBodyEnd || trailer.table_bytes > size || trailer.table_begin > size ||
-      trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
-    fail("is cut short, or damaged at its end");
-  std::string bytes(trailer.table_bytes, '\0');
-  if (!file.read(trailer.table_begin, bytes.data(), bytes.size()) ||
-      XXH3_64bits(bytes.data(), bytes.size()) != trailer.table_hash)
-    fail("is damaged: its table has another hash");
-  table_ = Json::parse(bytes, nullptr, false);
+  const ClosingTable closing = ClosingTable::read(file, kBodyEnd, fail);
+  table_ = Json::parse(closing.text, nullptr, false);
   if (!table_.is_object() || table_.value("format", 0) != kBodyFormat)
     fail(fmt::format("has format {}, and this program reads format {}",
                      table_.is_object() ? table_.value("format", 0) : 0, kBodyFormat));
-  hash_ = fmt::format("{:016x}", trailer.table_hash);
-  if (hash_of_rest(table_.at("arrays"), trailer.table_begin, file) != table_.at("rest").get<std::uint64_t>())
+  hash_ = fmt::format("{:016x}", closing.hash);
+  if (hash_of_rest(table_.at("arrays"), closing.begin, file) != table_.at("rest").get<std::uint64_t>())
     fail("is damaged: what HDF5 keeps of its arrays differs from the bytes that were written");
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <exception>
 #include <limits>
 #include <new>
@@ -16,28 +15,19 @@
 #include <xxhash.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/results/file.hpp"
+#include "pyroclast/results/closing_table.hpp"
 #include "pyroclast/results/publish.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast {
-
-static_assert(std::endian::native == std::endian::little, "checkpoints hold numbers little end first");
 
 namespace {
 
 using Json = nlohmann::json;
 
 constexpr std::array<char, 8> kBegin{'p', 'y', 'r', 'o', 'c', 'l', 'a', 's'};
-constexpr std::array<char, 8> kEnd{'t', '-', 's', 't', 'a', 't', 'e', '2'};
-
-constexpr std::array<char, 8> kEndOfOldForm{'t', '-', 's', 't', 'a', 't', 'e', '1'};
-
-/// Last bytes of a checkpoint.
-struct Trailer {
-  std::uint64_t table_begin = 0, table_bytes = 0, table_hash = 0;
-  std::array<char, 8> end{};
-};
+constexpr ClosingTable::Mark kEnd{'t', '-', 's', 't', 'a', 't', 'e', '2'};
+constexpr ClosingTable::Mark kEndOfOldForm{'t', '-', 's', 't', 'a', 't', 'e', '1'};
 
 /// Reads an entry of a table. Throws Json::exception where the entry is of another kind.
 void read_entry(const Json& json, std::string& value) {
@@ -76,11 +66,9 @@ class CheckpointWriter : public StateVisitor {
     Json json;
     CheckpointInfo::each(info, [&](const char* name, const auto& value) { json[name] = value; });
     json["rows"] = std::move(pieces_);
-    const std::string table = json.dump();
-    const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
-    write_(end_, table.data(), table.size());
-    write_(end_ + table.size(), &trailer, sizeof(trailer));
-    return end_ + table.size() + sizeof(trailer);
+    const std::string closing = ClosingTable::bytes(end_, json.dump(), kEnd);
+    write_(end_, closing.data(), closing.size());
+    return end_ + closing.size();
   }
 
  protected:
@@ -290,23 +278,13 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   const File file = File::to_read(path_);
   const std::uint64_t size = file.size();
   std::array<char, 8> begin{};
-  Trailer trailer;
   if (size < begin.size() || !file.read(0, begin.data(), begin.size()) || begin != kBegin)
     fail("is no checkpoint of pyroclast");
-  if (size < begin.size() + sizeof(trailer) || !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)))
-    fail("is cut short");
-  if (trailer.end == kEndOfOldForm)
+  if (ClosingTable::mark_of(file) == kEndOfOldForm)
     fail("is in an older form: resume it with the build that wrote it, or run its deck anew");
-  if (trailer.end != kEnd) fail("is cut short, or damaged at its end");
-  if (trailer.table_bytes > size || trailer.table_begin > size ||
-      trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
-    fail("is damaged at its end");
-  std::string table(trailer.table_bytes, '\0');
-  if (!file.read(trailer.table_begin, table.data(), table.size()) ||
-      XXH3_64bits(table.data(), table.size()) != trailer.table_hash)
-    fail("is damaged: its table has another hash");
+  const ClosingTable table = ClosingTable::read(file, kEnd, fail);
   try {
-    const Json json = Json::parse(table);
+    const Json json = Json::parse(table.text);
     CheckpointInfo::each(info_, [&](const char* name, auto& value) { read_entry(json.at(name), value); });
     for (const Json& piece : json.at("rows")) {
       Piece r;
