@@ -13,7 +13,7 @@
 #include "pyroclast/model/part.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "ranks_in_threads.hpp"
-#include "solid/bodies.hpp"
+#include "specimen/solid_bodies.hpp"
 
 namespace pyroclast {
 namespace {
@@ -45,7 +45,7 @@ specimen::Specimen<2> squares(const std::vector<std::string>& rows) {
       cells.phase.push_back(rows[y][x] == '.' ? 1 : 0);
       grain.push_back(rows[y][x] == '.' ? -1 : rows[y][x] - '0');
     }
-  specimen::Specimen<2> made = specimen::specimen_from(std::move(cells));
+  specimen::Specimen<2> made = specimen::specimen_from(specimen::completed(std::move(cells)));
   made.grain = std::move(grain);
   return made;
 }
@@ -132,7 +132,7 @@ TEST(Skeleton, OfBallsRunsThroughASolid) {
   p.blocks.count = 1000;
   p.blocks.radius_spread = 0.3;
   p.superposition = specimen::Superposition::fit;
-  const specimen::Specimen<3> solid = specimen::make_specimen<3>(p, specimen::cuboid(0.08, 0.08, 0.08));
+  const specimen::Specimen<3> solid = specimen::made_in(p, specimen::cuboid(0.08, 0.08, 0.08));
   const auto joined = make_model(solid);
   const Skeleton found = largest_skeleton(joined, solid.grain, contacts_of(joined));
   EXPECT_GT(found.share, 0.8);

@@ -30,7 +30,7 @@ inline AggregateParameters paper_aggregates() {
 
 inline SpecimenParameters paper_specimen(std::uint64_t seed) {
   SpecimenParameters p;
-  p.region = Region::rectangle(150 * millimetre, 300 * millimetre);
+  p.outline = Region::rectangle(150 * millimetre, 300 * millimetre);
   p.seed = seed;
   p.aggregates = paper_aggregates();
   p.blocks.count = 5000;

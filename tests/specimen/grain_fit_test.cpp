@@ -85,12 +85,12 @@ TEST(GrainFit, BlocksFollowGrainsBesideNotchesAndInRings) {
   p.aggregates.d_max = 16e-3;
   p.aggregates.sieves = {4.75e-3, 8e-3, 16e-3};
   p.blocks.count = 4000;
-  p.region = Region::rectangle(0.15, 0.3).with_notches(
+  p.outline = Region::rectangle(0.15, 0.3).with_notches(
       std::vector<Notch>{{.name = "notch_1", .mouth = {{0, 0.15}}, .tip = {{0.05, 0.15}}, .width = 0.0}});
   const Specimen<2> notched = make_specimen(p);
   EXPECT_NEAR(notched.fraction_superposed, notched.fraction_placed, 0.02);
-  p.region = Region::polygon(circle_corners({}, 0.2, 3e-3), {"rim"}, true)
-                 .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
+  p.outline = Region::polygon(circle_corners({}, 0.2, 3e-3), {"rim"}, true)
+                  .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
   const Specimen<2> ring = make_specimen(p);
   EXPECT_NEAR(ring.fraction_superposed, ring.fraction_placed, 0.02);
 }
@@ -179,14 +179,14 @@ std::vector<Vec<2>> cut_ellipse(const Vec<2>& centre, double a, double b) {
 /// Returns a specimen of 120 mm x 80 mm with one stone, which blocks follow.
 Specimen<2> with_stone(std::vector<Vec<2>> points, int blocks) {
   SpecimenParameters p;
-  p.region = Region::rectangle(0.12, 0.08);
+  p.outline = Region::rectangle(0.12, 0.08);
   p.seed = 1;
   p.superposition = Superposition::follow;
   p.blocks.count = blocks;
   p.blocks.shortest_edge = 0.3;
   const auto [outline, centre] = outline_around(std::move(points));
   p.aggregates.stones = std::vector<Stone<2>>{{centre, outline->width(), "aggregate", "", outline}};
-  p.aggregates.fraction = outline->extent() / p.region.extent();
+  p.aggregates.fraction = outline->extent() / p.extent();
   p.aggregates.d_min = p.aggregates.d_max = outline->width();
   return make_specimen(p);
 }

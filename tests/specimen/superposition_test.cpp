@@ -19,7 +19,7 @@ const Cells<2> quarters{
 
 SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5) {
   SpecimenParameters p;
-  p.region = Region::rectangle(1, 1);
+  p.outline = Region::rectangle(1, 1);
   p.superposition = rule;
   p.covered_fraction = covered_fraction;
   return p;
@@ -32,7 +32,7 @@ std::vector<Cover> covers_of(const std::vector<Grain<2>>& circles) {
 }
 
 Superposed superposed(const std::vector<Grain<2>>& circles, const SpecimenParameters& p) {
-  return superpose<2>(quarters, p.region, circles, p, kMatrix);
+  return superpose<2>(quarters, *p.region(), circles, p, kMatrix);
 }
 
 TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {

@@ -6,19 +6,14 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "pyroclast/base/error.hpp"
-#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
-#include "pyroclast/specimen/pieces.hpp"
-#include "pyroclast/specimen/polyhedra_file.hpp"
 
 namespace pyroclast::python {
 
@@ -45,31 +40,20 @@ MadeSpecimen from_cells(const Reals& vertices, const Integers& corners, const In
   cells.size = std::move(size);
   cells.grain.assign(stone.data(), stone.data() + stone.size());
   const py::gil_scoped_release no_gil;
-  return specimen::specimen_from(specimen::joined(specimen::checked(std::move(cells)), join));
+  return specimen::specimen_from(specimen::completed(std::move(cells), join));
 }
 
 /// Reads a file of cells, in the plane or in space.
 MadeSpecimen read(const std::string& file, double join) {
-  if (const std::string text = read_file(file); specimen::are_in_space(text)) {
-    specimen::GivenCells<3> cells = specimen::polyhedra_from(text, file, join);
-    const specimen::Prism body = cells.outline;
-    return specimen::specimen_from(std::move(cells), body);
-  }
-  specimen::GivenCells<2> cells = cells_in_metres(file, join);
-  specimen::Region region;
-  try {
-    region = specimen::outline_of(cells.cells);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", file, error.what()));
-  }
-  return specimen::specimen_from(std::move(cells), region);
+  return std::visit([](auto cells) -> MadeSpecimen { return specimen::specimen_from(std::move(cells)); },
+                    cells_in_metres(file, join));
 }
 
 /// Makes a rectangle of blocks, all of one phase.
 MadeSpecimen rectangle(double width, double height, int count, double shortest_edge, int relaxation,
                        double radius_spread, std::uint64_t seed) {
-  AskedSpecimen p;
-  p.region = specimen::Region::rectangle(width, height);
+  specimen::SpecimenParameters p;
+  p.outline = specimen::Region::rectangle(width, height);
   p.seed = seed;
   p.aggregates.phase = p.matrix;
   p.blocks = {.count = count,

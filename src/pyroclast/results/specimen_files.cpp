@@ -118,38 +118,35 @@ void add_common(nlohmann::ordered_json& json, const specimen::Specimen<Dim>& s) 
   json["largest_block_size_m"] = largest;
 }
 
-void add_made(Files& files, const specimen::Specimen<2>& s, const specimen::SpecimenParameters& asked) {
+template <int Dim>
+void add_made(Files& files, const specimen::Specimen<Dim>& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
-  json["width_m"] = s.outline.box().width();
-  json["height_m"] = s.outline.box().height();
-  add_common(json, s);
-  json["mean_edge_m"] = s.metrics.mean_edge;
-  json["shortest_edge_m"] = s.metrics.shortest_edge;
-  json["edges_removed"] = s.metrics.edges_removed;
-  json["edges_left_short"] = s.metrics.edges_left_short;
-  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
-  json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
-  files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.stones, s.phases, asked);
-  if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
-}
-
-void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::SpecimenParameters& asked) {
-  nlohmann::ordered_json json;
-  const Vec<3> size = s.outline.high() - s.outline.low();
+  const Vec<Dim> size = s.outline.high() - s.outline.low();
   json["width_m"] = size[0];
   json["height_m"] = size[1];
-  json["depth_m"] = size[2];
-  json["volume_m3"] = s.outline.extent();
+  if constexpr (Dim == 3) {
+    json["depth_m"] = size[2];
+    json["volume_m3"] = s.outline.extent();
+  }
   add_common(json, s);
-  json["zones_per_block"] = s.metrics.zones_per_block;
-  json["most_corners_of_a_face"] = s.metrics.most_corners;
-  json["shortest_edge_m"] = s.metrics.shortest_edge;
-  json["lowest_zone_m"] = s.metrics.lowest_zone;
-  json["vertices_merged"] = s.metrics.vertices_merged;
-  json["edges_left_short"] = s.metrics.edges_left_short;
-  json["largest_bend_deg"] = s.metrics.largest_bend;
-  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
+  const auto& m = s.metrics;
+  if constexpr (Dim == 2) {
+    json["mean_edge_m"] = m.mean_edge;
+    json["shortest_edge_m"] = m.shortest_edge;
+    json["edges_removed"] = m.vertices_merged;
+    json["edges_left_short"] = m.edges_left_short;
+    json["seeds_redrawn"] = m.seeds_redrawn;
+    json["smallest_zone_angle_deg"] = m.smallest_angle;
+  } else {
+    json["zones_per_block"] = m.zones_per_block;
+    json["most_corners_of_a_face"] = m.most_corners;
+    json["shortest_edge_m"] = m.shortest_edge;
+    json["lowest_zone_m"] = m.lowest_zone;
+    json["vertices_merged"] = m.vertices_merged;
+    json["edges_left_short"] = m.edges_left_short;
+    json["largest_bend_deg"] = m.largest_bend;
+    json["seeds_redrawn"] = m.seeds_redrawn;
+  }
   for (const specimen::SizeClass& c : s.classes)
     json["size_classes"].push_back({{"kind", c.kind},
                                     {"from_m", c.from},

@@ -465,7 +465,7 @@ void set_fraction(double extent_of_specimen, specimen::AggregateParameters& a) {
   a.fraction = extent / extent_of_specimen;
 }
 
-void check_size(const Section& s, const AskedSpecimen& p) {
+void check_size(const Section& s, const specimen::SpecimenParameters& p) {
   const Vec<3> size = p.high() - p.low();
   double narrowest = size[0];
   for (int i = 1; i < p.dimension(); ++i) narrowest = std::min(narrowest, size[i]);

@@ -121,20 +121,12 @@ std::string side_under(const Grain<3>& /*stone*/, const Prism& /*body*/, double 
   return {};
 }
 
-/// Returns the room of stones with a shape.
-Room<2> room_of_shapes(const Region& region) {
-  return room_of_blocks(region);
-}
-Room<3> room_of_shapes(const Prism& body) {
-  return room_in(body);
-}
-
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 template <int Dim>
 void add_listed(const AggregateParameters& asked, int kind, Specimen<Dim>& specimen) {
   const auto* const listed = std::get_if<std::vector<Stone<Dim>>>(&asked.stones);
   if (!listed) throw Error(fmt::format("{}: the stones belong to another dimension", asked.place));
-  const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_shapes(specimen.outline);
+  const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_blocks(specimen.outline);
   GrainGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
   for (const Grain<Dim>& stone : specimen.stones) grid.insert(stone);
   std::vector<Grain<Dim>> stones;
@@ -165,7 +157,7 @@ void add_stones(const AggregateParameters& asked, int kind, Random& random, Spec
   if (asked.are_known()) return add_listed(asked, kind, specimen);
   if (asked.fraction == 0.0) return;
   draw_and_place(
-      asked.shape.kind == GrainShape::circle ? room_in(specimen.outline) : room_of_shapes(specimen.outline),
+      asked.shape.kind == GrainShape::circle ? room_in(specimen.outline) : room_of_blocks(specimen.outline),
       asked, place_in(specimen.phases, asked.phase), kind, random, specimen.stones);
 }
 
@@ -205,8 +197,7 @@ double share_beside_matrix(const Specimen<Dim>& specimen) {
 
 /// Throws Error for what a solid cannot have yet.
 void require_of_space(const SpecimenParameters& p) {
-  if (p.cells || p.blocks.cells || !p.blocks.phases.empty())
-    throw Error("a solid cannot be made of cells of a plane");
+  if (p.blocks.cells) throw Error("a solid cannot be made of cells of a plane");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
   if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
   for (const auto* const kind : stone_kinds(p)) {
@@ -261,7 +252,48 @@ void add_phases_of(const AggregateParameters& kind, std::vector<std::string>& na
       kind.stones);
 }
 
+/// Calls a function of the cells that are made elsewhere.
+template <class F>
+auto of_cells(const SpecimenParameters& p, F f) {
+  const auto* solid = std::get_if<GivenCells<3>>(&p.cells);
+  return solid ? f(*solid) : f(std::get<GivenCells<2>>(p.cells));
+}
+
 }  // namespace
+
+const std::vector<Side>& SpecimenParameters::sides() const {
+  return std::visit(
+      [](const auto& o) -> const auto& { return o.sides(); }, outline);
+}
+
+std::vector<FlatPart> SpecimenParameters::flat_parts() const {
+  return std::visit([](const auto& o) { return o.flat_parts(); }, outline);
+}
+
+Vec<3> SpecimenParameters::low() const {
+  return std::visit([](const auto& o) { return resized<3>(o.low()); }, outline);
+}
+
+Vec<3> SpecimenParameters::high() const {
+  return std::visit([](const auto& o) { return resized<3>(o.high()); }, outline);
+}
+
+double SpecimenParameters::distance(const Vec<3>& point) const {
+  return prism() ? prism()->distance(point) : region()->distance(resized<2>(point));
+}
+
+double SpecimenParameters::extent() const {
+  return std::visit([](const auto& o) { return o.extent(); }, outline);
+}
+
+double SpecimenParameters::block_size() const {
+  if (blocks.count == 0) return 0.0;
+  return prism() ? side_of<3>(extent() / blocks.count) : side_of<2>(extent() / blocks.count);
+}
+
+double SpecimenParameters::largest_block_size() const {
+  return blocks.finer.empty() ? block_size() : blocks.largest_size;
+}
 
 bool has_shapes(const AggregateParameters& kind) {
   if (!kind.are_known()) return kind.shape.kind != GrainShape::circle;
@@ -280,7 +312,7 @@ std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& pa
 }
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
-  if (parameters.cells) return parameters.cells->phases;
+  if (parameters.is_of_file()) return of_cells(parameters, [](const auto& given) { return given.phases; });
   if (!parameters.blocks.phases.empty()) return parameters.blocks.phases;
   std::vector<std::string> names;
   add_phases_of(parameters.aggregates, names);
@@ -294,19 +326,16 @@ std::vector<std::string> phases(const SpecimenParameters& parameters) {
 }
 
 std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) {
-  if (const auto& cells = parameters.cells)
-    return phases_of_stones(cells->phases, cells->phase, cells->grain);
-  if (!parameters.blocks.phases.empty()) return {};
   std::vector<std::string> names;
-  for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
-  return names;
-}
-
-std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
-                                          const std::vector<int>& phase, const std::vector<int>& grain) {
-  std::vector<std::string> names;
-  for (std::size_t cell = 0; cell < grain.size(); ++cell)
-    if (grain[cell] >= 0) add_once(phases[phase[cell]], names);
+  if (parameters.is_of_file()) {
+    of_cells(parameters, [&](const auto& given) {
+      for (std::size_t cell = 0; cell < given.grain.size(); ++cell)
+        if (given.grain[cell] >= 0) add_once(given.phases[given.phase[cell]], names);
+    });
+  } else if (parameters.blocks.phases.empty()) {
+    for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
+  }
+  std::erase(names, parameters.matrix);
   return names;
 }
 
@@ -357,7 +386,15 @@ void measure(Specimen<Dim>& s, const Metrics<Dim>& done) {
 }
 
 template <int Dim>
-Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& outline, Team* team) {
+Specimen<Dim> make_specimen(const SpecimenParameters& p, Team* team) {
+  const auto& outline = std::get<OutlineOf<Dim>>(p.outline);
+  if (p.is_of_file()) {
+    GivenCells<Dim> given = std::get<GivenCells<Dim>>(p.cells);
+    given.outline = outline;  // with patches
+    Specimen<Dim> specimen = specimen_from(std::move(given));
+    specimen.matrix = place_in(specimen.phases, p.matrix);
+    return specimen;
+  }
   if constexpr (Dim == 3) require_of_space(p);
   require(outline.extent() > 0.0, Dim == 2 ? "The area of the specimen" : "The volume of the specimen",
           outline.extent(), Dim == 2 ? "a positive area" : "a positive volume");
@@ -404,16 +441,9 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& o
   return specimen;
 }
 
-Specimen<2> make_specimen(const SpecimenParameters& parameters, Team* team) {
-  if (!parameters.cells) return make_specimen<2>(parameters, parameters.region, team);
-  Specimen<2> specimen = specimen_from(*parameters.cells, parameters.region);
-  specimen.matrix = place_in(specimen.phases, parameters.matrix);
-  return specimen;
-}
-
 template void measure<2>(Specimen<2>&, const Metrics<2>&);
 template void measure<3>(Specimen<3>&, const Metrics<3>&);
-template Specimen<2> make_specimen<2>(const SpecimenParameters&, const Region&, Team*);
-template Specimen<3> make_specimen<3>(const SpecimenParameters&, const Prism&, Team*);
+template Specimen<2> make_specimen<2>(const SpecimenParameters&, Team*);
+template Specimen<3> make_specimen<3>(const SpecimenParameters&, Team*);
 
 }  // namespace pyroclast::specimen

@@ -1,5 +1,3 @@
-#include "pyroclast/specimen/superposition.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/superposition.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {

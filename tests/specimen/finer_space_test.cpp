@@ -9,12 +9,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
-#include "pyroclast/specimen/polyhedra_file.hpp"
 #include "pyroclast/specimen/specimen.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -72,7 +71,7 @@ TEST(FinerBlocksOfSolids, HaveTheirSizesNearAndFarAndFillTheBody) {
     Bands bands;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const auto p = finer_near(on_side(body, "left"), body, seed, shortest_edge);
-      const Specimen<3> s = make_specimen<3>(p, body);
+      const Specimen<3> s = made_in(p, body);
       require_valid(s.cells, body, "finer blocks");
       EXPECT_EQ(std::ssize(s.cells.cells), p.blocks.count);
       ASSERT_EQ(std::ssize(s.size), p.blocks.count);
@@ -114,7 +113,7 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Bands bands;
     for (std::uint64_t seed = 1; seed <= 2; ++seed)
-      add_to_bands(make_specimen<3>(finer_near(cases[i].part, body, seed, 0.35), body), bands,
+      add_to_bands(made_in(finer_near(cases[i].part, body, seed, 0.35), body), bands,
                    [&](const Vec<3>& place) { return cases[i].distance(place) < kReach ? 0 : 1; });
     EXPECT_NEAR(size_in(bands, 0), kFine, 0.1 * kFine) << i;
     EXPECT_GT(size_in(bands, 1), 1.25 * kFine) << i;
@@ -124,7 +123,7 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
 // Promise: edges of fine blocks are merged where they are short against those of blocks of their size.
 TEST(FinerBlocksOfSolids, LoseEdgesThatAreShortForTheirSize) {
   const Prism body = cuboid(0.1, 0.06, 0.06);
-  const Specimen<3> s = make_specimen<3>(finer_near(on_side(body, "left"), body, 1, 0.35), body);
+  const Specimen<3> s = made_in(finer_near(on_side(body, "left"), body, 1, 0.35), body);
   EXPECT_LT(s.metrics.edges_left_short, 20);
   EXPECT_LE(s.metrics.largest_bend, 20.0 + 1e-9);
   std::array<double, 2> sum{}, count{};
@@ -151,7 +150,7 @@ TEST(FinerBlocksOfSolids, LoseEdgesThatAreShortForTheirSize) {
 // file keeps the sizes to the bit.
 TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
   const Prism body = cuboid(0.1, 0.06, 0.06);
-  const Specimen<3> s = make_specimen<3>(finer_near(on_side(body, "top"), body, 1, 0.35), body);
+  const Specimen<3> s = made_in(finer_near(on_side(body, "top"), body, 1, 0.35), body);
   const ModelOf<3> model = make_model(s, 1.0, {}, platens(0.02));
   const int first = model.block_of(model.set("specimen").front());
   for (int c = 0; c < model.contact_count(); ++c) {
@@ -163,10 +162,10 @@ TEST(FinerBlocksOfSolids, TellContactsAndFilesTheirSizes) {
                                                      : 0.5 * (size(a) + size(b));
     EXPECT_EQ(joint.block_size, expected);
   }
-  GivenCells<3> read = polyhedra_from(cells_text(s), "blocks.json");
+  auto read = std::get<GivenCells<3>>(cells_from(cells_text(s), "blocks.json"));
   EXPECT_EQ(read.size, s.size);
   EXPECT_EQ(read.grain, s.grain);
-  EXPECT_EQ(specimen_from(std::move(read), body).size, s.size);
+  EXPECT_EQ(specimen_from(std::move(read)).size, s.size);
 }
 
 TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
@@ -181,7 +180,7 @@ TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
   p.superposition = Superposition::fit;
-  const Specimen<3> s = make_specimen<3>(p, body);
+  const Specimen<3> s = made_in(p, body);
   const auto far =
       std::ranges::count_if(s.stones, [](const Grain<3>& ball) { return ball.centre[0] > 0.02; });
   EXPECT_GE(s.small_stones, far);
