@@ -445,7 +445,7 @@ TEST(Phases, StonesThatTouchMayHaveAnInterface) {
     return std::ranges::find(model.interface_names, name) - model.interface_names.begin();
   };
   // the lower platen is the first block
-  const auto stone = [&](int gridpoint) { return specimen.grain.at(model.block_of(gridpoint) - 1); };
+  const auto stone = [&](int gridpoint) { return specimen.stone.at(model.block_of(gridpoint) - 1); };
   int within = 0, between = 0;
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);

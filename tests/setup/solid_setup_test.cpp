@@ -14,7 +14,7 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
-#include "pyroclast/specimen/grain_fit.hpp"
+#include "pyroclast/specimen/stone_fit.hpp"
 #include "stages/result_of.hpp"
 
 namespace pyroclast {
@@ -148,7 +148,7 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
       {with(solid(), "[blocks]", "[aggregates.outlines]\ncsv = \"a.csv\"\n\n[blocks]"),
        {"aggregates.outlines", "a solid takes surfaces"}},
       {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
-       {"aggregates.grain_shape.flatness", "grains of a solid"}},
+       {"aggregates.grain_shape.flatness", "stones of a solid"}},
       {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),
        {"mechanics.kinematics", "kinematics = \"small\""}},
       {with(solid(), "safety = 0.9", "safety = 0.9\ncontacts = \"found\""),

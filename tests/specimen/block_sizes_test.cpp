@@ -388,7 +388,7 @@ TEST(FinerBlocks, FollowNotchesHolesAndArcs) {
   }
 }
 
-TEST(FinerBlocks, FollowGrains) {
+TEST(FinerBlocks, FollowStones) {
   SpecimenParameters p = paper_specimen(1);
   p.superposition = Superposition::follow;
   p.blocks.finer.push_back({.pieces = {{{{0, 0}}, {{0, 0.3}}}}, .size = 2.5e-3, .distance = 20e-3});

@@ -149,9 +149,9 @@ TEST(SpecimenFromCells, AFileKeepsTheStonesOfBlocks) {
   asked.cells = read;
   EXPECT_EQ(phases_of_stones(asked), std::vector<std::string>{"b"});
   const Specimen<2> made = specimen_from(read);
-  EXPECT_EQ(made.grain, (std::vector<int>{7, -1}));
+  EXPECT_EQ(made.stone, (std::vector<int>{7, -1}));
   const std::string text = cells_text(made);
-  EXPECT_EQ(in_plane(text).grain, made.grain);
+  EXPECT_EQ(in_plane(text).stone, made.stone);
   EXPECT_TRUE(
       says(message([&] { cells_from(file("[7]"), "mine.json"); }), "there are 2 cells, but the stones of 1"));
   EXPECT_TRUE(says(message([&] { cells_from(file("[7, -2]"), "mine.json"); }),

@@ -237,7 +237,7 @@ TEST(Region, AggregatesKeepAwayFromTheOutlineButNotFromCuts) {
                  at(0, 0.2), at(0.05, 0.2), 0.006);
   const Specimen<2> specimen = make_specimen(p);
   int cut = 0;
-  for (const Grain<2>& a : specimen.stones) {
+  for (const Stone<2>& a : specimen.stones) {
     EXPECT_LE(p.region()->distance_before_cuts(a.centre), -(0.5 * a.diameter + p.aggregates.minimum_gap));
     if (p.region()->distance(a.centre) > -0.5 * a.diameter) ++cut;
   }

@@ -7,8 +7,8 @@
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/specimen/stone.hpp"
 #include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
@@ -64,7 +64,7 @@ TEST(SpecimenInSpace, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
   const auto centres = [](const Specimen<3>& s) {
     std::vector<Vec<3>> all;
-    for (const Grain<3>& ball : s.stones) all.push_back(ball.centre);
+    for (const Stone<3>& ball : s.stones) all.push_back(ball.centre);
     return all;
   };
   const Specimen<3> one = made_in(concrete(300), body), same = made_in(concrete(300), body);

@@ -58,7 +58,7 @@ void let_materials_stand_in(const Section& root, std::span<const ReadBearing> be
       cells.phases.push_back(name);
   cells.phase.resize(cells.phases.size());
   std::iota(cells.phase.begin(), cells.phase.end(), 0);
-  cells.grain = cells.phase;
+  cells.stone = cells.phase;
   if (cells.phases.size() == 1) p.matrix = cells.phases.front();
 }
 
@@ -177,8 +177,8 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
         "has a block first"},
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
        {"follow", specimen::Superposition::follow,
-        "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the grains, "
-        "see [Grains](../do/bodies.md#grains)"}},
+        "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the stones, "
+        "see [Stones](../do/bodies.md#stones)"}},
       "when a block is aggregate");
   if (p.superposition == specimen::Superposition::follow && p.blocks.cells)
     superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");

@@ -60,8 +60,8 @@ const std::vector<std::string>& phases(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) -> const std::vector<std::string>& { return s.phases; }, specimen);
 }
 
-const std::vector<int>& grains(const MadeSpecimen& specimen) {
-  return std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, specimen);
+const std::vector<int>& stones(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) -> const std::vector<int>& { return s.stone; }, specimen);
 }
 
 std::vector<std::string> warnings(const MadeSpecimen& specimen) {

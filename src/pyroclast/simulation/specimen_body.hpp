@@ -22,7 +22,7 @@ using MadeSpecimen = std::variant<specimen::Specimen<2>, specimen::Specimen<3>>;
 /// Returns the names of the phases that its blocks can have.
 const std::vector<std::string>& phases(const MadeSpecimen& specimen);
 /// Returns the stone of each block, -1: of none; empty where stones are not known.
-const std::vector<int>& grains(const MadeSpecimen& specimen);
+const std::vector<int>& stones(const MadeSpecimen& specimen);
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const MadeSpecimen& specimen);
 
@@ -54,7 +54,7 @@ SpecimenNumbers numbers_of(const MadeSpecimen& specimen);
 struct SpecimenTold {
   std::string text;                          ///< description for the screen
   std::vector<std::string> warnings;         ///< see warnings
-  std::vector<int> grain;                    ///< stone of each block, see skeleton; may be empty
+  std::vector<int> stone;                    ///< stone of each block, see skeleton; may be empty
   std::string facts;                         ///< facts for the summary, as JSON
   std::map<std::string, std::string> files;  ///< files of the folder specimen/, by name
 };

@@ -15,8 +15,6 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/block_order.hpp"
 #include "pyroclast/specimen/block_sizes.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_seeds.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -24,6 +22,8 @@
 #include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/room.hpp"
 #include "pyroclast/specimen/spaced_seeds.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_seeds.hpp"
 #include "pyroclast/specimen/topology.hpp"
 #include "pyroclast/specimen/united_cells.hpp"
 
@@ -38,77 +38,77 @@ constexpr int most_rounds = 60;
 constexpr int kMostRoundsInSpace = 20;
 /// Number of places tried for a free seed before an Error says that there is none.
 constexpr int kAttempts = 100'000;
-/// Number of places tried before a free seed may come closer to the surface of a grain.
+/// Number of places tried before a free seed may come closer to the surface of a stone.
 constexpr int kAttemptsAtOneDistance = 2000;
-/// Steps of the search for the distance of seeds along grains.
+/// Steps of the search for the distance of seeds along stones.
 template <int Dim>
 constexpr int kBisections = Dim == 2 ? 14 : 8;
 
-/// Least distance of a free seed from the surface of a grain, in spacings: at first, and where seeds find no
+/// Least distance of a free seed from the surface of a stone, in spacings: at first, and where seeds find no
 /// place.
-constexpr double kClearOfGrains = 0.75, kLeastClear = 0.45;
-/// Extent of a block beside the surface of a grain, over the power of the distance of seeds.
+constexpr double kClearOfStones = 0.75, kLeastClear = 0.45;
+/// Extent of a block beside the surface of a stone, over the power of the distance of seeds.
 template <int Dim>
-constexpr double kBesideGrain = Dim == 2 ? 0.72 : 0.5;
-/// Share of its extent by which the blocks of a grain may be off, and rounds in which such blocks are
+constexpr double kBesideStone = Dim == 2 ? 0.72 : 0.5;
+/// Share of its extent by which the blocks of a stone may be off, and rounds in which such blocks are
 /// corrected.
 constexpr double kOffInExtent = 0.005;
 constexpr int kCorrections = 12;
-/// Exponent of a correction. By the root one grain alone would be right at once; grains at a narrow gap move
+/// Exponent of a correction. By the root one stone alone would be right at once; stones at a narrow gap move
 /// facets farther.
 template <int Dim>
 constexpr double kCorrection = Dim == 2 ? 0.3 : 0.25;
 /// Rounds after which a correction that leaves blocks unfit is taken back.
 constexpr int kRoundsOfCorrection = 8;
-/// Round from which a seed beside a grain whose block is unfit gives way to a free one.
+/// Round from which a seed beside a stone whose block is unfit gives way to a free one.
 constexpr int kGivesWay = 4;
 
-/// Grains whose surfaces seeds follow, and how they do.
+/// Stones whose surfaces seeds follow, and how they do.
 template <int Dim>
 class Following {
  public:
   /// \param outline  seeds that the outline asks for; null in space
-  Following(const BlockParameters& parameters, std::span<const Grain<Dim>> grains, const OutlineOf<Dim>& body,
+  Following(const BlockParameters& parameters, std::span<const Stone<Dim>> stones, const OutlineOf<Dim>& body,
             const OutlineSeeds* outline, const BlockSizes& sizes)
       : parameters_(parameters),
-        grains_(grains),
+        stones_(stones),
         body_(body),
         outline_(outline),
         sizes_(sizes),
-        ways_(grains.size()),
-        aim_(grains.size(), 1.0) {
+        ways_(stones.size()),
+        aim_(stones.size(), 1.0) {
     spacing_ = spacing_along();
   }
 
   /// Returns the seeds along surfaces.
-  const GrainSeeds<Dim>& along() const { return *along_; }
+  const StoneSeeds<Dim>& along() const { return *along_; }
 
   /// Places the seeds along surfaces anew, farther from each other by a factor.
   void follow_wider(double factor) { follow(spacing_ *= factor); }
 
-  /// Follows grains whose blocks are too large or too small as larger or smaller ones, and small grains that
+  /// Follows stones whose blocks are too large or too small as larger or smaller ones, and small stones that
   /// did not become one block by one seed. Tells whether there was one.
-  /// \param grain        grain of each cell, -1: of none
+  /// \param stone        stone of each cell, -1: of none
   /// \param are_regular  true for blocks that are regularised: then others are aimed at before that
-  bool correct(const Cells<Dim>& cells, const std::vector<int>& grain, bool are_regular = false) {
-    struct OfGrain {
+  bool correct(const Cells<Dim>& cells, const std::vector<int>& stone, bool are_regular = false) {
+    struct OfStone {
       int count = 0;
       double extent = 0.0;  ///< of its blocks
     };
-    std::vector<OfGrain> blocks(grains_.size());
-    for (std::size_t cell = 0; cell < grain.size(); ++cell) {
-      if (grain[cell] < 0) continue;
-      blocks[grain[cell]].extent += extent(cells, cell);
-      ++blocks[grain[cell]].count;
+    std::vector<OfStone> blocks(stones_.size());
+    for (std::size_t cell = 0; cell < stone.size(); ++cell) {
+      if (stone[cell] < 0) continue;
+      blocks[stone[cell]].extent += extent(cells, cell);
+      ++blocks[stone[cell]].count;
     }
     bool is_off = false;
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
+    for (std::size_t i = 0; i < stones_.size(); ++i) {
       if (blocks[i].count > 1 && along_->is_one_cell(static_cast<int>(i)) && !ways_[i].is_of_one_seed) {
         ways_[i] = {1.0, true};
         is_off = true;
         continue;
       }
-      double share = blocks[i].extent / ((are_regular ? 1.0 : aim_[i]) * extent(grains_[i]));
+      double share = blocks[i].extent / ((are_regular ? 1.0 : aim_[i]) * extent(stones_[i]));
       if (std::abs(share - 1.0) < (are_regular ? 2.0 : 1.0) * kOffInExtent) continue;
       is_off = true;
       if (are_regular) share = std::clamp(share, 0.9, 1.1);
@@ -118,19 +118,19 @@ class Following {
     return is_off;
   }
 
-  /// Calls f(grain, whether the grain is one block) for each block that seeds along grains make: the cells of
-  /// a small grain become one. The grain is -1 between grains.
+  /// Calls f(stone, whether the stone is one block) for each block that seeds along stones make: the cells of
+  /// a small stone become one. The stone is -1 between stones.
   template <class F>
   void for_each_block(const std::vector<int>& owners, F&& f) const {
-    std::vector<char> has_one(grains_.size(), 0);
-    for (const int grain : owners) {
-      const bool is_one = grain >= 0 && along_->is_one_cell(grain);
-      if (!is_one || !std::exchange(has_one[grain], 1)) f(grain, is_one);
+    std::vector<char> has_one(stones_.size(), 0);
+    for (const int stone : owners) {
+      const bool is_one = stone >= 0 && along_->is_one_cell(stone);
+      if (!is_one || !std::exchange(has_one[stone], 1)) f(stone, is_one);
     }
   }
 
  private:
-  void follow(double spacing) { along_.emplace(grains_, ways_, body_, outline_, sizes_.scaled_to(spacing)); }
+  void follow(double spacing) { along_.emplace(stones_, ways_, body_, outline_, sizes_.scaled_to(spacing)); }
 
   static double power(double length) { return Dim == 2 ? length * length : length * length * length; }
 
@@ -143,10 +143,10 @@ class Following {
       follow(spacing);
       // extent in which blocks of the mean size would be as many
       double blocks = 0.0, extent_left = body_.extent();
-      for_each_block(along_->owners(), [&](int grain, bool is_one) {
+      for_each_block(along_->owners(), [&](int stone, bool is_one) {
         ++blocks;
-        extent_left -= is_one ? extent(grains_[grain]) / power(sizes_.relative(grains_[grain].centre))
-                              : kBesideGrain<Dim> * power(spacing);
+        extent_left -= is_one ? extent(stones_[stone]) / power(sizes_.relative(stones_[stone].centre))
+                              : kBesideStone<Dim> * power(spacing);
       });
       return blocks + std::max(0.0, extent_left / power(spacing)) > room;
     };
@@ -156,28 +156,28 @@ class Following {
       (too_many(middle) ? low : high) = middle;
     }
     if (too_many(high))
-      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} grains: take more",
+      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} stones: take more",
                               parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
-                              grains_.size()));
+                              stones_.size()));
     return high;
   }
 
   const BlockParameters& parameters_;
-  std::span<const Grain<Dim>> grains_;
+  std::span<const Stone<Dim>> stones_;
   const OutlineOf<Dim>& body_;
   const OutlineSeeds* outline_;
   const BlockSizes& sizes_;
   std::vector<WayToFollow> ways_;
-  std::vector<double> aim_;  ///< extent of the blocks of each grain before they are regularised, over its own
+  std::vector<double> aim_;  ///< extent of the blocks of each stone before they are regularised, over its own
   double spacing_ = 0.0;     ///< mean distance of seeds along surfaces, m
-  std::optional<GrainSeeds<Dim>> along_;
+  std::optional<StoneSeeds<Dim>> along_;
 };
 
-/// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
+/// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of stones,
 /// then the free ones.
 class SeedDraw {
  public:
-  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Grain<2>> grains,
+  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Stone<2>> stones,
            Random& random)
       : parameters_(parameters),
         region_(region),
@@ -192,23 +192,23 @@ class SeedDraw {
     seeds.position = outline_.positions();
     seeds.radius = outline_.radii();
     owner_.assign(kept_, -1);
-    if (!grains.empty()) {
-      following_.emplace(parameters, grains, region, &outline_, sizes_);
+    if (!stones.empty()) {
+      following_.emplace(parameters, stones, region, &outline_, sizes_);
       add_along();
     }
     fill_up();
   }
 
-  /// Draws the seeds of unfit blocks anew. A seed along a grain whose cell is empty, or stays unfit, gives
-  /// way. Where the outline asks for a seed, or a grain does, the free seed nearest to it is drawn anew
+  /// Draws the seeds of unfit blocks anew. A seed along a stone whose cell is empty, or stays unfit, gives
+  /// way. Where the outline asks for a seed, or a stone does, the free seed nearest to it is drawn anew
   /// instead. A radius stays with its seed, or the cells of small radii would die out.
   /// \param unfit  seeds, ascending
   void redraw(const std::vector<int>& unfit, bool are_empty, int round) {
     std::vector<std::size_t> numbers;
     for (auto seed = unfit.rbegin(); seed != unfit.rend(); ++seed) {  // Clang 14 cannot do views::reverse
       const auto number = static_cast<std::size_t>(*seed);
-      const bool is_of_grain = number >= outline_.positions().size() && number < kept_;
-      if (is_of_grain && (are_empty || round >= kGivesWay)) {
+      const bool is_of_stone = number >= outline_.positions().size() && number < kept_;
+      if (is_of_stone && (are_empty || round >= kGivesWay)) {
         drop(number);
         for (std::size_t& other : numbers) --other;
       } else {
@@ -219,9 +219,9 @@ class SeedDraw {
     fill_up();
   }
 
-  /// Corrects how grains are followed, see Following::correct. Tells whether that changed.
+  /// Corrects how stones are followed, see Following::correct. Tells whether that changed.
   bool correct(const Blocks<2>& blocks) {
-    if (!following_ || !following_->correct(blocks.cells, blocks.grain)) return false;
+    if (!following_ || !following_->correct(blocks.cells, blocks.stone)) return false;
     const auto first_free = static_cast<std::ptrdiff_t>(kept_);
     const Seeds<2> free{{seeds.position.begin() + first_free, seeds.position.end()},
                         {seeds.radius.begin() + first_free, seeds.radius.end()}};
@@ -242,17 +242,17 @@ class SeedDraw {
   std::size_t kept() const { return kept_; }
   const BlockSizes& sizes() const { return sizes_; }
 
-  /// Returns the grain of each seed, index into the grains, -1: of none; empty where blocks do not follow
-  /// grains.
+  /// Returns the stone of each seed, index into the stones, -1: of none; empty where blocks do not follow
+  /// stones.
   std::vector<int> owners(const std::vector<Vec<2>>& positions) const {
     if (!following_) return {};
     std::vector<int> result = owner_;
     for (std::size_t i = kept_; i < positions.size(); ++i)
-      result.push_back(following_->along().grain_at(positions[i]));
+      result.push_back(following_->along().stone_at(positions[i]));
     return result;
   }
 
-  bool is_one_cell(int grain) const { return following_->along().is_one_cell(grain); }
+  bool is_one_cell(int stone) const { return following_->along().is_one_cell(stone); }
 
   Seeds<2> seeds;
 
@@ -298,7 +298,7 @@ class SeedDraw {
   }
 
   void add_along() {
-    const GrainSeeds<2>& along = following_->along();
+    const StoneSeeds<2>& along = following_->along();
     seeds.position.insert(seeds.position.end(), along.positions().begin(), along.positions().end());
     seeds.radius.insert(seeds.radius.end(), along.radii().begin(), along.radii().end());
     owner_.insert(owner_.end(), along.owners().begin(), along.owners().end());
@@ -312,7 +312,7 @@ class SeedDraw {
   }
 
   Vec<2> free_position() {
-    double clear = kClearOfGrains;
+    double clear = kClearOfStones;
     for (int attempt = 1; attempt <= kAttempts; ++attempt) {
       const Vec<2> position = places_ ? places_->draw(random_) : anywhere();
       if (attempt % kAttemptsAtOneDistance == 0) clear = std::max(kLeastClear, clear - 0.05);
@@ -332,8 +332,8 @@ class SeedDraw {
   std::optional<PlaceDraw<2>> places_;  ///< where blocks are not alike
   OutlineSeeds outline_;
   std::optional<Following<2>> following_;
-  std::vector<int> owner_;  ///< grain of each seed that is kept, -1: of none
-  std::size_t kept_ = 0;    ///< number of seeds that the outline and grains ask for
+  std::vector<int> owner_;  ///< stone of each seed that is kept, -1: of none
+  std::size_t kept_ = 0;    ///< number of seeds that the outline and stones ask for
 };
 
 /// Returns the name of the side of the outline that is nearest to a point.
@@ -344,29 +344,29 @@ std::string side_near(const Region& region, const Vec<2>& point) {
   return region.sides()[nearest->side].name;
 }
 
-/// Makes one cell of the cells of each small grain, where it is convex. Cells keep their order by their first
+/// Makes one cell of the cells of each small stone, where it is convex. Cells keep their order by their first
 /// one.
-/// \param grain  grain of each cell; follows
+/// \param stone  stone of each cell; follows
 /// \param seed   seed of each cell; follows
-void unite_small_grains(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& grain,
+void unite_small_stones(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& stone,
                         std::vector<int>& seed) {
   std::map<int, std::vector<int>> small;
-  for (std::size_t c = 0; c < grain.size(); ++c)
-    if (grain[c] >= 0 && draw.is_one_cell(grain[c])) small[grain[c]].push_back(static_cast<int>(c));
+  for (std::size_t c = 0; c < stone.size(); ++c)
+    if (stone[c] >= 0 && draw.is_one_cell(stone[c])) small[stone[c]].push_back(static_cast<int>(c));
   std::vector<std::vector<int>> groups;
   for (auto& [number, cells] : small) groups.push_back(std::move(cells));
   const std::vector<int> before = unite(tessellation, groups);
   for (std::size_t c = 0; c < before.size(); ++c) {
-    grain[c] = grain[before[c]];
+    stone[c] = stone[before[c]];
     seed[c] = seed[before[c]];
   }
-  grain.resize(before.size());
+  stone.resize(before.size());
   seed.resize(before.size());
 }
 
 Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& region,
-                               std::span<const Grain<2>> grains, Random& random, Team* team) {
-  SeedDraw draw(parameters, region, grains, random);
+                               std::span<const Stone<2>> stones, Random& random, Team* team) {
+  SeedDraw draw(parameters, region, stones, random);
   Blocks<2> blocks{};
   std::optional<Blocks<2>> fit;
   int corrections = 0;
@@ -380,8 +380,8 @@ Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& 
     if (!are_empty) {
       std::vector<int> seed(seeds.position.size());
       std::iota(seed.begin(), seed.end(), 0);
-      blocks.grain = draw.owners(seeds.position);
-      if (!grains.empty()) unite_small_grains(draw, result.cells, blocks.grain, seed);
+      blocks.stone = draw.owners(seeds.position);
+      if (!stones.empty()) unite_small_stones(draw, result.cells, blocks.stone, seed);
       const RegularisedCells done =
           regularise(result.cells, region, {parameters.shortest_edge}, draw.sizes());
       blocks.cells = std::move(result.cells);
@@ -424,7 +424,7 @@ constexpr int kTriesAtOneDistance = 500;
 /// the body.
 class FollowingSeeds {
  public:
-  FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Grain<3>> stones,
+  FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Stone<3>> stones,
                  const BlockSizes& sizes, Random& random)
       : parameters_(parameters),
         body_(body),
@@ -489,12 +489,12 @@ class FollowingSeeds {
     sort();
   }
 
-  const GrainSeeds<3>& along() const { return following_.along(); }
+  const StoneSeeds<3>& along() const { return following_.along(); }
 
   SpacedSeedDraw free_draw(const std::vector<Vec<3>>& standing) {
     SpacedSeedDraw draw(body_, sizes_, random_, [this](const Vec<3>& place, int tried) {
       return along().leave_room_at(
-          place, std::max(kLeastClear, kClearOfGrains - 0.05 * (tried / kTriesAtOneDistance)));
+          place, std::max(kLeastClear, kClearOfStones - 0.05 * (tried / kTriesAtOneDistance)));
     });
     for (const Vec<3>& place : standing) draw.add(place);
     return draw;
@@ -512,7 +512,7 @@ class FollowingSeeds {
     const double spread = parameters_.radius_spread;
     seeds.position[i] = place;
     seeds.radius[i] = 0.5 * sizes_.at(place) * random_.uniform(1.0 - spread, 1.0 + spread);
-    owner[i] = along().grain_at(place);
+    owner[i] = along().stone_at(place);
   }
 
   void sort() {
@@ -547,10 +547,10 @@ void add_sizes(const BlockSizes& sizes, Blocks<Dim>& blocks) {
 }  // namespace
 
 Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team,
-                      std::span<const Grain<2>> grains) {
+                      std::span<const Stone<2>> stones) {
   Blocks<2> blocks{};
   if (!parameters.cells) {
-    blocks = tessellate_until_fit(parameters, region, grains, random, team);
+    blocks = tessellate_until_fit(parameters, region, stones, random, team);
     require_valid(blocks.cells, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
     blocks.cells = *parameters.cells;
@@ -558,18 +558,18 @@ Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, R
     blocks.done.vertices_merged = done.vertices_merged;
     blocks.done.edges_left_short = done.edges_left_short;
   }
-  const std::vector<int> grain = std::exchange(blocks.grain, {});
+  const std::vector<int> stone = std::exchange(blocks.stone, {});
   const BlockSizes sizes = sizes_of<2>(parameters, region);
   for (const std::size_t before : number_along_curve(blocks.cells, region.box())) {
     if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
-    if (!grain.empty()) blocks.grain.push_back(grain[before]);
+    if (!stone.empty()) blocks.stone.push_back(stone[before]);
   }
   add_sizes(sizes, blocks);
   return blocks;
 }
 
 Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random, Team* team,
-                      std::span<const Grain<3>> stones) {
+                      std::span<const Stone<3>> stones) {
   const BlockSizes sizes = sizes_of<3>(parameters, body);
   std::optional<FollowingSeeds> following;
   if (!stones.empty()) following.emplace(parameters, body, stones, sizes, random);
@@ -597,11 +597,11 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
       ++corrections;
       continue;
     }
-    if (following) blocks.grain = following->owner;
+    if (following) blocks.stone = following->owner;
     if (parameters.shortest_edge > 0.0) {
       const auto regular =
           regularise(result.cells, body, result.plane, {parameters.shortest_edge, parameters.largest_bend},
-                     sizes, blocks.grain);
+                     sizes, blocks.stone);
       blocks.done.vertices_merged = regular.vertices_merged;
       blocks.done.edges_left_short = regular.edges_left_short;
       require_valid(result.cells, body, what);

@@ -35,7 +35,7 @@ using FileOfCells = std::variant<GivenCells<2>, GivenCells<3>>;
 /// \param to_metres  empty: m is the only unit
 /// \param join       distance below which vertices are joined, m; 0: none
 FileOfCells read_cells(const std::filesystem::path& file, const ToMetres& to_metres = {}, double join = 0.0);
-/// Reads cells from a text; `name` takes the file's place in messages.
+/// Reads cells from a text; `name` takes the file's place in messages; it may be empty.
 FileOfCells cells_from(const std::string& text, const std::string& name, const ToMetres& to_metres = {},
                        double join = 0.0);
 

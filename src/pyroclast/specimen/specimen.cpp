@@ -15,17 +15,17 @@
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/superposition.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Way out of a message about a notch in a grain.
+/// Way out of a message about a notch in a stone.
 constexpr std::string_view kOnlyCircles = ": notches cut through circles alone, so an outline must end there";
 /// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
@@ -99,12 +99,12 @@ void require_valid(const SpecimenParameters& p) {
 
 namespace {
 
-/// Returns the end of a message that names the side or notch on which a grain with an outline lies; empty
+/// Returns the end of a message that names the side or notch on which a stone with an outline lies; empty
 /// where it lies on none.
-std::string side_under(const Grain<2>& grain, const Region& region, double tolerance) {
-  if (!grain.shape) return {};
+std::string side_under(const Stone<2>& stone, const Region& region, double tolerance) {
+  if (!stone.shape) return {};
   const auto told = [&](const Side& side, const Vec<2>& from, const Vec<2>& to) {
-    if (!are_closer(grain, from, to, -tolerance)) return std::string();
+    if (!are_closer(stone, from, to, -tolerance)) return std::string();
     return fmt::format(", but on \"{}\"{}", side.name, side.is_cut ? kOnlyCircles : "");
   };
   for (const auto& [from, to, side] : region.pieces())
@@ -117,36 +117,36 @@ std::string side_under(const Grain<2>& grain, const Region& region, double toler
 }
 
 /// Nothing that a stone in space lies on is named yet.
-std::string side_under(const Grain<3>& /*stone*/, const Prism& /*body*/, double /*tolerance*/) {
+std::string side_under(const Stone<3>& /*stone*/, const Prism& /*body*/, double /*tolerance*/) {
   return {};
 }
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 template <int Dim>
 void add_listed(const AggregateParameters& asked, int kind, Specimen<Dim>& specimen) {
-  const auto* const listed = std::get_if<std::vector<Stone<Dim>>>(&asked.stones);
+  const auto* const listed = std::get_if<std::vector<KnownStone<Dim>>>(&asked.stones);
   if (!listed) throw Error(fmt::format("{}: the stones belong to another dimension", asked.place));
   const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_blocks(specimen.outline);
-  GrainGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
-  for (const Grain<Dim>& stone : specimen.stones) grid.insert(stone);
-  std::vector<Grain<Dim>> stones;
-  for (const Stone<Dim>& stone : *listed) {
-    const double tolerance = kTouching * stone.diameter;
+  StoneGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
+  for (const Stone<Dim>& stone : specimen.stones) grid.insert(stone);
+  std::vector<Stone<Dim>> stones;
+  for (const KnownStone<Dim>& known : *listed) {
+    const double tolerance = kTouching * known.diameter;
     const auto fail = [&](std::string_view what) {
       std::vector<std::string> at;
-      for (const double x : stone.centre.c) at.push_back(fmt::format("{:.6g}", 1e3 * x));
-      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({}) mm {}", asked.place, stone.place,
-                              1e3 * stone.diameter, fmt::join(at, ", "), what));
+      for (const double x : known.centre.c) at.push_back(fmt::format("{:.6g}", 1e3 * x));
+      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({}) mm {}", asked.place, known.place,
+                              1e3 * known.diameter, fmt::join(at, ", "), what));
     };
-    const Grain<Dim> grain{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
-                           stone.shape};
-    if (!lies_within(grain, stone.shape ? of_shapes : of_round, -tolerance))
-      fail("does not lie in the specimen, all of it" + side_under(grain, specimen.outline, tolerance));
-    if (grid.overlaps(grain, -tolerance)) fail("lies on another: stones may touch, and not overlap");
-    grid.insert(grain);
-    stones.push_back(grain);
+    const Stone<Dim> stone{known.centre, known.diameter, place_in(specimen.phases, known.phase), kind,
+                           known.shape};
+    if (!lies_within(stone, stone.shape ? of_shapes : of_round, -tolerance))
+      fail("does not lie in the specimen, all of it" + side_under(stone, specimen.outline, tolerance));
+    if (grid.overlaps(stone, -tolerance)) fail("lies on another: stones may touch, and not overlap");
+    grid.insert(stone);
+    stones.push_back(stone);
   }
-  std::ranges::stable_sort(stones, std::greater<>(), &Grain<Dim>::diameter);
+  std::ranges::stable_sort(stones, std::greater<>(), &Stone<Dim>::diameter);
   specimen.stones.insert(specimen.stones.end(), stones.begin(), stones.end());
 }
 
@@ -157,7 +157,7 @@ void add_stones(const AggregateParameters& asked, int kind, Random& random, Spec
   if (asked.are_known()) return add_listed(asked, kind, specimen);
   if (asked.fraction == 0.0) return;
   draw_and_place(
-      asked.shape.kind == GrainShape::circle ? room_in(specimen.outline) : room_of_blocks(specimen.outline),
+      asked.shape.kind == StoneShape::circle ? room_in(specimen.outline) : room_of_blocks(specimen.outline),
       asked, place_in(specimen.phases, asked.phase), kind, random, specimen.stones);
 }
 
@@ -179,7 +179,7 @@ void add_inclusions(const SpecimenParameters& p, Random& random, Specimen<Dim>& 
     else if constexpr (Dim == 2)
       add_fibres(std::get<FibreParameters>(inclusions), random, specimen);
   specimen.fraction_placed =
-      extent_of(std::span<const Grain<Dim>>(specimen.stones)) / specimen.outline.extent();
+      extent_of(std::span<const Stone<Dim>>(specimen.stones)) / specimen.outline.extent();
   const auto kinds = stone_kinds(p);
   const auto with_largest = std::ranges::max_element(
       kinds, {}, [](const auto* asked) { return asked->fraction > 0.0 ? asked->d_min : 0.0; });
@@ -212,9 +212,9 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
   const auto kinds = stone_kinds(p);
   const double whole = specimen.outline.extent();
   std::vector<double> superposed(specimen.stones.size());
-  for (std::size_t cell = 0; cell < specimen.grain.size(); ++cell)
-    if (const int grain = specimen.grain[cell]; grain >= 0)
-      superposed[grain] += extent(specimen.cells, cell) / whole;
+  for (std::size_t cell = 0; cell < specimen.stone.size(); ++cell)
+    if (const int stone = specimen.stone[cell]; stone >= 0)
+      superposed[stone] += extent(specimen.cells, cell) / whole;
   std::vector<SizeClass> classes;
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     const auto& asked = *kinds[kind];
@@ -225,7 +225,7 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
       its.asked = asked.fraction * (passing(asked, to) - passing(asked, from));
       const bool is_last = i + 1 == asked.sieves.size();
       for (std::size_t b = 0; b < specimen.stones.size(); ++b) {
-        const Grain<3>& ball = specimen.stones[b];
+        const Stone<3>& ball = specimen.stones[b];
         if (ball.kind != kind || ball.diameter < from || (is_last ? ball.diameter > to : ball.diameter >= to))
           continue;
         ++its.stones;
@@ -296,7 +296,7 @@ double SpecimenParameters::largest_block_size() const {
 }
 
 bool has_shapes(const AggregateParameters& kind) {
-  if (!kind.are_known()) return kind.shape.kind != GrainShape::circle;
+  if (!kind.are_known()) return kind.shape.kind != StoneShape::circle;
   return std::visit(
       [](const auto& list) {
         return std::ranges::any_of(list, [](const auto& stone) { return stone.shape != nullptr; });
@@ -329,8 +329,8 @@ std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) 
   std::vector<std::string> names;
   if (parameters.is_of_file()) {
     of_cells(parameters, [&](const auto& given) {
-      for (std::size_t cell = 0; cell < given.grain.size(); ++cell)
-        if (given.grain[cell] >= 0) add_once(given.phases[given.phase[cell]], names);
+      for (std::size_t cell = 0; cell < given.stone.size(); ++cell)
+        if (given.stone[cell] >= 0) add_once(given.phases[given.phase[cell]], names);
     });
   } else if (parameters.blocks.phases.empty()) {
     for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
@@ -343,7 +343,7 @@ std::vector<std::string> warnings(const Specimen<2>& s) {
   if (s.fraction_placed == 0.0) return {};
   const double change = s.fraction_of_stones / s.fraction_placed - 1.0;
   if (std::abs(change) <= kSmallChange) return {};
-  // blocks that follow grains have no covered fraction
+  // blocks that follow stones have no covered fraction
   const char* const remedy =
       s.covered_fraction > 0.0 ? "more blocks, or [superposition] rule = \"fit\"" : "more blocks";
   return {
@@ -405,34 +405,34 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, Team* team) {
   Specimen<Dim> specimen{.outline = outline, .phases = phases(p)};
   add_inclusions(p, aggregate_random, specimen);
 
-  const std::span<const Grain<Dim>> stones(specimen.stones);
+  const std::span<const Stone<Dim>> stones(specimen.stones);
   const bool follows = p.superposition == Superposition::follow;
   Blocks<Dim> blocks =
-      make_blocks(p.blocks, outline, block_random, team, follows ? stones : std::span<const Grain<Dim>>());
+      make_blocks(p.blocks, outline, block_random, team, follows ? stones : std::span<const Stone<Dim>>());
   specimen.cells = std::move(blocks.cells);
   specimen.size = std::move(blocks.size);
   if (blocks.phase.empty()) {
     const int matrix = specimen.matrix = place_in(specimen.phases, p.matrix);
     if (follows) {
-      specimen.grain = std::move(blocks.grain);
-      specimen.grain.resize(specimen.cells.cells.size(), -1);
-      for (const int grain : specimen.grain)
-        specimen.phase.push_back(grain < 0 ? matrix : specimen.stones[grain].phase);
+      specimen.stone = std::move(blocks.stone);
+      specimen.stone.resize(specimen.cells.cells.size(), -1);
+      for (const int stone : specimen.stone)
+        specimen.phase.push_back(stone < 0 ? matrix : specimen.stones[stone].phase);
     } else {
       Superposed superposed = superpose<Dim>(specimen.cells, outline, stones, p, matrix);
       specimen.covered_fraction = superposed.covered_fraction;
       specimen.phase = std::move(superposed.phase);
-      specimen.grain = std::move(superposed.grain);
+      specimen.stone = std::move(superposed.stone);
     }
     specimen.fraction_of_stones = share_beside_matrix(specimen);
-    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.grain);
+    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.stone);
     specimen.fraction_superposed = share_beside_matrix(specimen);
   } else {
     specimen.phase = std::move(blocks.phase);
   }
   if constexpr (Dim == 3) {
     const BlockSizes sizes = sizes_of<3>(p.blocks, outline);
-    specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Grain<3>& stone) {
+    specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Stone<3>& stone) {
       return stone.diameter < kSmallestStone * sizes.at(stone.centre);
     }));
     specimen.classes = classes_of(p, specimen);

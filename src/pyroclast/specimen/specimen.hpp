@@ -23,12 +23,12 @@ inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
 /// Aggregate as placed, before blocks take its place: a circle, in a solid a ball, or a shape of its own.
 template <int Dim>
-struct Grain {
+struct Stone {
   Vec<Dim> centre;  ///< m
   /// Diameter, m; of another shape its width: the sieve that it passes.
   double diameter;
   int phase = 0;  ///< index into the specimen's phases
-  int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are grains, in turn
+  int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are stones, in turn
   std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
 
@@ -40,17 +40,17 @@ struct Fibre {
 
 /// Stone that is known, read from a list.
 template <int Dim>
-struct Stone {
+struct KnownStone {
   Vec<Dim> centre;    ///< m
-  double diameter;    ///< m, as of a grain
+  double diameter;    ///< m, as of a stone
   std::string phase;  ///< phase of the stone
   std::string place;  ///< place that states the stone, "stones.csv:7", for errors
   std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
 /// Stones that are known, of a plane or of a solid.
-using KnownStones = std::variant<std::vector<Stone<2>>, std::vector<Stone<3>>>;
+using KnownStones = std::variant<std::vector<KnownStone<2>>, std::vector<KnownStone<3>>>;
 
-enum class GrainShape : std::uint8_t {
+enum class StoneShape : std::uint8_t {
   circle,    ///< a ball in a solid
   ellipse,   ///< an ellipse of this elongation, in a solid an ellipsoid
   polygon,   ///< convex, with corners at random on an ellipse (Wang, Kwan and Chan 1999); so in a solid
@@ -63,9 +63,9 @@ struct Spread {
   double low, high;
 };
 
-/// Shapes of grains asked for.
+/// Shapes of stones asked for.
 struct ShapeParameters {
-  GrainShape kind = GrainShape::circle;
+  StoneShape kind = StoneShape::circle;
   Spread elongation{1.0, 1.0};                ///< length over width
   Spread flatness{1.0, 1.0};                  ///< in a solid: width over thickness
   Spread orientation{0.0, std::numbers::pi};  ///< angle of the length from the x axis, radians
@@ -116,7 +116,7 @@ enum class Superposition : std::uint8_t {
   area,      ///< a block is aggregate where circles cover more than a stated fraction of it
   fit,       ///< a block is aggregate above the fraction by which the blocks take the area of the circles
   centroid,  ///< a block is of the aggregate in whose circle its centroid lies
-  follow     ///< nothing is superposed: blocks follow the surfaces of grains, by mirrored seeds
+  follow     ///< nothing is superposed: blocks follow the surfaces of stones, by mirrored seeds
 };
 
 /// Largest bend that may be allowed to the faces between blocks of a solid, rad: triangles of a face that is
@@ -152,7 +152,7 @@ struct GivenCells {
   std::vector<std::string> phases;  ///< phases that the blocks can have
   std::vector<int> phase;           ///< phase of each block, index into `phases`
   std::vector<double> size = {};    ///< size that each block was to have, m; empty where blocks are alike
-  std::vector<int> grain = {};  ///< number of the stone of each block; -1: none. Empty where none are known
+  std::vector<int> stone = {};  ///< number of the stone of each block; -1: none. Empty where none are known
   OutlineOf<Dim> outline = {};  ///< outline of all cells together; in the plane `completed` finds it
   std::string origin = {};      ///< text that begins messages, such as the name of a file; may be empty
 };
@@ -268,10 +268,10 @@ struct Specimen {
   std::vector<int> phase = {};           ///< phase of each cell, index into `phases`
   /// Stone of which each cell is, index into `stones` where these are known; -1: of none. May be empty where
   /// cells are made elsewhere.
-  std::vector<int> grain = {};
+  std::vector<int> stone = {};
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
   std::vector<double> size = {};
-  std::vector<Grain<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
+  std::vector<Stone<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
   std::vector<Fibre> fibres = {};       ///< fibres as placed
   /// Share of stones asked for and placed, and of blocks that are not matrix.
   double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
