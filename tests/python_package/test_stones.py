@@ -43,7 +43,7 @@ class Outlines(unittest.TestCase):
 
     def test_image(self):
         angle = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)
-        exact = stones.Stone(harmonic_stone(angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
+        exact = stones.FlatStone(harmonic_stone(angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
         stone, = stones.stones_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm")
         self.assertAlmostEqual(stone.area / exact.area, 1.0, delta=0.01)
         self.assertAlmostEqual(stone.perimeter / exact.perimeter, 1.0, delta=0.01)

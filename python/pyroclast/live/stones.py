@@ -24,7 +24,7 @@ _FEWEST_POINTS = 6
 
 
 @dataclass(frozen=True)
-class Stone:
+class FlatStone:
     """Stone in the plane by the points of its outline."""
 
     outline: NDArray[np.float64]
@@ -44,7 +44,7 @@ class Stone:
 
 
 def stones_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low: Sequence[str | Quantity],
-                       high: Sequence[str | Quantity], spacing: str | Quantity, phase: int = 0) -> list[Stone]:
+                       high: Sequence[str | Quantity], spacing: str | Quantity, phase: int = 0) -> list[FlatStone]:
     """Makes stones where a signed distance is negative: a line around each, its holes filled.
 
     distance: takes places (n, 2) in m and returns n distances, negative within a stone, in any unit. It is asked once,
@@ -95,7 +95,7 @@ def _distances(values: NDArray[Any], places: NDArray[np.float64]) -> NDArray[np.
 
 
 def _stones_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArray[np.float64],
-                  phase: int) -> list[Stone]:
+                  phase: int) -> list[FlatStone]:
     """Returns the stones where values on a grid are negative. Raises Error where they are on its edge."""
     on_edge = np.ones(values.shape, bool)
     on_edge[1:-1, 1:-1] = False
@@ -107,7 +107,7 @@ def _stones_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArra
                     "Either a stone reaches out of the box: make the box larger. Or the distance is positive within "
                     "stones: give its negative, lambda places: -distance(places)")
     found = _outlines_below(x, y, values)
-    stones = [Stone(outline, phase) for outline in found if len(outline) >= _FEWEST_POINTS]
+    stones = [FlatStone(outline, phase) for outline in found if len(outline) >= _FEWEST_POINTS]
     if len(stones) < len(found):
         places = [outline.mean(axis=0) for outline in found if len(outline) < _FEWEST_POINTS]
         warnings.warn(f"{len(places)} stone{' is' if len(places) == 1 else 's are'} too small for the spacing and left "
@@ -117,7 +117,7 @@ def _stones_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArra
 
 
 def stones_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, matrix: int = 0,
-                     phases: Mapping[Any, int | None] | None = None) -> list[Stone]:
+                     phases: Mapping[Any, int | None] | None = None) -> list[FlatStone]:
     """Makes stones of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own
     area.
 
@@ -158,7 +158,7 @@ def stones_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, ma
     return [_stone_of_shape(shapes, number, part, side) for number, part in enumerate(kept, 1)]
 
 
-def write_stones(file: str | Path, stones: Sequence[Stone]) -> None:
+def write_stones(file: str | Path, stones: Sequence[FlatStone]) -> None:
     """Writes stones as the table that `[aggregates.outlines] csv` of a deck reads."""
     lines = ["grain,x_m,y_m,phase"]
     for number, stone in enumerate(stones):
@@ -276,7 +276,7 @@ def _smoothed(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
     return smoothed
 
 
-def _stone_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: float) -> Stone:
+def _stone_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: float) -> FlatStone:
     """Returns the stone of a part: its outline moves evenly until its area is that of its pixels. Beside another stone
     it stays on the line in the middle between both, which both have.
     """
@@ -305,7 +305,7 @@ def _stone_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: f
 
     # a stone among others has no room for more than its pixels
     moved = optimize.brentq(excess, -most, most, xtol=1e-6) if excess(-most) < 0.0 < excess(most) else 0.0
-    return Stone(side * outline(moved), part.phase)
+    return FlatStone(side * outline(moved), part.phase)
 
 
 def _within_image(fields: NDArray[np.float64], axis: int, first: int,

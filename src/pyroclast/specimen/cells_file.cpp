@@ -148,7 +148,7 @@ GivenCells<Dim> given_in(const Json& json, const ToMetres& to_metres) {
   given.phase = list_in(json, "phase", "the number of a phase, from 0", number_in<>);
   if (json.contains(size)) given.size = list_in(json, size, "a size in " + unit, value_in<double>);
   if (json.contains(kStone))
-    given.grain = list_in(json, kStone, "the number of a stone, from 0, or -1 for none", number_in<-1>);
+    given.stone = list_in(json, kStone, "the number of a stone, from 0, or -1 for none", number_in<-1>);
   if constexpr (Dim == 3) given.outline = body_in(json, given.cells.cells.size());
   if (!in_metres) return given;
   for (Vec<Dim>& vertex : given.cells.vertices)
@@ -194,7 +194,7 @@ std::string cells_text(const Specimen<Dim>& specimen) {
   json["cells"] = specimen.cells.cells;
   json["phase"] = specimen.phase;
   if (!specimen.size.empty()) json["block_size_m"] = specimen.size;
-  if (!specimen.grain.empty()) json[kStone] = specimen.grain;
+  if (!specimen.stone.empty()) json[kStone] = specimen.stone;
   return json.dump() + "\n";
 }
 
@@ -207,6 +207,7 @@ FileOfCells read_cells(const std::filesystem::path& file, const ToMetres& to_met
 
 FileOfCells cells_from(const std::string& text, const std::string& name, const ToMetres& to_metres,
                        double join) {
+  const std::string begin = name.empty() ? "" : name + ": ";
   const auto completed_in = [&]<int Dim>(GivenCells<Dim> given) {
     given.origin = name;
     return completed(std::move(given), join);
@@ -218,14 +219,14 @@ FileOfCells cells_from(const std::string& text, const std::string& name, const T
     return completed_in(given_in<2>(json, to_metres));
   } catch (const Json::parse_error& error) {
     throw Error(fmt::format(
-        "{}: is not JSON, at byte {}: blocks made elsewhere come as JSON, to which the Python package turns "
+        "{}is not JSON, at byte {}: blocks made elsewhere come as JSON, to which the Python package turns "
         "arrays, meshes and images",
-        name, error.byte));
+        begin, error.byte));
   } catch (const Json::out_of_range& error) {  // the text is "[...] number overflow parsing '1e999'"
     const std::string_view what = error.what();
-    throw Error(fmt::format("{}: {}", name, what.substr(what.find(']') + 2)));
+    throw Error(fmt::format("{}{}", begin, what.substr(what.find(']') + 2)));
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", name, error.what()));
+    throw Error(begin + error.what());
   }
 }
 

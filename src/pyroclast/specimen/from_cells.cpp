@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -200,7 +199,7 @@ void require_lists(const GivenCells<Dim>& given) {
   };
   require_one_each(given.phase.size(), "phases");
   if (!given.size.empty()) require_one_each(given.size.size(), "sizes");
-  if (!given.grain.empty()) require_one_each(given.grain.size(), "stones");
+  if (!given.stone.empty()) require_one_each(given.stone.size(), "stones");
   for (std::size_t v = 0; v < given.cells.vertices.size(); ++v)
     if (!std::ranges::all_of(given.cells.vertices[v].c, [](double x) { return std::isfinite(x); }))
       throw Error(fmt::format("vertex {} (from 0) is not finite", v));
@@ -212,9 +211,9 @@ void require_lists(const GivenCells<Dim>& given) {
     if (!given.size.empty() && (!(given.size[c] > 0.0) || !std::isfinite(given.size[c])))
       throw Error(
           fmt::format("{} has the size {}; it must be greater than 0", number.cell(c), given.size[c]));
-    if (!given.grain.empty() && given.grain[c] < -1)
+    if (!given.stone.empty() && given.stone[c] < -1)
       throw Error(fmt::format("{} is of stone {}; the least number is 0, or -1 for none", number.cell(c),
-                              given.grain[c]));
+                              given.stone[c]));
   }
 }
 
@@ -241,57 +240,24 @@ void require_numbers(const std::vector<std::vector<int>>& lists, const char* ite
   }
 }
 
-/// Tells for each face of a cell whether it goes counter-clockwise seen from outside. A face that shares an
-/// edge with one before walks it the other way; then the volume tells in which sense all go.
-std::vector<bool> outward_faces(const Cells<3>& cells, std::size_t cell) {
-  const auto& faces = cells.cells[cell];
-  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, bool>>> at_edge;  // face, walks it upwards
-  const auto for_each_edge = [&](std::size_t i, auto f) {
-    const auto& loop = cells.faces[faces[i]].corners;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const int from = loop[k], to = loop[(k + 1) % loop.size()];
-      f(at_edge[std::minmax(from, to)], from < to);
-    }
-  };
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for_each_edge(i, [i](auto& its, bool is_up) { its.emplace_back(i, is_up); });
-  std::vector<bool> is_outward(faces.size(), true), is_known(faces.size());
-  std::vector<std::size_t> next{0};
-  is_known[0] = true;
-  while (!next.empty()) {
-    const std::size_t i = next.back();
-    next.pop_back();
-    for_each_edge(i, [&](const auto& its, bool is_up) {
-      for (const auto& [other, is_its_up] : its) {
-        if (is_known[other]) continue;
-        is_known[other] = true;
-        is_outward[other] = is_outward[i] == (is_its_up != is_up);
-        next.push_back(other);
-      }
-    });
-  }
-  double filled = 0.0;
-  const Vec<3>& origin = cells.vertices[cells.faces[faces[0]].corners[0]];
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto& loop = cells.faces[faces[i]].corners;
-    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec<3> a = cells.vertices[loop[0]] - origin, b = cells.vertices[loop[k]] - origin,
-                   c = cells.vertices[loop[k + 1]] - origin;
-      filled += dot(a, cross(b, c)) * (is_outward[i] ? 1.0 : -1.0);
-    }
-  }
-  if (filled < 0.0) is_outward.flip();
-  return is_outward;
-}
-
-/// Finds the cells on both sides of each face, and turns the faces of the surface outwards.
+/// Finds the cells on both sides of each face, and turns the faces of the surface outwards. A face goes
+/// counter-clockwise seen from outside of a convex cell where its area points away from the cell's middle.
 /// \param number  number of each face in the file
 void find_neighbours(Cells<3>& cells, const std::vector<int>& number) {
   std::vector<std::vector<std::pair<int, bool>>> cells_of(cells.faces.size());
   for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
-    const auto is_outward = outward_faces(cells, cell);
-    for (std::size_t i = 0; i < is_outward.size(); ++i)
-      cells_of[cells.cells[cell][i]].emplace_back(static_cast<int>(cell), is_outward[i]);
+    Vec<3> sum{};
+    double corners = 0.0;
+    for (const int f : cells.cells[cell])
+      for (const int v : cells.faces[f].corners) {
+        sum += cells.vertices[v];
+        ++corners;
+      }
+    for (const int f : cells.cells[cell]) {
+      const Facet<3>& face = cells.faces[f];
+      const Vec<3> away = cells.vertices[face.corners.front()] - sum * (1.0 / corners);
+      cells_of[f].emplace_back(static_cast<int>(cell), dot(area_vector(cells, face), away) > 0.0);
+    }
   }
   for (std::size_t f = 0; f < cells.faces.size(); ++f) {
     Facet<3>& face = cells.faces[f];
@@ -463,7 +429,7 @@ Specimen<Dim> specimen_from(GivenCells<Dim> given) {
                          .cells = std::move(given.cells),
                          .phases = std::move(given.phases),
                          .phase = std::move(given.phase),
-                         .grain = std::move(given.grain),
+                         .stone = std::move(given.stone),
                          .size = std::move(given.size)};
   measure(specimen);
   return specimen;
