@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .errors import DeckError as DeckError
     from .errors import Diagnostic as Diagnostic
     from .errors import Error as Error
-    from .live import grains as grains
+    from .live import stones as stones
     from .live import units as units
     from .live import volumes as volumes
     from .live.decks import Deck as Deck
@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from .study.study import Study as Study
 else:
     # Imported when first asked for: figures must not need the compiled part.
-    _MODULES = {"grains": "live.grains", "parallel": "parallel", "units": "live.units", "volumes": "live.volumes"}
+    _MODULES = {"stones": "live.stones", "parallel": "parallel", "units": "live.units", "volumes": "live.volumes"}
     _PLACES = {
         "_core": ("Body", "commit", "instruction_sets", "version"),
         "errors": ("DeckError", "Diagnostic", "Error"),

@@ -103,9 +103,7 @@ class Body:
 
 class Specimen:
     @staticmethod
-    def from_cells(vertices: NDArray[np.float64], corners: NDArray[np.int32], first: NDArray[np.int32],
-                   phases: Sequence[str], phase: NDArray[np.int32], block_size: Sequence[float],
-                   stone: NDArray[np.int32], join: float) -> Specimen: ...
+    def from_text(text: str, join: float) -> Specimen: ...
     @staticmethod
     def rectangle(width: float, height: float, count: int, shortest_edge: float, relaxation: int, radius_spread: float,
                   seed: int) -> Specimen: ...

@@ -12,7 +12,6 @@ MAY = {
     "base/team.cpp",  # counts of threads and whole nanoseconds
     "deck/toml_characters.cpp",  # levels of a text
     "mechanics/totals.cpp",  # entries of one ledger, each a chunked sum
-    "specimen/topology.cpp",  # geometry, before there is a body
     "thermal/conduction.cpp",  # parts of one node
 }
 

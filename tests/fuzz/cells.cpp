@@ -2,23 +2,37 @@
 
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
-#include "pyroclast/specimen/pieces.hpp"
 #include "targets.hpp"
 
 namespace pyroclast::fuzz {
+namespace {
+
+using namespace specimen;
+
+/// Makes a specimen of the cells of a text.
+template <int Dim>
+Specimen<Dim> made_of(const GivenCells<Dim>& read) {
+  Specimen<Dim> made = specimen_from(read);
+  require(made.outline.extent() > 0.0, "a specimen has an extent");
+  return made;
+}
+
+}  // namespace
 
 bool cells(std::string_view text) {
   takes([&] {  // joined, whatever they are
-    const auto file = specimen::cells_from(std::string(text), "cells.json");
-    const auto made = specimen::specimen_from(specimen::joined(file.cells, 1e-3));
-    require(made.outline.extent() > 0.0, "a specimen that is joined has an area");
+    std::visit([](const auto& read) { made_of(read); },
+               cells_from(std::string(text), "cells.json", {}, 1e-3));
   });
   return takes([&] {
-    const auto made = specimen::specimen_from(specimen::cells_from(std::string(text), "cells.json").cells);
-    require(made.outline.extent() > 0.0, "a specimen has an area");
-    require(specimen::cells_from(specimen::cells_text(made), "again.json").cells.cells.vertices ==
-                made.cells.vertices,
-            "what is written is read again");
+    std::visit(
+        []<int Dim>(const GivenCells<Dim>& read) {
+          const Specimen<Dim> made = made_of(read);
+          const auto again = std::get<GivenCells<Dim>>(cells_from(cells_text(made), "again.json"));
+          require(again.cells.vertices == made.cells.vertices && again.cells.cells == made.cells.cells,
+                  "what is written is read again");
+        },
+        cells_from(std::string(text), "cells.json"));
   });
 }
 

@@ -25,10 +25,8 @@ bool formula(std::string_view text);
 bool table(std::string_view text);
 /// A Neper tessellation of a domain of 2 x 1.
 bool tessellation(std::string_view text);
-/// A file with blocks that are made elsewhere.
+/// A file with blocks that are made elsewhere, in the plane or in space.
 bool cells(std::string_view text);
-/// A file with blocks in space.
-bool polyhedra(std::string_view text);
 /// A number with its unit.
 bool quantity(std::string_view text);
 /// A CSV file with a path of jumps.
@@ -47,13 +45,12 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 12> kTargets{{{"deck", deck},
+inline constexpr std::array<Target, 11> kTargets{{{"deck", deck},
                                                   {"changes", changes},
                                                   {"formula", formula},
                                                   {"table", table},
                                                   {"tessellation", tessellation},
                                                   {"cells", cells},
-                                                  {"polyhedra", polyhedra},
                                                   {"quantity", quantity},
                                                   {"jump_path", jump_path},
                                                   {"checkpoint", checkpoint},

@@ -32,7 +32,7 @@ inline Vec<2> turned(const Vec<2>& x, double angle) {
 inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint64_t seed,
                               double angle = 0.0) {
   specimen::SpecimenParameters p;
-  p.region = specimen::Region::rectangle(width, height);
+  p.outline = specimen::Region::rectangle(width, height);
   p.seed = seed;
   p.aggregates = {.fraction = 0.0,
                   .d_min = 0.1 * width,

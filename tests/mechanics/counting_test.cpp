@@ -124,7 +124,7 @@ std::vector<OfThread> operations_of_threads(const Mechanics<2>& m, int threads) 
   return all;
 }
 
-// Promise: all threads share a step evenly, platens too. 10 % is the grain of bundles and of faces that cross
+// Promise: all threads share a step evenly, platens too. 10 % is the stone of bundles and of faces that cross
 // in a body this small; the platens of one piece each would give the thread that has most 50 % more.
 TEST(Sweep, GivesEveryThreadAboutTheSameWork) {
   const ModelOf<2> model = between_platens(small_specimen(3000), 0.01, 0.5);

@@ -187,8 +187,8 @@ TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   const auto second = std::ranges::find_if(corners, [&](const Vec<2>& c) {
     return std::abs(std::atan2(c[1], c[0]) - (half - 0.5 * std::numbers::pi)) < 1e-9;
   });
-  p.region = specimen::Region::polygon(corners, {"rim"}, true)
-                 .with_patches(std::array{specimen::Patch{"strip_seat", corners[0], *second}});
+  p.outline = specimen::Region::polygon(corners, {"rim"}, true)
+                  .with_patches(std::array{specimen::Patch{"strip_seat", corners[0], *second}});
   p.seed = 1;
   p.blocks.count = 400;
   p.blocks.shortest_edge = 0.2;
@@ -204,8 +204,8 @@ TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
     seat += c.area;
   }
   double chords = 0.0;
-  for (const auto& piece : p.region.pieces())
-    if (p.region.sides()[piece.side].name == "strip_seat") chords += norm(piece.to - piece.from);
+  for (const auto& piece : p.region()->pieces())
+    if (p.region()->sides()[piece.side].name == "strip_seat") chords += norm(piece.to - piece.from);
   EXPECT_NEAR(seat, 0.5 * chords, 1e-9);
   EXPECT_NEAR(chords, 2.0 * radius * half, 2e-3 * chords);
   const Vec<2> pivot = body.position[body.set("strip_pivot").front()];

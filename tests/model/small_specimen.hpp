@@ -7,7 +7,7 @@ namespace pyroclast {
 /// A specimen of 50 mm x 100 mm that is made in no time.
 inline specimen::Specimen<2> small_specimen(int blocks = 300) {
   specimen::SpecimenParameters p;
-  p.region = specimen::Region::rectangle(0.05, 0.1);
+  p.outline = specimen::Region::rectangle(0.05, 0.1);
   p.seed = 2;
   p.aggregates = {.fraction = 0.3,
                   .d_min = 5e-3,

@@ -155,10 +155,10 @@ TEST(Setup, TakesTheSizeOfBlocksInThePlaceOfTheirNumber) {
   EXPECT_EQ(read(with(deck, "count = 5000", "size = \"3 mm\"")).specimen.blocks.count, 5000);
   const std::string disc = shipped_case("brazilian");
   const auto by_number = read(with(disc, "count = 2000", "count = 500")).specimen;
-  const double size = std::sqrt(by_number.region.extent() / 500);
+  const double size = std::sqrt(by_number.extent() / 500);
   const auto by_size = read(with(disc, "count = 2000", fmt::format("size = \"{:.12g} m\"", size))).specimen;
   EXPECT_EQ(by_size.blocks.count, 500);
-  EXPECT_EQ(by_size.region.pieces().size(), by_number.region.pieces().size());
+  EXPECT_EQ(by_size.region()->pieces().size(), by_number.region()->pieces().size());
   EXPECT_NE(message(with(deck, "count = 5000", "count = 5000\nsize = \"3 mm\"")).find("blocks.count"),
             std::string::npos);
   const std::string too_large = message(with(deck, "count = 5000", "size = \"1 m\""));
@@ -180,7 +180,7 @@ TEST(FinerBlocks, CountIsOfAllAndSizeOfThoseFarAway) {
   // 750 blocks of 10 mm; the fine strip alone has 99 mm x 24 mm / (4 mm)²
   EXPECT_GT(by_size.blocks.count, 750 + 100);
   EXPECT_LT(by_size.blocks.count, 750 + 400);
-  EXPECT_DOUBLE_EQ(by_size.block_size(), std::sqrt(by_size.region.extent() / by_size.blocks.count));
+  EXPECT_DOUBLE_EQ(by_size.block_size(), std::sqrt(by_size.extent() / by_size.blocks.count));
   const auto by_count = read(finer_beam(ligament, fmt::format("count = {}", by_size.blocks.count))).specimen;
   EXPECT_EQ(by_count.blocks.count, by_size.blocks.count);
   EXPECT_NEAR(by_count.blocks.largest_size, 10e-3, 0.02e-3);  // the count is rounded
@@ -206,8 +206,9 @@ TEST(FinerBlocks, StandNearWhateverHasAName) {
                            "distance = \"2 mm\"\n";
   const auto even = read(shipped_case("brazilian")).specimen,
              finer = read(with(disc, "count = 2000", "count = 5000")).specimen;
-  EXPECT_GT(finer.region.pieces().size(), 1.5 * even.region.pieces().size());  // sides follow the blocks
-  EXPECT_NEAR(finer.region.extent(), even.region.extent(), 1e-12);
+  EXPECT_GT(finer.region()->pieces().size(),
+            1.5 * even.region()->pieces().size());  // sides follow the blocks
+  EXPECT_NEAR(finer.extent(), even.extent(), 1e-12);
 }
 
 TEST(FinerBlocks, WrongOnesAreRefusedWithTheirPlace) {
@@ -444,7 +445,7 @@ TEST(Phases, StonesThatTouchMayHaveAnInterface) {
     return std::ranges::find(model.interface_names, name) - model.interface_names.begin();
   };
   // the lower platen is the first block
-  const auto stone = [&](int gridpoint) { return specimen.grain.at(model.block_of(gridpoint) - 1); };
+  const auto stone = [&](int gridpoint) { return specimen.stone.at(model.block_of(gridpoint) - 1); };
   int within = 0, between = 0;
   for (int i = 0; i < model.contact_count(); ++i) {
     const Joint& c = model.joint(i);

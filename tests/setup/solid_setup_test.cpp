@@ -14,7 +14,7 @@
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
-#include "pyroclast/specimen/grain_fit.hpp"
+#include "pyroclast/specimen/stone_fit.hpp"
 #include "stages/result_of.hpp"
 
 namespace pyroclast {
@@ -77,7 +77,7 @@ TEST(SolidDeck, OneLineMakesASolidOfADeckWithoutPlaces) {
     const auto setup = read(with(deck, "thickness = \"1 m\"", "depth = \"150 mm\""));
     EXPECT_EQ(setup.specimen.dimension(), 3) << name;
     EXPECT_NEAR(setup.specimen.extent(), 0.15 * 0.3 * 0.15, 1e-15) << name;
-    EXPECT_EQ(setup.specimen.sides(),
+    EXPECT_EQ(specimen::names_of(setup.specimen.sides()),
               (std::vector<std::string>{"bottom", "right", "top", "left", "front", "back"}));
   }
 }
@@ -86,11 +86,11 @@ TEST(SolidDeck, ACylinderHasTheAreaOfItsCircle) {
   const auto setup = read(cylinder());
   const double circle = 0.25 * std::numbers::pi * 0.15 * 0.15;
   EXPECT_NEAR(setup.specimen.extent(), circle * 0.3, 1e-12 * circle);
-  EXPECT_GE(setup.specimen.prism->section().pieces().size(), 24U);
-  EXPECT_EQ(setup.specimen.sides(), (std::vector<std::string>{"rim", "bottom", "top"}));
+  EXPECT_GE(setup.specimen.prism()->section().pieces().size(), 24U);
+  EXPECT_EQ(specimen::names_of(setup.specimen.sides()), (std::vector<std::string>{"rim", "bottom", "top"}));
   // of fine blocks the sides are about a block long
   const auto fine = read(with(cylinder(), "count = 60", "size = \"2 mm\""));
-  EXPECT_NEAR(0.15 * std::numbers::pi / fine.specimen.prism->section().pieces().size(), 2e-3, 5e-5);
+  EXPECT_NEAR(0.15 * std::numbers::pi / fine.specimen.prism()->section().pieces().size(), 2e-3, 5e-5);
 }
 
 TEST(SolidDeck, DiscsAndPolygonsAreDrawnOut) {
@@ -110,7 +110,7 @@ TEST(SolidDeck, DiscsAndPolygonsAreDrawnOut) {
       read(without_platens(of_shape("shape = \"polygon\"\ncorners = [[\"0 mm\", \"0 mm\"], [\"200 mm\", \"0 "
                                     "mm\"], [\"0 mm\", \"150 mm\"]]")));
   EXPECT_NEAR(triangle.specimen.extent(), 0.5 * 0.2 * 0.15 * 0.15, 1e-15);
-  EXPECT_EQ(triangle.specimen.sides().back(), "back");
+  EXPECT_EQ(triangle.specimen.sides().back().name, "back");
 }
 
 TEST(SolidDeck, BlocksAreToldByTheirNumberOrTheirSize) {
@@ -148,7 +148,7 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
       {with(solid(), "[blocks]", "[aggregates.outlines]\ncsv = \"a.csv\"\n\n[blocks]"),
        {"aggregates.outlines", "a solid takes surfaces"}},
       {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
-       {"aggregates.grain_shape.flatness", "grains of a solid"}},
+       {"aggregates.grain_shape.flatness", "stones of a solid"}},
       {with(solid(), "safety = 0.9", "safety = 0.9\nkinematics = \"finite\""),
        {"mechanics.kinematics", "kinematics = \"small\""}},
       {with(solid(), "safety = 0.9", "safety = 0.9\ncontacts = \"found\""),
@@ -262,7 +262,7 @@ TEST(SolidDeck, TheMiddleOfASeatMayHaveThreeCoordinates) {
     return with(deck, pair, fmt::format("at = [\"0 mm\", \"-75 mm\", \"{}\"]", z));
   };
   EXPECT_EQ(message(at("30 mm")), "no Error was thrown");
-  const auto sides = [](const std::string& of) { return read(of).specimen.sides(); };
+  const auto sides = [](const std::string& of) { return specimen::names_of(read(of).specimen.sides()); };
   EXPECT_EQ(sides(at("30 mm")), sides(deck));
   expect_in("bearings[0].at", message(at("10 mm")));
   expect_in("over all of the depth, so the z of its middle is 0.03 m; got 0.01 m", message(at("10 mm")));
@@ -423,8 +423,8 @@ TEST(FinerBlocksOfSolids, RoundBodiesHaveSidesAboutAsLongAsTheirBlocks) {
   const std::string sizes = "size = \"5 mm\"\ndistance = \"10 mm\"\n";
   const auto even = read(disc).specimen, fine = read(finer(disc, "near = \"upper_strip\"", sizes)).specimen;
   EXPECT_NEAR(fine.extent(), even.extent(), 1e-12);
-  const auto sides_above = [](const AskedSpecimen& specimen, double height) {
-    return std::ranges::count_if(specimen.prism->section().pieces(), [&](const specimen::Piece& piece) {
+  const auto sides_above = [](const specimen::SpecimenParameters& specimen, double height) {
+    return std::ranges::count_if(specimen.prism()->section().pieces(), [&](const specimen::Piece& piece) {
       return height > 0.0 ? piece.from[1] > height : piece.from[1] < height;
     });
   };
@@ -432,7 +432,7 @@ TEST(FinerBlocksOfSolids, RoundBodiesHaveSidesAboutAsLongAsTheirBlocks) {
   EXPECT_EQ(sides_above(fine, -0.06), sides_above(even, -0.06));
   EXPECT_EQ(fine.blocks.finer[0].pieces.size(), 2U);  // the seat's chords
   const auto sides = [](const std::string& deck) {
-    return read(deck).specimen.prism->section().pieces().size();
+    return read(deck).specimen.prism()->section().pieces().size();
   };
   const std::string cylinder = with(sized_cylinder(), "size = \"20 mm\"", "size = \"12 mm\"");
   EXPECT_EQ(sides(finer(cylinder, "near = \"top\"", sizes)), sides(cylinder));

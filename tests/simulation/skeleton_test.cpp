@@ -13,7 +13,7 @@
 #include "pyroclast/model/part.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "ranks_in_threads.hpp"
-#include "solid/bodies.hpp"
+#include "specimen/solid_bodies.hpp"
 
 namespace pyroclast {
 namespace {
@@ -34,7 +34,7 @@ specimen::Specimen<2> squares(const std::vector<std::string>& rows) {
   specimen::GivenCells<2> cells;
   cells.phases = {"aggregate", "mortar"};
   const int columns = static_cast<int>(rows[0].size()), count = static_cast<int>(rows.size());
-  std::vector<int> grain;
+  std::vector<int> stone;
   for (int y = 0; y <= count; ++y)
     for (int x = 0; x <= columns; ++x)
       cells.cells.vertices.push_back({{static_cast<double>(x), static_cast<double>(y)}});
@@ -43,10 +43,10 @@ specimen::Specimen<2> squares(const std::vector<std::string>& rows) {
       const int low = y * (columns + 1) + x, high = low + columns + 1;
       cells.cells.cells.push_back({low, low + 1, high + 1, high});
       cells.phase.push_back(rows[y][x] == '.' ? 1 : 0);
-      grain.push_back(rows[y][x] == '.' ? -1 : rows[y][x] - '0');
+      stone.push_back(rows[y][x] == '.' ? -1 : rows[y][x] - '0');
     }
-  specimen::Specimen<2> made = specimen::specimen_from(std::move(cells));
-  made.grain = std::move(grain);
+  specimen::Specimen<2> made = specimen::specimen_from(specimen::completed(std::move(cells)));
+  made.stone = std::move(stone);
   return made;
 }
 
@@ -61,7 +61,7 @@ std::vector<ContactMaterial> contacts_of(const Model& model) {
 Skeleton of_squares(const specimen::Specimen<2>& specimen,
                     const std::vector<InterfaceParameters>& interfaces) {
   const auto model = make_model(specimen, 0.5, interfaces);
-  return largest_skeleton(model, specimen.grain, contacts_of(model));
+  return largest_skeleton(model, specimen.stone, contacts_of(model));
 }
 
 TEST(Skeleton, HangsTogetherByEdgesAndNotByCorners) {
@@ -88,7 +88,7 @@ TEST(Skeleton, IsLargerThanAFewStones) {
                        const std::vector<InterfaceParameters>& interfaces) {
     const auto made = squares(rows);
     const auto model = make_model(made, 1.0, interfaces);
-    return skeleton(model, made.grain, contacts_of(model));
+    return skeleton(model, made.stone, contacts_of(model));
   };
   const std::vector<std::string> small{"0..1", "2345", "...."}, large{"0..0", "0000", "1..."};
   EXPECT_NE(line(small, {}).find("100 % of their area is one cluster of 6 stones whose blocks touch"),
@@ -99,9 +99,9 @@ TEST(Skeleton, IsLargerThanAFewStones) {
 
 // A specimen can have blocks of aggregate that are of no stone; they part from none.
 TEST(Skeleton, BlocksOfNoStoneHoldTogether) {
-  const auto interfaces_of = [](std::vector<int> grain) {
+  const auto interfaces_of = [](std::vector<int> stone) {
     auto row = squares({"0123"});
-    row.grain = std::move(grain);
+    row.stone = std::move(stone);
     const auto model = make_model(row, 1.0, apart());
     std::vector<std::string> names;
     for (int face = 0; face < model.face_count(); ++face)
@@ -132,25 +132,25 @@ TEST(Skeleton, OfBallsRunsThroughASolid) {
   p.blocks.count = 1000;
   p.blocks.radius_spread = 0.3;
   p.superposition = specimen::Superposition::fit;
-  const specimen::Specimen<3> solid = specimen::make_specimen<3>(p, specimen::cuboid(0.08, 0.08, 0.08));
+  const specimen::Specimen<3> solid = specimen::made_in(p, specimen::cuboid(0.08, 0.08, 0.08));
   const auto joined = make_model(solid);
-  const Skeleton found = largest_skeleton(joined, solid.grain, contacts_of(joined));
+  const Skeleton found = largest_skeleton(joined, solid.stone, contacts_of(joined));
   EXPECT_GT(found.share, 0.8);
   EXPECT_GT(found.stones, std::ssize(solid.stones) / 2);
-  EXPECT_NE(skeleton(joined, solid.grain, contacts_of(joined)).find("of their volume is one cluster of"),
+  EXPECT_NE(skeleton(joined, solid.stone, contacts_of(joined)).find("of their volume is one cluster of"),
             std::string::npos);
   auto in_chunks = joined;
   in_chunks.cut_into_chunks(100);
   RanksInThreads::run(3, [&](const std::shared_ptr<Ranks>& ranks) {
     const auto part = part_of(in_chunks, ranks);
-    const Skeleton on_ranks = largest_skeleton(*part, solid.grain, contacts_of(*part));
+    const Skeleton on_ranks = largest_skeleton(*part, solid.stone, contacts_of(*part));
     EXPECT_EQ(on_ranks.stones, ranks->is_first() ? found.stones : 0);
     EXPECT_EQ(on_ranks.volume, ranks->is_first() ? found.volume : 0.0);
     EXPECT_EQ(on_ranks.of_largest, ranks->is_first() ? found.of_largest : 0.0);
   });
   const auto parted = make_model(solid, 1.0, apart());
-  EXPECT_EQ(largest_skeleton(parted, solid.grain, contacts_of(parted)).stones, 1);
-  EXPECT_EQ(skeleton(parted, solid.grain, contacts_of(parted)), "");
+  EXPECT_EQ(largest_skeleton(parted, solid.stone, contacts_of(parted)).stones, 1);
+  EXPECT_EQ(skeleton(parted, solid.stone, contacts_of(parted)), "");
 }
 
 }  // namespace

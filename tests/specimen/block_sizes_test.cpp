@@ -388,13 +388,13 @@ TEST(FinerBlocks, FollowNotchesHolesAndArcs) {
   }
 }
 
-TEST(FinerBlocks, FollowGrains) {
+TEST(FinerBlocks, FollowStones) {
   SpecimenParameters p = paper_specimen(1);
   p.superposition = Superposition::follow;
   p.blocks.finer.push_back({.pieces = {{{{0, 0}}, {{0, 0.3}}}}, .size = 2.5e-3, .distance = 20e-3});
   p.blocks.largest_size = 5e-3;
   p.blocks.count =
-      static_cast<int>(std::lround(SizedExtent(room_of_blocks(p.region), p.blocks.finer).blocks(5e-3)));
+      static_cast<int>(std::lround(SizedExtent(room_of_blocks(*p.region()), p.blocks.finer).blocks(5e-3)));
   const Specimen<2> s = make_specimen(p);
   EXPECT_EQ(std::ssize(s.cells.cells), p.blocks.count);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.02 * s.fraction_placed);

@@ -30,7 +30,7 @@ inline AggregateParameters paper_aggregates() {
 
 inline SpecimenParameters paper_specimen(std::uint64_t seed) {
   SpecimenParameters p;
-  p.region = Region::rectangle(150 * millimetre, 300 * millimetre);
+  p.outline = Region::rectangle(150 * millimetre, 300 * millimetre);
   p.seed = seed;
   p.aggregates = paper_aggregates();
   p.blocks.count = 5000;
@@ -38,8 +38,8 @@ inline SpecimenParameters paper_specimen(std::uint64_t seed) {
   return p;
 }
 
-/// A grain with an outline, from its corners where they lie, m.
-inline Grain<2> grain_of(std::vector<Vec<2>> corners) {
+/// A stone with an outline, from its corners where they lie, m.
+inline Stone<2> stone_of(std::vector<Vec<2>> corners) {
   const auto [outline, centre] = outline_around(std::move(corners));
   return {centre, outline->width(), 0, 0, outline};
 }

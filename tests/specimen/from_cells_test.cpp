@@ -25,10 +25,15 @@ Cells<2> ring_of_squares() {
   return t;
 }
 
+/// Reads cells of the plane.
+GivenCells<2> in_plane(const std::string& text, const ToMetres& to_metres = {}) {
+  return std::get<GivenCells<2>>(cells_from(text, "mine.json", to_metres));
+}
+
 TEST(SpecimenFromCells, FindsTheOutlineAndItsHoles) {
   std::vector<int> phase(8, 0);
   phase[3] = 1;
-  const Specimen<2> specimen = specimen_from({ring_of_squares(), {"mortar", "stone"}, phase});
+  const Specimen<2> specimen = specimen_from(completed({ring_of_squares(), {"mortar", "stone"}, phase}));
   EXPECT_DOUBLE_EQ(specimen.outline.extent(), 8.0);
   ASSERT_EQ(specimen.outline.sides().size(), 5U);
   EXPECT_EQ(specimen.outline.sides()[specimen.outline.side_of({{1.0, 0.0}}, {{2.0, 0.0}}).value()].name,
@@ -45,13 +50,13 @@ TEST(SpecimenFromCells, FindsTheOutlineAndItsHoles) {
 TEST(SpecimenFromCells, GivesBackWhatWasTessellated) {
   SpecimenParameters p = paper_specimen(1);
   p.blocks.count = 200;
-  p.region = Region::polygon({{{0.0, 0.0}}, {{0.3, 0.0}}, {{0.3, 0.2}}, {{0.15, 0.3}}, {{0.0, 0.2}}},
-                             {"side_1", "side_2", "side_3", "side_4", "side_5"});
+  p.outline = Region::polygon({{{0.0, 0.0}}, {{0.3, 0.0}}, {{0.3, 0.2}}, {{0.15, 0.3}}, {{0.0, 0.2}}},
+                              {"side_1", "side_2", "side_3", "side_4", "side_5"});
   const Specimen<2> made = make_specimen(p);
-  const Specimen<2> again = specimen_from({made.cells, made.phases, made.phase});
+  const Specimen<2> again = specimen_from(completed({made.cells, made.phases, made.phase}));
   EXPECT_EQ(again.cells.cells, made.cells.cells);
-  EXPECT_NEAR(again.outline.extent(), p.region.extent(), 1e-12);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.outline.pieces()[i].from, p.region.pieces()[i].from);
+  EXPECT_NEAR(again.outline.extent(), p.extent(), 1e-12);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.outline.pieces()[i].from, p.region()->pieces()[i].from);
   EXPECT_NEAR(again.fraction[0], made.fraction[0], 1e-12);
   EXPECT_EQ(again.metrics.mean_edge, made.metrics.mean_edge);
 }
@@ -61,14 +66,14 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
     Cells<2> t = ring_of_squares();
     std::vector<int> phase(8, 0);
     change(t, phase);
-    return message([&] { specimen_from({t, {"mortar"}, phase}); });
+    return message([&] { specimen_from(completed({t, {"mortar"}, phase})); });
   };
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 .from 0. names vertex 99"));
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][2] = t.cells[2][0]; }),
                    "cell 2 .from 0. names vertex [0-9]+ .from 0. twice"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 .from 0. is of phase 1"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase.pop_back(); }), "8 cells, but the phases of 7"));
-  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 .from 0. has 2 corners"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 .from 0. has 2 vertices"));
   EXPECT_TRUE(says(refused([](auto& t, auto&) {
                      t.vertices[3] = {{NAN, 0.0}};
                    }),
@@ -84,7 +89,7 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
                    }),
                    "more than one outer outline|pieces|not convex"));
   const Cells<2> flat{{{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}};
-  EXPECT_TRUE(says(message([&] { specimen_from({flat, {"mortar"}, {0}}); }), "enclose no area"));
+  EXPECT_TRUE(says(message([&] { specimen_from(completed({flat, {"mortar"}, {0}})); }), "enclose no area"));
 }
 
 // Promise: cells count from 0 in every message, as arrays and files of cells do.
@@ -92,7 +97,7 @@ TEST(SpecimenFromCells, ADentedCellIsToldByItsNumberFromZero) {
   Cells<2> t = ring_of_squares();
   t.vertices[0] = {{0.9, 0.9}};  // a corner of cell 0 alone
   EXPECT_TRUE(says(message([&] {
-                     specimen_from({t, {"mortar"}, std::vector<int>(8, 0)});
+                     specimen_from(completed({t, {"mortar"}, std::vector<int>(8, 0)}));
                    }),
                    "cell 0 .from 0. near .* is not convex"));
 }
@@ -101,9 +106,14 @@ TEST(SpecimenFromCells, AFileSaysTheUnitOfItsVertices) {
   const auto of_list = [](const std::string& lists) {
     return R"({"phases": ["a"], "cells": [[0, 1, 2]], "phase": [0])" + lists + "}";
   };
-  const CellsFile file = cells_from(of_list(R"(, "vertices_mm": [[0, 0], [100, 0], [0, 100]])"), "mine.json");
-  EXPECT_EQ(file.unit, "mm");
-  EXPECT_EQ(file.cells.cells.vertices[1], (Vec<2>{{100.0, 0.0}}));
+  const std::string text = of_list(R"(, "vertices_mm": [[0, 0], [100, 0], [0, 100]])");
+  const ToMetres of_mm = [](const std::string& unit) {
+    if (unit != "mm") throw Error("no unit of length");
+    return [](double x) { return 1e-3 * x; };
+  };
+  EXPECT_EQ(in_plane(text, of_mm).cells.vertices[1], (Vec<2>{{1e-3 * 100.0, 0.0}}));
+  EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "vertices_kg": [])"), "mine.json", of_mm); }),
+                   "mine.json: \"vertices_kg\": no unit of length"));
   EXPECT_TRUE(says(message([&] { cells_from(of_list(""), "mine.json"); }),
                    "mine.json: there is no list \"vertices_m\""));
   EXPECT_TRUE(
@@ -116,12 +126,11 @@ TEST(SpecimenFromCells, AFileKeepsTheSizesOfBlocks) {
     return R"({"phases": ["a"], "cells": [[0, 1, 2]], "phase": [0], "vertices_m": [[0, 0], [1, 0], [0, 1]])" +
            lists + "}";
   };
-  const Specimen<2> made =
-      specimen_from(cells_from(of_list(R"(, "block_size_m": [0.25])"), "mine.json").cells);
+  const Specimen<2> made = specimen_from(in_plane(of_list(R"(, "block_size_m": [0.25])")));
   EXPECT_EQ(made.size, std::vector<double>{0.25});
   const std::string text = cells_text(made);
-  EXPECT_EQ(cells_from(text, "again.json").cells.size, made.size);
-  EXPECT_TRUE(cells_from(of_list(""), "mine.json").cells.size.empty());
+  EXPECT_EQ(in_plane(text).size, made.size);
+  EXPECT_TRUE(in_plane(of_list("")).size.empty());
   EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_mm": [1])"), "mine.json"); }),
                    "\"block_size_mm\"; beside \"vertices_m\" it must be \"block_size_m\""));
   EXPECT_TRUE(says(message([&] { cells_from(of_list(R"(, "block_size_m": [1, 2])"), "mine.json"); }),
@@ -135,12 +144,14 @@ TEST(SpecimenFromCells, AFileKeepsTheStonesOfBlocks) {
     return R"({"phases": ["a", "b"], "cells": [[0, 1, 2], [1, 3, 2]], "phase": [1, 0], "stone": )" + stones +
            R"(, "vertices_m": [[0, 0], [1, 0], [0, 1], [1, 1]]})";
   };
-  const GivenCells<2> read = cells_from(file("[7, -1]"), "mine.json").cells;
-  EXPECT_EQ(phases_of_stones(read.phases, read.phase, read.grain), std::vector<std::string>{"b"});
+  const GivenCells<2> read = in_plane(file("[7, -1]"));
+  SpecimenParameters asked;
+  asked.cells = read;
+  EXPECT_EQ(phases_of_stones(asked), std::vector<std::string>{"b"});
   const Specimen<2> made = specimen_from(read);
-  EXPECT_EQ(made.grain, (std::vector<int>{7, -1}));
+  EXPECT_EQ(made.stone, (std::vector<int>{7, -1}));
   const std::string text = cells_text(made);
-  EXPECT_EQ(cells_from(text, "again.json").cells.grain, made.grain);
+  EXPECT_EQ(in_plane(text).stone, made.stone);
   EXPECT_TRUE(
       says(message([&] { cells_from(file("[7]"), "mine.json"); }), "there are 2 cells, but the stones of 1"));
   EXPECT_TRUE(says(message([&] { cells_from(file("[7, -2]"), "mine.json"); }),

@@ -7,14 +7,14 @@
 
 #include "examples.hpp"
 #include "known.hpp"
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-double total_area(const std::vector<Grain<2>>& grains) {
+double total_area(const std::vector<Stone<2>>& stones) {
   double sum = 0;
-  for (const Grain<2>& grain : grains) sum += extent(grain);
+  for (const Stone<2>& stone : stones) sum += extent(stone);
   return sum;
 }
 
@@ -34,7 +34,7 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
   for (int seed = 0; seed < 50; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const double specimen_area = 0.15 * 0.3;
-    EXPECT_NEAR(total_area(draw_grains<2>(p, specimen_area, random)), p.fraction * specimen_area,
+    EXPECT_NEAR(total_area(draw_stones<2>(p, specimen_area, random)), p.fraction * specimen_area,
                 0.5 * circle_area(p.d_min) * (1 + 1e-9));
   }
 }
@@ -42,17 +42,17 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
 TEST(Gradation, DiametersDescendWithinTheRange) {
   const AggregateParameters p = paper_aggregates();
   Random random(1);
-  const std::vector<Grain<2>> grains = draw_grains<2>(p, 1.0, random);
-  EXPECT_TRUE(std::ranges::is_sorted(grains, std::greater<>(), &Grain<2>::diameter));
-  EXPECT_LE(grains.front().diameter, p.d_max);
-  EXPECT_GE(grains.back().diameter, p.d_min);
+  const std::vector<Stone<2>> stones = draw_stones<2>(p, 1.0, random);
+  EXPECT_TRUE(std::ranges::is_sorted(stones, std::greater<>(), &Stone<2>::diameter));
+  EXPECT_LE(stones.front().diameter, p.d_max);
+  EXPECT_GE(stones.back().diameter, p.d_min);
 }
 
 TEST(Gradation, AtEverySieveTheCurveIsMetToOneAggregate) {
   const AggregateParameters p = paper_aggregates();
   Random random(3);
   const double specimen_area = 0.15 * 0.3;
-  const std::vector<Grain<2>> aggregates = (draw_grains<2>(p, specimen_area, random));
+  const std::vector<Stone<2>> aggregates = (draw_stones<2>(p, specimen_area, random));
   for (const GradationPoint& point : gradation(p, aggregates, p.sieves)) {
     // An interval hands on less than its smallest aggregate; the total is off by half the smallest of all.
     const double slack = (circle_area(point.size) + circle_area(p.d_min)) / (p.fraction * specimen_area);
@@ -64,7 +64,7 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
   AggregateParameters p = paper_aggregates();
   p.sieves = {p.d_min, p.d_max};
   Random random(4);
-  const std::vector<Grain<2>> aggregates = (draw_grains<2>(p, 100.0, random));
+  const std::vector<Stone<2>> aggregates = (draw_stones<2>(p, 100.0, random));
   std::vector<double> sizes;
   for (double d = p.d_min; d <= p.d_max; d += 1e-3) sizes.push_back(d);
   for (const GradationPoint& point : gradation(p, aggregates, sizes)) {
@@ -76,7 +76,7 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
 
 TEST(Gradation, NoAggregatesHaveNoCurve) {
   EXPECT_TRUE(
-      says(message([] { gradation(paper_aggregates(), std::vector<Grain<2>>{}, {}); }), "no aggregates"));
+      says(message([] { gradation(paper_aggregates(), std::vector<Stone<2>>{}, {}); }), "no aggregates"));
 }
 
 }  // namespace

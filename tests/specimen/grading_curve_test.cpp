@@ -94,8 +94,8 @@ AggregateParameters graded(const GradingCurve& curve) {
 TEST(GradingCurve, DiametersFollowItAndLeaveItsGapsFree) {
   const AggregateParameters p = graded({{4e-3, 8e-3, 16e-3, 22e-3, 32e-3}, {0.0, 0.3, 0.3, 0.7, 1.0}});
   Random random(5);
-  const std::vector<Grain<2>> circles = draw_grains<2>(p, 100.0, random);
-  for (const Grain<2>& circle : circles)
+  const std::vector<Stone<2>> circles = draw_stones<2>(p, 100.0, random);
+  for (const Stone<2>& circle : circles)
     EXPECT_FALSE(circle.diameter > 8e-3 && circle.diameter < 16e-3) << circle.diameter;
   std::vector<double> sizes;
   for (double d = 4e-3; d <= 32e-3; d += 1e-3) sizes.push_back(d);

@@ -66,15 +66,15 @@ TEST(Outline, PointsFillTheRestBesideThoseThatAreTaken) {
     for (const Vec<2>& point : taken) EXPECT_GT(norm(at - point), 0.9 * 2.0 * std::sin(turn / 24));
 }
 
-TEST(Outline, DrawnGrainsHaveTheirWidthAndElongation) {
+TEST(Outline, DrawnStonesHaveTheirWidthAndElongation) {
   Random random(3);
   for (int i = 0; i < 20; ++i) {
-    const auto ellipse = draw_outline({.kind = GrainShape::ellipse, .elongation = {1.5, 1.5}}, random);
+    const auto ellipse = draw_outline({.kind = StoneShape::ellipse, .elongation = {1.5, 1.5}}, random);
     EXPECT_NEAR(ellipse->width(), 1.0, 1e-12);
     EXPECT_NEAR(ellipse->bounding_radius(), 0.75, 1e-3);  // 72 straight pieces
     EXPECT_NEAR(ellipse->extent(), std::numbers::pi / 4 * 1.5, 2e-3);
     const auto polygon =
-        draw_outline({.kind = GrainShape::polygon, .elongation = {1.0, 1.5}, .corners = {5, 8}}, random);
+        draw_outline({.kind = StoneShape::polygon, .elongation = {1.0, 1.5}, .corners = {5, 8}}, random);
     EXPECT_NEAR(polygon->width(), 1.0, 1e-12);
     EXPECT_GE(polygon->corners().size(), 5U);
     EXPECT_LE(polygon->corners().size(), 8U);
@@ -94,7 +94,7 @@ TEST(Outline, OneThatIsNoneIsRefused) {
   EXPECT_TRUE(says(message([] {
                      outline_around({{{0, 0}}, {{1, 0}}, {{1, 0}}, {{0, 1}}});
                    }),
-                   "corner 2 of an outline of a grain \\(from 0\\) repeats the one before, at \\(1, 0\\) m"));
+                   "corner 2 of an outline of a stone \\(from 0\\) repeats the one before, at \\(1, 0\\) m"));
   EXPECT_TRUE(says(message([] {
                      outline_around({{{0, 0}}, {{1, 0}}, {{0, 1}}, {{0, 0}}, {{1, 0}}, {{0, 1}}});
                    }),

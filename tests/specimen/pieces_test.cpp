@@ -36,7 +36,7 @@ GivenCells<2> hanging_node(double off) {
 }
 
 std::string refusal(const GivenCells<2>& cells) {
-  return message([&] { specimen_from(cells); });
+  return message([&] { specimen_from(completed(cells)); });
 }
 
 TEST(Pieces, AreCountedAndOneIsNamedWithItsPlace) {
@@ -54,7 +54,7 @@ TEST(Pieces, WhatCouldBeJoinedIsToldAndJoinedOnRequest) {
   EXPECT_TRUE(says(refusal(apart(0.0)),
                    "2 vertices coincide with others, and 0 lie in an edge .*join = \"2e-08 m\""));
   for (const double gap : {0.0, 1e-7, -1e-7}) {
-    const Specimen<2> made = specimen_from(joined(apart(gap), 1e-6));
+    const Specimen<2> made = specimen_from(completed(apart(gap), 1e-6));
     EXPECT_EQ(made.cells.vertices.size(), 6U);
     EXPECT_NEAR(made.outline.extent(), 2e-4, 1e-8);
     EXPECT_EQ(made.outline.sides().size(), 4U);
@@ -67,7 +67,7 @@ TEST(Pieces, HangingNodesBecomeCornersOnRequest) {
   EXPECT_TRUE(
       says(refusal(hanging_node(0.0)), "2 pieces .*0 vertices coincide with others, and 1 lies in an edge"));
   for (const double off : {0.0, 1e-7, -1e-7}) {
-    const Specimen<2> made = specimen_from(joined(hanging_node(off), 1e-6));
+    const Specimen<2> made = specimen_from(completed(hanging_node(off), 1e-6));
     EXPECT_EQ(made.cells.cells[0].size(), 5U);
     EXPECT_NEAR(made.outline.extent(), 6e-4, 1e-15);
   }
@@ -81,12 +81,12 @@ TEST(Pieces, WhatCouldBeJoinedIsToldOfOnePieceToo) {
   t.cells.insert(t.cells.end(), {{3, 2, 9, 8}, {2, 7, 10, 9}});
   cells.phase = {0, 0, 0, 0, 0};
   EXPECT_TRUE(says(refusal(cells), "1 lies in an edge of a cell .*join = \"3e-08 m\""));
-  EXPECT_EQ(specimen_from(joined(cells, 1e-6)).outline.sides().size(), 4U);
+  EXPECT_EQ(specimen_from(completed(cells, 1e-6)).outline.sides().size(), 4U);
   t.vertices.insert(t.vertices.end(), {{{0.02, -0.01}}, {{0.0, -0.01}}, {{0.03, -0.01}}});
   t.cells.insert(t.cells.end(), {{0, 12, 11, 1}, {1, 11, 13, 5}});  // and below: a gap without an area inside
   cells.phase = {0, 0, 0, 0, 0, 0, 0};
   EXPECT_TRUE(says(refusal(cells), "1 lies in an edge of a cell"));
-  EXPECT_NEAR(specimen_from(joined(cells, 1e-6)).outline.extent(), 12e-4, 1e-15);
+  EXPECT_NEAR(specimen_from(completed(cells, 1e-6)).outline.extent(), 12e-4, 1e-15);
 }
 
 // Promise: without a distance nothing changes, and vertices that are joined leave no trace.

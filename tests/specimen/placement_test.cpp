@@ -6,21 +6,21 @@
 
 #include "examples.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-std::vector<Grain<2>> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
+std::vector<Stone<2>> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
   Random random(seed);
-  return place(draw_grains<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
+  return place(draw_stones<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
 }
 
 TEST(Placement, KeepsTheGapBetweenAggregatesAndToTheOutline) {
   const AggregateParameters p = paper_aggregates();
   const double gap = p.minimum_gap * (1 - 1e-9);  // the comparison is one of squares
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::vector<Grain<2>> circles = place_paper_aggregates(p, seed);
+    const std::vector<Stone<2>> circles = place_paper_aggregates(p, seed);
     for (std::size_t i = 0; i < circles.size(); ++i) {
       const double radius = circles[i].diameter / 2;
       for (int axis = 0; axis < 2; ++axis) {
@@ -41,23 +41,23 @@ TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
   p.sieves.front() = 1e-3;
   p.minimum_gap = 0;
   Random random(1);
-  const std::vector<Grain<2>> grains = draw_grains<2>(p, 0.15 * 0.3, random);
-  ASSERT_GT(grains.size(), 1000U);
-  EXPECT_EQ(place(grains, room_in(Region::rectangle(0.15, 0.3)), p, {}, random).size(), grains.size());
+  const std::vector<Stone<2>> stones = draw_stones<2>(p, 0.15 * 0.3, random);
+  ASSERT_GT(stones.size(), 1000U);
+  EXPECT_EQ(place(stones, room_in(Region::rectangle(0.15, 0.3)), p, {}, random).size(), stones.size());
 }
 
-// Where grains cannot be placed one by one, they grow. 100 tries for each are too few for a fraction of 0.5.
-TEST(Placement, GrownGrainsKeepTheGapAndTheirSizes) {
+// Where stones cannot be placed one by one, they grow. 100 tries for each are too few for a fraction of 0.5.
+TEST(Placement, GrownStonesKeepTheGapAndTheirSizes) {
   AggregateParameters p = paper_aggregates();
   p.fraction = 0.6;
   p.attempts = 100;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Random random(seed);
-    const std::vector<Grain<2>> grains = draw_grains<2>(p, 0.15 * 0.3, random);
-    const auto placed = place(grains, room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
-    ASSERT_EQ(placed.size(), grains.size());
+    const std::vector<Stone<2>> stones = draw_stones<2>(p, 0.15 * 0.3, random);
+    const auto placed = place(stones, room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
+    ASSERT_EQ(placed.size(), stones.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
-      EXPECT_EQ(placed[i].diameter, grains[i].diameter);
+      EXPECT_EQ(placed[i].diameter, stones[i].diameter);
       const double radius = placed[i].diameter / 2, gap = p.minimum_gap - 1e-12;
       EXPECT_GE(placed[i].centre[0] - radius, gap);
       EXPECT_LE(placed[i].centre[0] + radius, 0.15 - gap);
@@ -75,19 +75,19 @@ TEST(Placement, GrowsInADiscToo) {
   p.attempts = 50;
   const Region disc = Region::polygon(circle_corners({}, 0.2, 2e-3), {"rim"}, true);
   Random random(1);
-  const auto placed = place(draw_grains<2>(p, disc.extent(), random), room_in(disc), p, {}, random);
-  for (const Grain<2>& grain : placed)
-    EXPECT_LE(disc.distance(grain.centre), -grain.diameter / 2 - p.minimum_gap + 1e-12);
+  const auto placed = place(draw_stones<2>(p, disc.extent(), random), room_in(disc), p, {}, random);
+  for (const Stone<2>& stone : placed)
+    EXPECT_LE(disc.distance(stone.centre), -stone.diameter / 2 - p.minimum_gap + 1e-12);
 }
 
 TEST(Placement, ShapesKeepTheGap) {
   AggregateParameters p = paper_aggregates();
   p.fraction = 0.45;
-  for (const GrainShape kind : {GrainShape::ellipse, GrainShape::polygon, GrainShape::harmonics}) {
+  for (const StoneShape kind : {StoneShape::ellipse, StoneShape::polygon, StoneShape::harmonics}) {
     p.shape = {.kind = kind, .elongation = {1.1, 1.8}, .corners = {4, 7}, .roughness = {0.02, 0.06}};
     Random random(2);
     const auto placed =
-        place(draw_grains<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
+        place(draw_stones<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {}, random);
     double share = 0.0;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       share += extent(placed[i]) / (0.15 * 0.3);
@@ -107,11 +107,11 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
   p.attempts = 100;
   p.place = "mine.toml:12: aggregates";
   Random random(1);
-  const std::vector<Grain<2>> grains{
+  const std::vector<Stone<2>> stones{
       {{}, 20e-3}, {{}, 10e-3}, {{}, 50e-3}};  // the last is wider than the specimen
   // pi/4 (20^2 + 10^2) / (40 x 300) = 0.0327
   EXPECT_TRUE(says(
-      message([&] { place(grains, room_in(Region::rectangle(0.04, 0.3)), p, {}, random); }),
+      message([&] { place(stones, room_in(Region::rectangle(0.04, 0.3)), p, {}, random); }),
       "^mine.toml:12: aggregates: the aggregates do not fit: after 2 of 3, an area fraction of 0\\.033 of "
       "the 0\\.340 asked for, one of 50 mm found no place in 100 attempts"));
 }
@@ -119,8 +119,8 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
 TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
-  const std::vector<Grain<2>> grains{{{}, 30e-3}};
-  EXPECT_TRUE(says(message([&] { place(grains, room_in(Region::rectangle(0.02, 0.3)), p, {}, random); }),
+  const std::vector<Stone<2>> stones{{{}, 30e-3}};
+  EXPECT_TRUE(says(message([&] { place(stones, room_in(Region::rectangle(0.02, 0.3)), p, {}, random); }),
                    "after 0 of 1"));
 }
 

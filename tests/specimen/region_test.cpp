@@ -232,13 +232,14 @@ TEST(Region, AggregatesKeepAwayFromTheOutlineButNotFromCuts) {
   SpecimenParameters p = paper_specimen(1);
   p.blocks.count = 400;
   p.aggregates.fraction = 0.3;
-  p.region = with_notch(polygon({at(0, 0), at(0.2, 0), at(0.2, 0.1), at(0.1, 0.1), at(0.1, 0.3), at(0, 0.3)}),
-                        at(0, 0.2), at(0.05, 0.2), 0.006);
+  p.outline =
+      with_notch(polygon({at(0, 0), at(0.2, 0), at(0.2, 0.1), at(0.1, 0.1), at(0.1, 0.3), at(0, 0.3)}),
+                 at(0, 0.2), at(0.05, 0.2), 0.006);
   const Specimen<2> specimen = make_specimen(p);
   int cut = 0;
-  for (const Grain<2>& a : specimen.stones) {
-    EXPECT_LE(p.region.distance_before_cuts(a.centre), -(0.5 * a.diameter + p.aggregates.minimum_gap));
-    if (p.region.distance(a.centre) > -0.5 * a.diameter) ++cut;
+  for (const Stone<2>& a : specimen.stones) {
+    EXPECT_LE(p.region()->distance_before_cuts(a.centre), -(0.5 * a.diameter + p.aggregates.minimum_gap));
+    if (p.region()->distance(a.centre) > -0.5 * a.diameter) ++cut;
   }
   EXPECT_GT(cut, 0);
   EXPECT_NEAR(specimen.fraction_placed, 0.3, 0.01);

@@ -57,8 +57,8 @@ TEST(Edges, RefusesCellsThatOverlap) {
 
 TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
   Cells<2> t = four_cells(0.1);
-  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
-  EXPECT_EQ(done.edges_removed, 1);
+  const RegularisedCells done = regularise(t, Region::rectangle(2, 2), {0.2});
+  EXPECT_EQ(done.vertices_merged, 1);
   EXPECT_EQ(done.edges_left_short, 0);
   EXPECT_TRUE(done.unfit.empty());
   EXPECT_EQ(t.vertices.size(), 9U);
@@ -68,25 +68,25 @@ TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
 
 TEST(Regularisation, LeavesLongerEdgesAlone) {
   Cells<2> t = four_cells(0.4);
-  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.2).edges_removed, 0);
+  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), {0.2}).vertices_merged, 0);
   EXPECT_EQ(t.vertices, four_cells(0.4).vertices);
 }
 
 TEST(Regularisation, KeepsOutlineVerticesOnTheirSide) {
   Cells<2> t = four_cells(0.6);
   t.vertices[1] = {{0.05, 0}};  // a short edge from the corner along the bottom
-  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
+  const RegularisedCells done = regularise(t, Region::rectangle(2, 2), {0.2});
   // The corner stays in place, the other end moves into it.
   EXPECT_TRUE(mismatched_cells(t, Region::rectangle(2, 2)).empty());
-  EXPECT_EQ(done.edges_removed, 1);
+  EXPECT_EQ(done.vertices_merged, 1);
   EXPECT_EQ(std::count(t.vertices.begin(), t.vertices.end(), Vec<2>{{0, 0}}), 1);
 }
 
 TEST(Regularisation, DoesNotRemoveATriangleButNamesIt) {
   // The corner (0, 0) is cut off by a small triangle: its edges are short, and none can go.
   Cells<2> t{{{{0, 0}}, {{0.1, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}, {{0, 0.1}}}, {{0, 1, 5}, {1, 2, 3, 4, 5}}};
-  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.14);  // shorter than 0.16 is short
-  EXPECT_EQ(done.edges_removed, 0);
+  const RegularisedCells done = regularise(t, Region::rectangle(2, 2), {0.14});  // shorter than 0.16 is short
+  EXPECT_EQ(done.vertices_merged, 0);
   EXPECT_EQ(done.edges_left_short, 3);
   EXPECT_EQ(done.unfit, std::vector<int>{0});
   EXPECT_EQ(t.cells[0].size(), 3U);
@@ -96,7 +96,7 @@ TEST(Regularisation, NamesTheSmallerNeighbourOfAFlatCorner) {
   // Cell 0 has a corner of nearly 180 degrees where cells 1 and 2 meet.
   Cells<2> t{{{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}, {{2, 2}}, {{0.8, 2}}, {{0, 2}}, {{0.8, 1.001}}},
              {{0, 1, 2, 7, 3}, {2, 4, 5, 7}, {3, 7, 5, 6}}};
-  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.1).unfit, std::vector<int>{2});
+  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), {0.1}).unfit, std::vector<int>{2});
 }
 
 TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
@@ -109,7 +109,7 @@ TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
   }
   const Cells<2> before = laguerre_cells(seeds, Region::rectangle(1, 1)).cells;
   Cells<2> after = before;
-  EXPECT_GT(regularise(after, Region::rectangle(1, 1), 0.3).edges_removed, 0);
+  EXPECT_GT(regularise(after, Region::rectangle(1, 1), {0.3}).vertices_merged, 0);
   // The bound on slivers grows with the mean edge, so the one at the start holds throughout.
   const double thinnest = sliver_share * 0.3 * measure(before).mean_edge;
   const double flattest = largest_block_angle * std::numbers::pi / 180;

@@ -12,10 +12,10 @@
 #include "messages.hpp"
 #include "own_folder.hpp"
 #include "pyroclast/specimen/blocks.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_fit.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_fit.hpp"
 #include "pyroclast/specimen/stones_file.hpp"
 
 namespace pyroclast::specimen {
@@ -43,7 +43,7 @@ Shell cube_shell(const Vec<3>& at = {}) {
            {3, 7, 5}}};
 }
 
-ShapeParameters shape_of(GrainShape kind, double elongation = 1.5, double flatness = 1.2) {
+ShapeParameters shape_of(StoneShape kind, double elongation = 1.5, double flatness = 1.2) {
   ShapeParameters p;
   p.kind = kind;
   p.elongation = {elongation, elongation};
@@ -53,7 +53,7 @@ ShapeParameters shape_of(GrainShape kind, double elongation = 1.5, double flatne
   return p;
 }
 
-const std::vector<GrainShape> kShapes{GrainShape::ellipse, GrainShape::polygon, GrainShape::harmonics};
+const std::vector<StoneShape> kShapes{StoneShape::ellipse, StoneShape::polygon, StoneShape::harmonics};
 
 TEST(Shell, ACubeHasItsVolumeSurfaceAndDistances) {
   const Shell cube = cube_shell({{5.0, 1.0, 2.0}});
@@ -86,7 +86,7 @@ TEST(Shell, SaysWhatIsNoSurface) {
 
 // An ellipsoid of 1,280 triangles is less than 1 % smaller than a true one.
 TEST(Shell, DrawnShapesHaveAWidthOfOneAndTheirOwnForm) {
-  for (const GrainShape kind : kShapes)
+  for (const StoneShape kind : kShapes)
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       Random random(seed);
       const auto shell = draw_shell(shape_of(kind), random);
@@ -95,20 +95,20 @@ TEST(Shell, DrawnShapesHaveAWidthOfOneAndTheirOwnForm) {
       EXPECT_GT(shell->inner_radius(), 0.2);
       EXPECT_GT(shell->bounding_radius(), 0.6);
       EXPECT_LT(shell->bounding_radius(), 1.0);
-      EXPECT_EQ(shell->corner_count() > 0, kind == GrainShape::polygon);
-      if (kind == GrainShape::ellipse) {
+      EXPECT_EQ(shell->corner_count() > 0, kind == StoneShape::polygon);
+      if (kind == StoneShape::ellipse) {
         EXPECT_NEAR(shell->extent(), kPi / 6.0 * 1.5 / 1.2, 0.01 * shell->extent());
         EXPECT_NEAR(shell->bounding_radius(), 0.75, 1e-3);
       }
     }
   Random random(1);
-  EXPECT_EQ(draw_shell(shape_of(GrainShape::circle), random), nullptr);
+  EXPECT_EQ(draw_shell(shape_of(StoneShape::circle), random), nullptr);
 }
 
 TEST(Shell, PointsAreSpreadOverAShapeAndABall) {
   Random random(3);
   std::vector<std::shared_ptr<const Surface<3>>> shapes{std::make_shared<Ball<3>>(1.0)};
-  for (const GrainShape kind : {GrainShape::ellipse, GrainShape::harmonics})
+  for (const StoneShape kind : {StoneShape::ellipse, StoneShape::harmonics})
     shapes.push_back(draw_shell(shape_of(kind), random)->scaled(2.0));
   for (const auto& shape : shapes) {
     constexpr double kSpacing = 0.3;
@@ -128,12 +128,12 @@ TEST(Shell, PointsAreSpreadOverAShapeAndABall) {
 
 TEST(Shell, StonesAreAsNearAsTheirVertices) {
   const auto cube = std::make_shared<const Shell>(cube_shell());
-  const Grain<3> a{{}, 2.0, 0, 0, cube}, b{{{2.3, 0.2, 0.1}}, 2.0, 0, 0, cube};
+  const Stone<3> a{{}, 2.0, 0, 0, cube}, b{{{2.3, 0.2, 0.1}}, 2.0, 0, 0, cube};
   EXPECT_TRUE(are_closer(a, b, 0.31));
   EXPECT_FALSE(are_closer(a, b, 0.29));
   EXPECT_NEAR(approach(a, b).gap, 0.3, 1e-12);
   EXPECT_NEAR(approach(a, b).direction[0], 1.0, 1e-12);
-  const Grain<3> ball{{{0.0, 2.5, 0.0}}, 1.0};
+  const Stone<3> ball{{{0.0, 2.5, 0.0}}, 1.0};
   EXPECT_NEAR(approach(a, ball).gap, 1.0, 1e-12);
   EXPECT_NEAR(approach(ball, a).direction[1], -1.0, 1e-12);
 }
@@ -143,8 +143,8 @@ TEST(Shell, StonesAreAsNearAsTheirVertices) {
 TEST(StonesFile, KeepsStonesAndTellsFaultsWithTheirLine) {
   Random random(5);
   const std::vector<std::string> phases{"aggregate", "pore"};
-  std::vector<Grain<3>> stones;
-  for (const GrainShape kind : kShapes) {
+  std::vector<Stone<3>> stones;
+  for (const StoneShape kind : kShapes) {
     auto shape = draw_shell(shape_of(kind), random)->scaled(0.02);
     stones.push_back({{{0.1 * static_cast<double>(stones.size()), 0.02, 0.03}},
                       0.02,
@@ -177,9 +177,9 @@ TEST(StonesFile, KeepsStonesAndTellsFaultsWithTheirLine) {
 }
 
 /// A stone in the middle of a cube whose blocks have a size of 1, from the radius of the ball of its volume.
-Specimen<3> followed(GrainShape kind, double radius, std::uint64_t seed) {
+Specimen<3> followed(StoneShape kind, double radius, std::uint64_t seed) {
   Random of_stone(seed);
-  Grain<3> stone{{}, 1.0};
+  Stone<3> stone{{}, 1.0};
   stone.shape = draw_shell(shape_of(kind), of_stone);
   const double factor = radius / std::cbrt(0.75 * extent(stone) / kPi);
   stone.diameter *= factor;
@@ -196,16 +196,16 @@ Specimen<3> followed(GrainShape kind, double radius, std::uint64_t seed) {
   Blocks<3> blocks = make_blocks(p, s.outline, random, nullptr, s.stones);
   EXPECT_EQ(std::ssize(blocks.cells.cells), p.count);
   s.cells = std::move(blocks.cells);
-  s.grain = std::move(blocks.grain);
+  s.stone = std::move(blocks.stone);
   return s;
 }
 
 TEST(FollowedStones, HaveTheirVolumeAndSurface) {
-  for (const GrainShape kind :
-       {GrainShape::circle, GrainShape::ellipse, GrainShape::polygon, GrainShape::harmonics}) {
+  for (const StoneShape kind :
+       {StoneShape::circle, StoneShape::ellipse, StoneShape::polygon, StoneShape::harmonics}) {
     const Specimen<3> s = followed(kind, 3.0, 1);
     require_valid(s.cells, s.outline, "followed");
-    const GrainFit fit = fits_of(s).front();
+    const StoneFit fit = fits_of(s).front();
     EXPECT_NEAR(fit.extent_of_blocks / fit.extent, 1.0, 0.01) << static_cast<int>(kind);
     EXPECT_NEAR(fit.interface / fit.size, 1.0, 0.05) << static_cast<int>(kind);
     EXPECT_LT(fit.deviation, 0.05) << static_cast<int>(kind);
@@ -214,9 +214,9 @@ TEST(FollowedStones, HaveTheirVolumeAndSurface) {
 }
 
 TEST(FollowedStones, ASmallOneIsOneBlock) {
-  for (const GrainShape kind : {GrainShape::circle, GrainShape::ellipse}) {
+  for (const StoneShape kind : {StoneShape::circle, StoneShape::ellipse}) {
     const Specimen<3> s = followed(kind, 0.8, 2);
-    const GrainFit fit = fits_of(s).front();
+    const StoneFit fit = fits_of(s).front();
     EXPECT_EQ(fit.blocks, 1);
     EXPECT_NEAR(fit.extent_of_blocks / fit.extent, 1.0, 0.04);
     EXPECT_NEAR(fit.interface / fit.size, 1.0, 0.1);

@@ -15,8 +15,7 @@ TEST(Specimen, MeetsThePapersRequest) {
     const SpecimenParameters p = paper_specimen(seed);
     const Specimen<2> s = make_specimen(p);
     // Gradation is off by at most half the smallest aggregate.
-    const double smallest =
-        0.25 * std::numbers::pi * p.aggregates.d_min * p.aggregates.d_min / p.region.extent();
+    const double smallest = 0.25 * std::numbers::pi * p.aggregates.d_min * p.aggregates.d_min / p.extent();
     EXPECT_NEAR(s.fraction_placed, 0.34, 0.5 * smallest * (1 + 1e-9));
     // The paper loses 0.03 by superposition; a rule that loses or gains more is another specimen.
     EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.03);
@@ -60,7 +59,7 @@ TEST(Specimen, WithoutAggregatesIsAllMortar) {
 
 TEST(Specimen, RefusesAFractionThatTheGradationCannotMeet) {
   SpecimenParameters p = paper_specimen(1);
-  p.region = Region::rectangle(10e-3, 10e-3);  // 0.34 of it is less than two of the smallest
+  p.outline = Region::rectangle(10e-3, 10e-3);  // 0.34 of it is less than two of the smallest
   p.blocks.count = 10;
   EXPECT_TRUE(says(message([&] { make_specimen(p); }), "too large for the specimen"));
 }
@@ -71,7 +70,7 @@ TEST(Specimen, NamesAParameterOutOfRangeAndItsValue) {
     spoil(p);
     return message([&] { make_specimen(p); });
   };
-  EXPECT_TRUE(says(refusal([](auto& p) { p.region = {}; }), "area of the specimen is 0"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.outline = {}; }), "area of the specimen is 0"));
   EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.fraction = 1; }), "aggregate fraction is 1"));
   EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.d_min = 0; }), "smallest aggregate diameter is 0"));
   EXPECT_TRUE(

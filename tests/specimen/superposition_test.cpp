@@ -19,7 +19,7 @@ const Cells<2> quarters{
 
 SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5) {
   SpecimenParameters p;
-  p.region = Region::rectangle(1, 1);
+  p.outline = Region::rectangle(1, 1);
   p.superposition = rule;
   p.covered_fraction = covered_fraction;
   return p;
@@ -27,28 +27,28 @@ SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5
 
 constexpr int kMatrix = 2;
 
-std::vector<Cover> covers_of(const std::vector<Grain<2>>& circles) {
+std::vector<Cover> covers_of(const std::vector<Stone<2>>& circles) {
   return covers_of<2>(quarters, common_parts<2>(quarters, Region::rectangle(1, 1), circles), circles);
 }
 
-Superposed superposed(const std::vector<Grain<2>>& circles, const SpecimenParameters& p) {
-  return superpose<2>(quarters, p.region, circles, p, kMatrix);
+Superposed superposed(const std::vector<Stone<2>>& circles, const SpecimenParameters& p) {
+  return superpose<2>(quarters, *p.region(), circles, p, kMatrix);
 }
 
 TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {
-  const std::vector<Grain<2>> circle{{{{0.5, 0.5}}, 0.5}};
+  const std::vector<Stone<2>> circle{{{{0.5, 0.5}}, 0.5}};
   for (const Cover& cover : covers_of(circle)) EXPECT_NEAR(cover.share, std::numbers::pi / 16, 1e-14);
 }
 
 TEST(Superposition, SeveralCirclesAddUpInACell) {
-  const std::vector<Grain<2>> circles{{{{0.1, 0.1}}, 0.1}, {{{0.3, 0.3}}, 0.2}};
+  const std::vector<Stone<2>> circles{{{{0.1, 0.1}}, 0.1}, {{{0.3, 0.3}}, 0.2}};
   const std::vector<Cover> covers = covers_of(circles);
   EXPECT_NEAR(covers[0].share, std::numbers::pi * (0.05 * 0.05 + 0.1 * 0.1) / 0.25, 1e-14);
   EXPECT_EQ(covers[3].share, 0);
 }
 
 TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
-  const std::vector<Grain<2>> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
+  const std::vector<Stone<2>> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
   const double covered = covers_of(circle)[0].share;
   EXPECT_EQ(superposed(circle, unit_square(Superposition::area, covered - 1e-9)).phase[0], 0);
   EXPECT_EQ(superposed(circle, unit_square(Superposition::area, covered + 1e-9)).phase[0], kMatrix);
@@ -57,7 +57,7 @@ TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
 // Promise: the rule that fits takes the most covered cells, as many as bring their area nearest to that of
 // the circles.
 TEST(Superposition, TheFittingFractionKeepsTheArea) {
-  const std::vector<Grain<2>> circles{{{{0.25, 0.25}}, 0.5}, {{{0.75, 0.3}}, 0.3}, {{{0.6, 0.75}}, 0.1}};
+  const std::vector<Stone<2>> circles{{{{0.25, 0.25}}, 0.5}, {{{0.75, 0.3}}, 0.3}, {{{0.6, 0.75}}, 0.1}};
   const std::vector<Cover> covers = covers_of(circles);                // 0.79, 0.28, 0.02, 0.01
   const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);  // 0.275: one cell of 0.25
   ASSERT_NEAR(area, 0.275, 1e-3);
@@ -66,14 +66,14 @@ TEST(Superposition, TheFittingFractionKeepsTheArea) {
   EXPECT_LT(bound, covers[0].share);
   EXPECT_GT(bound, std::ranges::max(std::span(covers).subspan(1), {}, &Cover::share).share);
   EXPECT_EQ(fitted.phase, (std::vector<int>{0, kMatrix, kMatrix, kMatrix}));
-  const std::vector<Grain<2>> small{{{{0.25, 0.25}}, 0.1}};
+  const std::vector<Stone<2>> small{{{{0.25, 0.25}}, 0.1}};
   EXPECT_EQ(superposed(small, unit_square(Superposition::fit)).covered_fraction,
             std::nextafter(1.0, 0.0));  // nothing fits better than no cell
 }
 
 TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
-  const std::vector<Grain<2>> small{{{{0.25, 0.25}}, 0.02}};
-  const std::vector<Grain<2>> beside{{{{0.6, 0.6}}, 0.2}};
+  const std::vector<Stone<2>> small{{{{0.25, 0.25}}, 0.02}};
+  const std::vector<Stone<2>> beside{{{{0.6, 0.6}}, 0.2}};
   EXPECT_EQ(superposed(small, unit_square(Superposition::centroid)).phase[0], 0);
   EXPECT_EQ(superposed(beside, unit_square(Superposition::centroid)).phase[3], kMatrix);
 }
@@ -84,22 +84,22 @@ TEST(Superposition, WithoutAggregatesAllIsMortar) {
 }
 
 TEST(Superposition, ACellIsOfThePhaseThatCoversMostOfIt) {
-  const std::vector<Grain<2>> circles{{{{0.15, 0.15}}, 0.2, 0}, {{{0.3, 0.35}}, 0.26, 1}};
+  const std::vector<Stone<2>> circles{{{{0.15, 0.15}}, 0.2, 0}, {{{0.3, 0.35}}, 0.26, 1}};
   const double covered = covers_of(circles)[0].share;
   EXPECT_EQ(superposed(circles, unit_square(Superposition::area, covered - 1e-9)).phase[0], 1);
   EXPECT_EQ(superposed(circles, unit_square(Superposition::area, covered + 1e-9)).phase[0], kMatrix);
 }
 
 TEST(Superposition, AFibreTakesTheCellsThatItRunsThrough) {
-  std::vector<int> phase(4, kMatrix), grain(4, 7);
+  std::vector<int> phase(4, kMatrix), stone(4, 7);
   const std::vector<Fibre> fibre{{{{0.1, 0.1}}, {{0.9, 0.2}}, 0}};
-  superpose(quarters, fibre, phase, grain);
+  superpose(quarters, fibre, phase, stone);
   EXPECT_EQ(std::ranges::count(phase, 0), 2);
   EXPECT_EQ(phase[0], 0);
   EXPECT_EQ(phase[3], kMatrix);
-  EXPECT_EQ(grain, (std::vector<int>{-1, -1, 7, 7})) << "a fibre is no stone";
+  EXPECT_EQ(stone, (std::vector<int>{-1, -1, 7, 7})) << "a fibre is no stone";
   const std::vector<Fibre> along_an_edge{{{{0.1, 0.5}}, {{0.4, 0.5}}, 1}};  // runs through none
-  superpose(quarters, along_an_edge, phase, grain);
+  superpose(quarters, along_an_edge, phase, stone);
   EXPECT_EQ(std::ranges::count(phase, 1), 0);
 }
 
@@ -114,7 +114,7 @@ TEST(Superposition, CellsShareOutTheCirclesExactly) {
     sum += covers[c].share * area(polygon);
   }
   double circles = 0;
-  for (const Grain<2>& a : s.stones) circles += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  for (const Stone<2>& a : s.stones) circles += 0.25 * std::numbers::pi * a.diameter * a.diameter;
   EXPECT_NEAR(sum / circles, 1, 1e-11);  // rounding of 5000 cells, each relative to its own small area
 }
 

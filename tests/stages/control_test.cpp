@@ -33,7 +33,8 @@ specimen::Specimen<2> grid(double length, double depth, int columns, int rows) {
       t.cells.push_back({corner, corner + rows + 1, corner + rows + 2, corner + 1});
       phase.push_back(2 * i < columns ? 0 : 1);
     }
-  return specimen::specimen_from({std::move(t), {"aggregate", "mortar"}, std::move(phase)});
+  return specimen::specimen_from(
+      specimen::completed({std::move(t), {"aggregate", "mortar"}, std::move(phase)}));
 }
 
 specimen::Specimen<2> bar_of_blocks() {

@@ -144,9 +144,8 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
   auto parameters = setup.specimen;
   parameters.blocks.count = 120;
   parameters.superposition = specimen::Superposition::fit;
-  const auto specimen =
-      specimen::make_specimen<3>(parameters, specimen::Prism(section, specimen::Prism::Axis::y, kHeight));
-  return make_body(specimen, 1.0, {}, setup.moving);
+  parameters.outline = specimen::Prism(section, specimen::Prism::Axis::y, kHeight);
+  return make_body(specimen::make_specimen<3>(parameters), 1.0, {}, setup.moving);
 }
 
 // Promise: the stress of a cylinder of polyhedra is the force over the area of a circle, and its lateral

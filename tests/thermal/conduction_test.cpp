@@ -22,7 +22,7 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
-#include "solid/bodies.hpp"
+#include "specimen/solid_bodies.hpp"
 
 namespace pyroclast {
 namespace {
@@ -87,7 +87,7 @@ TEST(ConductionVerification, CarriesALinearFieldExactlyThroughTetrahedra) {
 
 ModelOf<2> concrete_model() {
   specimen::SpecimenParameters p;
-  p.region = specimen::Region::rectangle(0.15, 0.3);
+  p.outline = specimen::Region::rectangle(0.15, 0.3);
   p.seed = 3;
   p.aggregates = {.fraction = 0.2,
                   .d_min = 0.016,
@@ -668,7 +668,7 @@ ModelOf<3> raw_cells(int blocks) {
   p.seed = 1;
   p.blocks.count = blocks;
   p.blocks.radius_spread = 0.3;
-  return make_model(specimen::make_specimen<3>(p, specimen::cuboid(0.1, 0.1, 0.1)));
+  return make_model(specimen::made_in(p, specimen::cuboid(0.1, 0.1, 0.1)));
 }
 
 TEST(Conduction, ASharpFrontInRawCellsStaysWithinItsBounds) {

@@ -14,7 +14,7 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
-#include "solid/bodies.hpp"
+#include "specimen/solid_bodies.hpp"
 
 /// Published benchmarks and independent solutions.
 namespace pyroclast {
@@ -165,7 +165,7 @@ std::array<FieldError, 2> errors_of_step(bool is_cylinder, int blocks) {
   p.blocks.radius_spread = 0.3;
   p.blocks.shortest_edge = 0.35;
   p.blocks.largest_bend = pi / 9.0;
-  const ModelOf<3> model = make_model(specimen::make_specimen<3>(p, body));
+  const ModelOf<3> model = make_model(specimen::made_in(p, body));
   constexpr double initial = 20.0, step = 100.0;
   const auto material = constant_material(1.5, 2.2e6);
   Conduction<3> heat(model, {material, material},  // of mortar, and of stones, of which there are none

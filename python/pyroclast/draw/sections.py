@@ -102,7 +102,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
     if blocks.dimension == 3:
         frame_section(axes, blocks)
     else:
-        _draw_grains(axes, specimen)
+        _draw_stones(axes, specimen)
         axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
         axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
         axes.set_aspect("equal")
@@ -114,7 +114,7 @@ def morphology(specimen: SpecimenFolder) -> Figure:
     handles: list[Artist] = list(material_legend(blocks))
     if circles.rows and blocks.dimension == 2:
         handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
-                              label="placed grain" if specimen.outlines else "placed circle"))
+                              label="placed stone" if specimen.outlines else "placed circle"))
     column = style.page().is_column
     style.legend_alone(place, handles, [handle.get_label() for handle in handles],
                        loc="center" if column else "upper left", ncol=2 if column else 1)
@@ -131,8 +131,8 @@ def _axes_of_morphology(ratio: float) -> tuple[Figure, Axes, Axes]:
     return figure, *figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.0, 0.32]})
 
 
-def _draw_grains(axes: Axes, specimen: SpecimenFolder) -> None:
-    """Draws the surfaces of the grains as they were placed."""
+def _draw_stones(axes: Axes, specimen: SpecimenFolder) -> None:
+    """Draws the surfaces of the stones as they were placed."""
     circles = specimen.aggregates
     outlines: list[Patch] = [Polygon(style.MILLI * outline) for outline in specimen.outlines]
     if not outlines:

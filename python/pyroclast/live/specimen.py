@@ -1,7 +1,8 @@
-"""Specimens from arrays, meshes and labelled images."""
+"""Specimens from arrays, meshes, tessellations and labelled images."""
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..errors import Error
 from ..libraries import library
-from ..stored import mesh_cells
+from ..stored import mesh_cells, neper
 from . import label_image
 from .units import Quantity, length
 
@@ -32,9 +33,8 @@ class Specimen:
 
         deck["specimen"] = pyroclast.Specimen.from_arrays(vertices, cells, labels)
 
-    Its run keeps the blocks in its folder, so that the deck there gives the same run without the script. Arrays, meshes
-    and images make specimens of the plane; `read`, `Deck.make_specimen` and `Run.specimen` give those in space too.
-    Arrays are copies, in m.
+    Its run keeps the blocks in its folder, so that the deck there gives the same run without the script. An image makes
+    a specimen of the plane, everything else one of either space. Arrays are copies, in m.
     """
 
     def __init__(self, core: _core.Specimen, agreement: float | None = None):
@@ -44,12 +44,16 @@ class Specimen:
     @classmethod
     def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                     labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
-                    block_size: ArrayLike | None = None, stone: ArrayLike | None = None,
-                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
+                    faces: Sequence[ArrayLike] | None = None, block_size: ArrayLike | None = None,
+                    stone: ArrayLike | None = None, unit: str | Quantity | None = None,
+                    join: str | Quantity | None = None) -> Specimen:
         """Makes a specimen of cells that are made elsewhere.
 
-        vertices: (n, 2), in `unit`.
-        cells: for each the numbers of its vertices in turn, from 0, in either sense; neighbours share vertices.
+        vertices: (n, 2), in space (n, 3), in `unit`.
+        cells: for each the numbers of its vertices in turn, from 0, in either sense; neighbours share vertices. In
+            space the numbers of its faces.
+        faces: in space, for each the numbers of its vertices in turn, from 0, in either sense; two neighbours share
+            one.
         labels: of each cell, the name of its phase, or what `phases` has the name for; an array may have any shape
             that has one label for each cell, such as (cells, 1).
         phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
@@ -58,6 +62,9 @@ class Specimen:
         unit: of the vertices: "m", "mm", ...; None: they are taken in m, with a warning.
         join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
             does not have them become corners of it ("1 um"); None: cells share the vertices that they name.
+
+        In space the cells fill a box along the axes, whose lower left corner in front moves to (0, 0, 0); its sides are
+        `bottom`, `right`, `top`, `left`, `front` and `back`.
 
         Each phase needs its tables of [materials] and [contacts]. Where cells leave places free, there are holes;
         `sides` has what the sides are called. Messages count cells and vertices from 0. Warns of an outline that is
@@ -68,15 +75,16 @@ class Specimen:
         """
         unit = _stated(unit, "the vertices")
         made = _from_cells(vertices, cells, labels, phases, unit, join, () if block_size is None else block_size,
-                           () if stone is None else stone)
+                           () if stone is None else stone, faces)
         _warn_of_size(made, f"the vertices are in {_unit_name(unit)}")
         return cls(made)
 
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh, data: str | None = None, phases: Mapping[Any, str] | None = None, *,
                     unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
-        """Makes a specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of
-        triangles and quads of a higher order the corners count, so that their sides are straight.
+        """Makes a specimen of the cells of a mesh: in the plane its triangles, quads and polygons, in space its
+        tetrahedra, pyramids, wedges, hexahedra and polyhedra, which fill a box as in `from_arrays`. What has fewer
+        dimensions is left out. Of cells of a higher order the corners count, so that their sides are straight.
 
         data: name of the cell data that label the cells, such as "gmsh:physical"; None: the cell sets say what they
             are of (`*ELSET` of Abaqus), or where there are none the physical groups of gmsh.
@@ -88,10 +96,15 @@ class Specimen:
 
         Messages count from 0 the cells that are taken, in their order.
 
-        Raises Error for other cells, for a mesh that does not lie in a plane z = const., for cell data or sets that are
+        Raises Error for other cells, for a mesh of the plane that does not lie at one z, for cell data or sets that are
         not there, for a cell in no set or in two, and as `from_arrays`.
         """
         points = np.asarray(mesh.points, float)
+        if mesh_cells.dimension_of(mesh) == 3:
+            blocks, faces, of_faces = mesh_cells.cells_in_space(mesh)
+            labels, names = mesh_cells.labels_of(mesh, data, phases, blocks, 3)
+            unit = _stated(unit, "the points of the mesh")
+            return cls(_from_cells(points, of_faces, labels, names, unit, join, faces=faces))
         taken: list[int] = []
         cells: list[NDArray[Any]] = []
         for number, block in enumerate(mesh.cells):
@@ -102,8 +115,7 @@ class Specimen:
         size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
         if points.ndim == 2 and points.shape[1] == 3 and len(points) and np.ptp(points[:, 2]) > _FLAT * size:
             raise Error(f"the mesh does not lie in a plane z = const., to {_FLAT:g} of its size: z goes from "
-                        f"{points[:, 2].min():g} to {points[:, 2].max():g}; turn it into one. A specimen of a mesh is "
-                        f"of the plane; {mesh_cells.IN_SPACE}")
+                        f"{points[:, 2].min():g} to {points[:, 2].max():g}; turn it into one")
         labels, names = mesh_cells.labels_of(mesh, data, phases, taken)
         if not cells:
             raise Error(f"the mesh has no cells that can be blocks: {', '.join(mesh_cells.KINDS)}")
@@ -179,6 +191,25 @@ class Specimen:
                               f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
         _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
         return cls(whole, alike)
+
+    @classmethod
+    def from_neper(cls, file: str | Path, phases: Mapping[int, str] | str, *, unit: str | Quantity | None = None,
+                   join: str | Quantity | None = None) -> Specimen:
+        """Makes a specimen of a three-dimensional tessellation of Neper (.tess), which fills a box as in `from_arrays`.
+        One of the plane is `[blocks] file` of a deck.
+
+        phases: the name of the phase of each group of cells (`*group`); of all cells, where it is one name.
+        unit: of the file's coordinates: "m", "mm", ...; None: they are taken in m, with a warning.
+        join: as for `from_arrays`.
+
+        Raises Error, with the file, for one of another form, a periodic one, and as `from_arrays`.
+        """
+        vertices, faces, cells, groups = neper.read_tess(Path(file))
+        if not isinstance(phases, str) and groups is None:
+            raise Error(f"{file}: puts its cells into no groups (*group), so that phases is one name")
+        labels: list[Any] = [phases] * len(cells) if isinstance(phases, str) or groups is None else groups
+        names = None if isinstance(phases, str) else phases
+        return cls(_from_cells(vertices, cells, labels, names, _stated(unit, "the vertices"), join, faces=faces))
 
     @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
@@ -308,35 +339,53 @@ class Specimen:
 
 def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                 labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None, unit: str | Quantity,
-                join: str | Quantity | None, block_size: ArrayLike = (), stone: ArrayLike = ()) -> _core.Specimen:
+                join: str | Quantity | None, block_size: ArrayLike = (), stone: ArrayLike = (),
+                faces: Sequence[ArrayLike] | None = None) -> _core.Specimen:
     metres = length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
     at = np.asarray(vertices, float)
-    if at.ndim != 2 or at.shape[1] != 2:
-        raise Error(f"vertices must be (n, 2), not {at.shape}"
-                    + (f"; {mesh_cells.IN_SPACE}" if at.ndim == 2 and at.shape[1] == 3 else ""))
+    dimension = 2 if faces is None else 3
+    if at.ndim != 2 or at.shape[1] != dimension:
+        raise Error(f"vertices must be (n, {dimension}), not {at.shape}"
+                    + ("; in space, faces=[...] has the vertices of each face" if at.shape[1:] == (3,) else ""))
     sizes = np.asarray(block_size, float).ravel()
     if metres != 1.0:
         at, sizes = (x * metres if metres > 1.0 else x / (1.0 / metres) for x in (at, sizes))  # nearest double of mm
     stones = np.asarray(stone).ravel()
     if len(stones) and (stones.dtype.kind not in "iu" or stones.min() < -1 or stones.max() >= 2**31):
         raise Error("stone must be the number of a stone of each cell, from 0, or -1 for none")
-    rows = [_corners(cell, number) for number, cell in enumerate(cells)]
+    rows = [_numbers(cell, "cell", number, "vertex" if faces is None else "face") for number, cell in enumerate(cells)]
     if not rows:
         raise Error("there are no cells")
+    if len(wrong := np.flatnonzero(~np.isfinite(at).all(axis=1))):
+        raise Error(f"vertex {wrong[0]} (from 0) is not finite")
     names, phase = _named(labels, phases, len(rows))
-    first = np.cumsum([0, *map(len, rows)]).astype(np.int32)
-    return _core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase, sizes.tolist(),
-                                     stones.astype(np.int32), _join(join))
+    table: dict[str, Any] = {"phases": names, "cells": rows, "phase": phase.tolist()}
+    if faces is not None:
+        loops = table["faces"] = [_numbers(face, "face", number, "vertex") for number, face in enumerate(faces)]
+        used = [v for v in {v for loop in loops for v in loop} if v < len(at)]
+        low = at[used].min(axis=0) if used else np.zeros(3)
+        at = at - low
+        width, height, depth = at[used].max(axis=0).tolist() if used else (0.0, 0.0, 0.0)
+        table["body"] = {"axis": "z", "length_m": depth, "sides": ["bottom", "right", "top", "left"],
+                         "section_m": [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]}
+    table["vertices_m"] = at.tolist()
+    if len(sizes):
+        table["block_size_m"] = sizes.tolist()
+    if len(stones):
+        table["stone"] = stones.tolist()
+    return _core.Specimen.from_text(json.dumps(table), _join(join))
 
 
-def _corners(cell: ArrayLike, number: int) -> NDArray[np.int32]:
-    corners = np.asarray(cell)
-    if corners.ndim != 1 or corners.dtype.kind not in "iu":
-        raise Error(f"cell {number} (from 0) must be a list of vertices by their numbers")
-    if len(corners) and not 0 <= corners.min() <= corners.max() < 2**31:
-        raise Error(f"cell {number} (from 0) names vertex {corners.min() if corners.min() < 0 else corners.max()}, "
+def _numbers(item: ArrayLike, what: str, number: int, of: str) -> list[int]:
+    """Returns the numbers that a cell or a face names."""
+    named = np.asarray(item)
+    if named.ndim != 1 or named.dtype.kind not in "iu":
+        raise Error(f"{what} {number} (from 0) must be a list of {'vertices' if of == 'vertex' else 'faces'} by their "
+                    "numbers")
+    if len(named) and not 0 <= named.min() <= named.max() < 2**31:
+        raise Error(f"{what} {number} (from 0) names {of} {named.min() if named.min() < 0 else named.max()}, "
                     "which cannot be")
-    return corners.astype(np.int32)
+    return named.tolist()  # type: ignore[no-any-return]
 
 
 def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None,

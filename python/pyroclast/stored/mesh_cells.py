@@ -13,35 +13,74 @@ from ..errors import Error
 if TYPE_CHECKING:
     import meshio
 
-KINDS = {"triangle": 3, "quad": 4, "polygon": 0}  #: how many of the points are corners; 0: all
-IN_SPACE = ('blocks in space come by [specimen] shape = "polyhedra" and file, which is JSON with their faces (see '
-            "docs/do/bodies.md, Blocks made elsewhere)")
+_IN_PLANE = {"triangle": 3, "quad": 4, "polygon": 0}  # how many of the points are corners; 0: all
+_IN_SPACE = {"tetra": ("012", "013", "123", "023"), "pyramid": ("0123", "014", "124", "234", "034"),
+             "wedge": ("012", "345", "0143", "1254", "2035"),
+             "hexahedron": ("0123", "4567", "0154", "1265", "2376", "3047"),
+             "polyhedron": ()}  # corners of each face; of a polyhedron the mesh says them
+KINDS = (*_IN_PLANE, *_IN_SPACE)  #: types of cells that can be blocks
 _LESS_THAN_CELLS = ("vertex", "line")
-_OF_SPACE = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "penta_prism", "hexa_prism")
-_PHYSICAL, _PLANE = "gmsh:physical", 2  # gmsh's cell data; the dimension of its groups of cells
+_PHYSICAL = "gmsh:physical"  # gmsh's cell data
+
+
+def _kind(cell_type: str) -> str:
+    """Returns a type of cells without the number of its points."""
+    kind = re.fullmatch(r"([a-z]+?)(_?[a-z]*)(\d*)", cell_type)
+    return kind[1] + kind[2] if kind else cell_type
+
+
+def dimension_of(mesh: meshio.Mesh) -> int:
+    """Returns 3 for a mesh with cells of space, else 2."""
+    return 3 if any(_kind(block.type) in _IN_SPACE and len(block.data) for block in mesh.cells) else 2
 
 
 def corners_of_type(cell_type: str) -> int | None:
-    """Returns how many of its points are corners of a cell of a mesh, 0: all; None: it is left out."""
-    kind = re.fullmatch(r"([a-z]+?)(\d*)", cell_type)
-    name = kind[1] if kind else cell_type
-    if name in _LESS_THAN_CELLS:
+    """Returns how many of its points are corners of a cell in the plane, 0: all; None: it is left out."""
+    if (kind := _kind(cell_type)) in _LESS_THAN_CELLS:
         return None
-    if name not in KINDS:
-        raise Error(f"the mesh has cells of type {cell_type!r}; blocks can be {', '.join(KINDS)}"
-                    + (f". A specimen of a mesh is of the plane; {IN_SPACE}" if name in _OF_SPACE else ""))
-    return KINDS[name]
+    if kind not in _IN_PLANE:
+        raise Error(f"the mesh has cells of type {cell_type!r}; blocks can be {', '.join(KINDS)}")
+    return _IN_PLANE[kind]
+
+
+def cells_in_space(mesh: meshio.Mesh) -> tuple[list[int], list[list[int]], list[list[int]]]:
+    """Returns the cells of a mesh in space: the numbers of the mesh's blocks of cells that are taken, the points around
+    each face, and the faces of each cell. Cells that have the same corners of a face share it; surfaces and lines are
+    left out. Raises Error for other cells.
+    """
+    taken: list[int] = []
+    faces: list[list[int]] = []
+    cells: list[list[int]] = []
+    known: dict[tuple[int, ...], int] = {}
+
+    def number(corners: list[int]) -> int:
+        place = known.setdefault(tuple(sorted(corners)), len(faces))
+        if place == len(faces):
+            faces.append(corners)
+        return place
+
+    for i, block in enumerate(mesh.cells):
+        kind = _kind(block.type)
+        if kind in _LESS_THAN_CELLS or kind in _IN_PLANE:
+            continue
+        if kind not in _IN_SPACE:
+            raise Error(f"the mesh has cells of type {block.type!r}; blocks in space can be {', '.join(_IN_SPACE)}")
+        taken.append(i)
+        for cell in block.data:
+            loops = cell if kind == "polyhedron" else [[cell[int(c)] for c in face] for face in _IN_SPACE[kind]]
+            cells.append([number([int(point) for point in loop]) for loop in loops])
+    return taken, faces, cells
 
 
 def labels_of(mesh: meshio.Mesh, data: str | None, phases: Mapping[Any, str] | None,
-              taken: Sequence[int]) -> tuple[list[Any], Mapping[Any, str] | None]:
+              taken: Sequence[int], dimension: int = 2) -> tuple[list[Any], Mapping[Any, str] | None]:
     """Returns a label of each cell that is taken, and the names of the labels' phases.
 
     taken: numbers of the mesh's blocks of cells. Raises Error where there are no such labels.
     """
     sets = {name: parts for name, parts in mesh.cell_sets.items() if not name.startswith("gmsh:")
             and any(parts[i] is not None and len(parts[i]) for i in taken)}
-    groups = {name: int(value[0]) for name, value in mesh.field_data.items() if int(value[1]) == _PLANE}
+    groups = {name: int(value[0]) for name, value in mesh.field_data.items() if int(value[1]) == dimension}
     if data is None and sets and (phases is None or any(name in sets for name in phases)):
         return _labels_of_sets(mesh, sets, phases, taken)
     if data is None and _PHYSICAL in mesh.cell_data:

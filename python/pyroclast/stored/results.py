@@ -378,7 +378,7 @@ class SpecimenFolder:
 
     @cached_property
     def outlines(self) -> list[NDArray[np.float64]]:
-        """Outlines of grains that are not round, each (n, 2) in m; empty where all are circles."""
+        """Outlines of stones that are not round, each (n, 2) in m; empty where all are circles."""
         file = self._tables / "outlines.csv"
         if not file.exists():
             return []

@@ -488,7 +488,7 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
           "from a deck of the same concrete",
           file.string(), what, there, option, asked));
   };
-  const bool is_solid = setup.specimen.prism.has_value();
+  const bool is_solid = setup.specimen.dimension() == 3;
   if (o.cylinder && !is_solid)
     throw Error(fmt::format("--from \"{}\": is no deck of a body in space, but --cylinder asks for one",
                             file.string()));

@@ -55,8 +55,8 @@ std::string describe_specimen(const specimen::Specimen<2>& s) {
                       kMilli * m.shortest_edge_at[1]);
   text += fmt::format("                smallest zone angle {:.1f} deg, block {}\n", m.smallest_angle,
                       m.smallest_angle_cell);
-  text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n", m.edges_removed,
-                      m.edges_left_short, m.seeds_redrawn);
+  text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n",
+                      m.vertices_merged, m.edges_left_short, m.seeds_redrawn);
   return text;
 }
 

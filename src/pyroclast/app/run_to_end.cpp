@@ -107,7 +107,7 @@ std::string doing_line(const Run& run) {
 
 /// Says how far the strength of one specimen can be trusted; empty where the run measured none, or another
 /// specimen's scatter is not known.
-std::string describe_scatter(const Summary& s, const AskedSpecimen& specimen) {
+std::string describe_scatter(const Summary& s, const specimen::SpecimenParameters& specimen) {
   const auto has_strength = [](const ReportedStage& stage) {
     return std::ranges::any_of(stage.report.results, [](const Result& result) {
       return result.name == kStrength.name && std::holds_alternative<double>(result.value);
@@ -122,7 +122,8 @@ std::string describe_scatter(const Summary& s, const AskedSpecimen& specimen) {
       100.0 * like->scatter);
 }
 
-std::string describe(const Summary& s, const AskedSpecimen& specimen, const std::filesystem::path& folder) {
+std::string describe(const Summary& s, const specimen::SpecimenParameters& specimen,
+                     const std::filesystem::path& folder) {
   std::string text =
       fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
   for (std::size_t i = 0; i < s.stages.size(); ++i) {

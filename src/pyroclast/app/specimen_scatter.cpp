@@ -18,8 +18,8 @@ constexpr auto kStudiedStrengths = std::to_array<StudiedStrength>({
 
 }  // namespace
 
-std::optional<StudiedStrength> studied_like(const AskedSpecimen& s) {
-  if (s.prism || s.blocks.count == 0 || !s.blocks.finer.empty() || s.aggregates.fraction <= 0.0)
+std::optional<StudiedStrength> studied_like(const specimen::SpecimenParameters& s) {
+  if (s.prism() || s.blocks.count == 0 || !s.blocks.finer.empty() || s.aggregates.fraction <= 0.0)
     return std::nullopt;
   const double size = s.block_size() / s.aggregates.d_max;
   return *std::ranges::min_element(kStudiedStrengths, {}, [&](const StudiedStrength& studied) {

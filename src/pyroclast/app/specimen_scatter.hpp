@@ -16,6 +16,6 @@ struct StudiedStrength {
 
 /// Returns the specimens that are most like another; none where that is no plane body of blocks and
 /// aggregates.
-std::optional<StudiedStrength> studied_like(const AskedSpecimen& specimen);
+std::optional<StudiedStrength> studied_like(const specimen::SpecimenParameters& specimen);
 
 }  // namespace pyroclast::app

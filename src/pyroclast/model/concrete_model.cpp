@@ -93,7 +93,7 @@ void add_bearing_names(Model& model, const std::vector<Bearing>& bearings) {
 template <int Dim>
 int interface_of(const InterfaceTable& table, const Specimen<Dim>& specimen, int cell, int other) {
   const int phase = specimen.phase[cell];
-  const auto stone = [&](int c) { return specimen.grain.empty() ? -1 : specimen.grain[c]; };
+  const auto stone = [&](int c) { return specimen.stone.empty() ? -1 : specimen.stone[c]; };
   const bool are_stones = stone(cell) >= 0 && stone(other) >= 0;
   const bool of_two_stones = phase == specimen.phase[other] && are_stones && stone(cell) != stone(other);
   return of_two_stones ? table.between_stones(phase) : table.between(phase, specimen.phase[other]);

@@ -6,70 +6,40 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "pyroclast/base/error.hpp"
-#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
-#include "pyroclast/specimen/pieces.hpp"
-#include "pyroclast/specimen/polyhedra_file.hpp"
 
 namespace pyroclast::python {
 
 namespace {
 
-using Reals = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
-
-/// \param corners  corners of all cells in turn
-/// \param first    first corner of each cell, and the end behind the last
-/// \param size     size that each cell was to have, m; empty where cells are alike
-/// \param stone    number of the stone of each cell, -1: none; empty where none are known
-/// \param join     distance within which vertices are joined, m; 0: none
-MadeSpecimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
-                        std::vector<std::string> phases, const Integers& phase, std::vector<double> size,
-                        const Integers& stone, double join) {
-  specimen::GivenCells<2> cells;
-  const auto at = vertices.unchecked<2>();
-  for (py::ssize_t v = 0; v < at.shape(0); ++v) cells.cells.vertices.push_back({{at(v, 0), at(v, 1)}});
-  for (py::ssize_t c = 0; c + 1 < first.size(); ++c)
-    cells.cells.cells.emplace_back(corners.data() + first.data()[c], corners.data() + first.data()[c + 1]);
-  cells.phases = std::move(phases);
-  cells.phase.assign(phase.data(), phase.data() + phase.size());
-  cells.size = std::move(size);
-  cells.grain.assign(stone.data(), stone.data() + stone.size());
-  const py::gil_scoped_release no_gil;
-  return specimen::specimen_from(specimen::joined(specimen::checked(std::move(cells)), join));
+MadeSpecimen made_of(specimen::FileOfCells read) {
+  return std::visit([](auto& cells) -> MadeSpecimen { return specimen::specimen_from(std::move(cells)); },
+                    read);
 }
 
 /// Reads a file of cells, in the plane or in space.
 MadeSpecimen read(const std::string& file, double join) {
-  if (const std::string text = read_file(file); specimen::are_in_space(text)) {
-    specimen::GivenCells<3> cells = specimen::polyhedra_from(text, file, join);
-    const specimen::Prism body = cells.outline;
-    return specimen::specimen_from(std::move(cells), body);
-  }
-  specimen::GivenCells<2> cells = cells_in_metres(file, join);
-  specimen::Region region;
-  try {
-    region = specimen::outline_of(cells.cells);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", file, error.what()));
-  }
-  return specimen::specimen_from(std::move(cells), region);
+  return made_of(cells_in_metres(file, join));
+}
+
+/// Makes a specimen of cells as a file holds them, in m.
+MadeSpecimen from_text(const std::string& text, double join) {
+  const py::gil_scoped_release no_gil;
+  return made_of(specimen::cells_from(text, "", {}, join));
 }
 
 /// Makes a rectangle of blocks, all of one phase.
 MadeSpecimen rectangle(double width, double height, int count, double shortest_edge, int relaxation,
                        double radius_spread, std::uint64_t seed) {
-  AskedSpecimen p;
-  p.region = specimen::Region::rectangle(width, height);
+  specimen::SpecimenParameters p;
+  p.outline = specimen::Region::rectangle(width, height);
   p.seed = seed;
   p.aggregates.phase = p.matrix;
   p.blocks = {.count = count,
@@ -136,8 +106,7 @@ auto making(MadeSpecimen (*make)(Args...)) {
 void bind_specimens(py::module_& m) {
   using py::arg;
   py::class_<PythonSpecimen>(m, "Specimen", "Blocks, each with its material.")
-      .def_static("from_cells", making(from_cells), arg("vertices"), arg("corners"), arg("first"),
-                  arg("phases"), arg("phase"), arg("block_size"), arg("stone"), arg("join"))
+      .def_static("from_text", making(from_text), arg("text"), arg("join"))
       .def_static("rectangle", making(rectangle), arg("width"), arg("height"), arg("count"),
                   arg("shortest_edge"), arg("relaxation"), arg("radius_spread"), arg("seed"))
       .def_static("of_deck", making(of_deck), arg("deck"), arg("seed"))
@@ -161,7 +130,7 @@ void bind_specimens(py::module_& m) {
       .def_property_readonly("cells", of_either([](const auto& s) { return arrays_of(s.cells.cells); }))
       .def_property_readonly("phase", of_either([](const auto& s) { return array_of(s.phase); }))
       .def_property_readonly("block_size", of_either([](const auto& s) { return s.size; }))
-      .def_property_readonly("stone", of_either([](const auto& s) { return array_of(s.grain); }))
+      .def_property_readonly("stone", of_either([](const auto& s) { return array_of(s.stone); }))
       .def_property_readonly("stones", of_either([](const auto& s) { return stones(s); }))
       .def_property_readonly("phases", of_either([](const auto& s) { return s.phases; }))
       .def_property_readonly("shares", of_either([](const auto& s) { return s.fraction; }))

@@ -254,7 +254,7 @@ std::string first_difference(const BodyInputs& was, const BodyInputs& is) {
 }
 
 SpecimenTold told_of(const MadeSpecimen& made, const specimen::SpecimenParameters& asked, std::string text) {
-  return {std::move(text), warnings(made), grains(made), specimen_facts(made).dump(),
+  return {std::move(text), warnings(made), stones(made), specimen_facts(made).dump(),
           specimen_files(made, asked)};
 }
 
@@ -272,7 +272,7 @@ void write_body(const fs::path& folder, const BodyInputs& inputs, const Specimen
   arrays.file.group("specimen");
   arrays.add("specimen/told", std::vector<std::uint8_t>(text.begin(), text.end()), 0,
              {0, static_cast<int>(text.size())});
-  arrays.add("specimen/grain", told.grain, 0, {0, static_cast<int>(told.grain.size())});
+  arrays.add("specimen/grain", told.stone, 0, {0, static_cast<int>(told.stone.size())});
   const SpecimenNumbers& n = body.numbers;
   Json table{{"format", kBodyFormat},
              {"inputs", inputs},
@@ -470,7 +470,7 @@ SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks) const {
     json.at("facts").get_to(told.facts);
     json.at("files").get_to(told.files);
   }
-  told.grain = rows<int>("specimen/grain", {0});
+  told.stone = rows<int>("specimen/grain", {0});
   body.told = std::make_shared<const SpecimenTold>(std::move(told));
   return body;
 }

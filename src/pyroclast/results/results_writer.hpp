@@ -58,7 +58,7 @@ class ResultsWriter {
   std::filesystem::path folder_;
   std::string title_;
   std::string expansion_reading_;
-  AskedSpecimen specimen_;
+  specimen::SpecimenParameters specimen_;
   std::vector<Reference> references_;
   std::vector<std::string> warnings_;  ///< warnings of the deck, and of changes to the run
   std::vector<std::string> lost_frames_;

@@ -10,8 +10,8 @@
 
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_fit.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_fit.hpp"
 #include "pyroclast/specimen/stones_file.hpp"
 
 namespace pyroclast {
@@ -27,7 +27,7 @@ constexpr double kSideOfCircle = 0.05;  ///< side of the polygon for a circle, a
 /// \param kind    number of the kind, from 0
 /// \param placed  stones of the kind, at least one
 template <int Dim>
-std::string gradation_rows(int kind, const std::vector<specimen::Grain<Dim>>& placed,
+std::string gradation_rows(int kind, const std::vector<specimen::Stone<Dim>>& placed,
                            const specimen::AggregateParameters& asked) {
   std::vector<double> sizes;
   for (int i = 0; i <= kGradationPoints; ++i)
@@ -42,12 +42,12 @@ std::string gradation_rows(int kind, const std::vector<specimen::Grain<Dim>>& pl
 }
 
 template <int Dim>
-std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
+std::string gradation_csv(const std::vector<specimen::Stone<Dim>>& stones,
                           const specimen::SpecimenParameters& asked) {
   std::string csv = "kind,d_m,asked_percent,placed_percent\n";
   const auto kinds = specimen::stone_kinds(asked);
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
-    std::vector<specimen::Grain<Dim>> placed;
+    std::vector<specimen::Stone<Dim>> placed;
     std::ranges::copy_if(stones, std::back_inserter(placed),
                          [&](const auto& stone) { return stone.kind == kind; });
     if (!placed.empty()) csv += gradation_rows(kind, placed, *kinds[kind]);
@@ -55,19 +55,19 @@ std::string gradation_csv(const std::vector<specimen::Grain<Dim>>& stones,
   return csv;
 }
 
-/// Returns the outlines of all grains; circles among them as polygons of their area.
-std::string outlines_csv(const std::vector<specimen::Grain<2>>& grains) {
+/// Returns the outlines of all stones; circles among them as polygons of their area.
+std::string outlines_csv(const std::vector<specimen::Stone<2>>& stones) {
   std::string csv = "grain,x_m,y_m,phase\n";
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    const auto& [centre, diameter, phase, kind, shape] = grains[i];
-    for (const Vec<2>& corner : shape ? specimen::corners_of(grains[i])
+  for (std::size_t i = 0; i < stones.size(); ++i) {
+    const auto& [centre, diameter, phase, kind, shape] = stones[i];
+    for (const Vec<2>& corner : shape ? specimen::corners_of(stones[i])
                                       : specimen::circle_corners(centre, diameter, kSideOfCircle * diameter))
       csv += fmt::format("{},{:.9g},{:.9g},{}\n", i, corner[0], corner[1], phase);
   }
   return csv;
 }
 
-/// Returns the fit of each grain: how well its blocks have its shape.
+/// Returns the fit of each stone: how well its blocks have its shape.
 template <int Dim>
 std::string grain_fit_csv(const specimen::Specimen<Dim>& s) {
   std::string csv =
@@ -83,7 +83,7 @@ std::string grain_fit_csv(const specimen::Specimen<Dim>& s) {
 
 /// Adds the stones as they were placed, and their gradation.
 template <int Dim>
-void add_stones(Files& files, const std::vector<specimen::Grain<Dim>>& stones,
+void add_stones(Files& files, const std::vector<specimen::Stone<Dim>>& stones,
                 [[maybe_unused]] const std::vector<std::string>& phases,
                 const specimen::SpecimenParameters& asked) {
   std::string csv = Dim == 2 ? "x_m,y_m,diameter_m,phase\n" : "x_m,y_m,z_m,diameter_m,phase\n";
@@ -118,38 +118,35 @@ void add_common(nlohmann::ordered_json& json, const specimen::Specimen<Dim>& s) 
   json["largest_block_size_m"] = largest;
 }
 
-void add_made(Files& files, const specimen::Specimen<2>& s, const specimen::SpecimenParameters& asked) {
+template <int Dim>
+void add_made(Files& files, const specimen::Specimen<Dim>& s, const specimen::SpecimenParameters& asked) {
   nlohmann::ordered_json json;
-  json["width_m"] = s.outline.box().width();
-  json["height_m"] = s.outline.box().height();
-  add_common(json, s);
-  json["mean_edge_m"] = s.metrics.mean_edge;
-  json["shortest_edge_m"] = s.metrics.shortest_edge;
-  json["edges_removed"] = s.metrics.edges_removed;
-  json["edges_left_short"] = s.metrics.edges_left_short;
-  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
-  json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
-  files["specimen.json"] = json.dump(2) + "\n";
-  add_stones(files, s.stones, s.phases, asked);
-  if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
-}
-
-void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::SpecimenParameters& asked) {
-  nlohmann::ordered_json json;
-  const Vec<3> size = s.outline.high() - s.outline.low();
+  const Vec<Dim> size = s.outline.high() - s.outline.low();
   json["width_m"] = size[0];
   json["height_m"] = size[1];
-  json["depth_m"] = size[2];
-  json["volume_m3"] = s.outline.extent();
+  if constexpr (Dim == 3) {
+    json["depth_m"] = size[2];
+    json["volume_m3"] = s.outline.extent();
+  }
   add_common(json, s);
-  json["zones_per_block"] = s.metrics.zones_per_block;
-  json["most_corners_of_a_face"] = s.metrics.most_corners;
-  json["shortest_edge_m"] = s.metrics.shortest_edge;
-  json["lowest_zone_m"] = s.metrics.lowest_zone;
-  json["vertices_merged"] = s.metrics.vertices_merged;
-  json["edges_left_short"] = s.metrics.edges_left_short;
-  json["largest_bend_deg"] = s.metrics.largest_bend;
-  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
+  const auto& m = s.metrics;
+  if constexpr (Dim == 2) {
+    json["mean_edge_m"] = m.mean_edge;
+    json["shortest_edge_m"] = m.shortest_edge;
+    json["edges_removed"] = m.vertices_merged;
+    json["edges_left_short"] = m.edges_left_short;
+    json["seeds_redrawn"] = m.seeds_redrawn;
+    json["smallest_zone_angle_deg"] = m.smallest_angle;
+  } else {
+    json["zones_per_block"] = m.zones_per_block;
+    json["most_corners_of_a_face"] = m.most_corners;
+    json["shortest_edge_m"] = m.shortest_edge;
+    json["lowest_zone_m"] = m.lowest_zone;
+    json["vertices_merged"] = m.vertices_merged;
+    json["edges_left_short"] = m.edges_left_short;
+    json["largest_bend_deg"] = m.largest_bend;
+    json["seeds_redrawn"] = m.seeds_redrawn;
+  }
   for (const specimen::SizeClass& c : s.classes)
     json["size_classes"].push_back({{"kind", c.kind},
                                     {"from_m", c.from},
@@ -161,7 +158,7 @@ void add_made(Files& files, const specimen::Specimen<3>& s, const specimen::Spec
                                     {"without_a_block", c.without_a_block}});
   files["specimen.json"] = json.dump(2) + "\n";
   add_stones(files, s.stones, s.phases, asked);
-  if (!s.grain.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
+  if (!s.stone.empty() && !s.stones.empty()) files["grain_fit.csv"] = grain_fit_csv(s);
 }
 
 }  // namespace

@@ -165,10 +165,15 @@ specimen::Region round_section(const RoundBody& body, const ReadBlocks& read,
   return with_seats(rim, std::array{body.circle}, bearings);
 }
 
-/// Returns the body of blocks that were made before. A disc has the seats of bearings, whose ends are corners
-/// of its outline that are there already.
-specimen::Prism body_of(const specimen::GivenCells<3>& polyhedra, std::span<const ReadBearing> bearings) {
-  const specimen::Prism& body = polyhedra.outline;
+/// Returns the outline of blocks that were made before, with the seats of bearings, whose ends are corners
+/// that are there already.
+specimen::Region with_seats(const specimen::GivenCells<2>& cells, std::span<const ReadBearing> bearings) {
+  return with_seats(cells.outline, {}, bearings, cells.cells.vertices);
+}
+
+/// Does the same in space, where a disc alone has seats.
+specimen::Prism with_seats(const specimen::GivenCells<3>& cells, std::span<const ReadBearing> bearings) {
+  const specimen::Prism& body = cells.outline;
   const specimen::Region& section = body.section();
   if (body.axis() != specimen::Prism::Axis::z || !section.sides().front().is_round) return body;
   const Circle circle{0.5 * (section.box().low + section.box().high),
@@ -182,107 +187,110 @@ std::vector<std::string> side_names(std::size_t count) {
   return names;
 }
 
+/// Returns the solid of a deck.
+specimen::Prism prism_of(const ReadOutline& o, double depth, const ReadBlocks& read,
+                         std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes) {
+  using enum specimen::Prism::Axis;
+  if (o.shape == Shape::cylinder)
+    return {round_section({{{}, o.diameter}, y, o.height}, read, sizes, {}), y, o.height};
+  if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
+  if (o.shape == Shape::polygon)
+    return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
+  return {round_section({{{}, o.diameter}, z, depth}, read, sizes, bearings), z, depth};
+}
+
+/// Returns the region of a deck in the plane.
+specimen::Region region_of(const ReadOutline& o, const ReadBlocks& read,
+                           std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes) {
+  const specimen::BlockParameters& blocks = read.parameters;
+  if (o.shape == Shape::tessellation)
+    return with_seats(specimen::outline_of(*blocks.cells), {}, bearings, blocks.cells->vertices);
+  std::vector<Circle> circles;
+  const auto round = [&](const Circle& circle, double size) {
+    circles.push_back(circle);
+    return corners_of(circle, size, sizes, bearings, [&](const Vec<2>& place) { return sizes->at(place); });
+  };
+  const double area =
+      std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
+  double size = read.size_in(area);
+  specimen::Region region;
+  if (o.shape == Shape::rectangle) {
+    region = specimen::Region::rectangle(o.width, o.height);
+  } else if (o.shape == Shape::polygon) {
+    region = specimen::Region::polygon(o.corners, side_names(o.corners.size()));
+  } else {
+    region = specimen::Region::polygon(round({{}, o.diameter}, size), {"rim"}, true);
+    if (o.shape == Shape::ring)
+      region =
+          region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
+  }
+  size = read.size_in(region.extent());
+  std::vector<specimen::Hole> holes;
+  for (const auto& hole : o.holes)
+    holes.push_back(hole.corners.empty()
+                        ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}, size), true}
+                        : specimen::Hole{hole.name, hole.corners, false});
+  std::vector<specimen::Notch> notches = o.notches;
+  for (specimen::Notch& n : notches)
+    n.point = specimen::slot_point(n.length(), n.width, sizes ? sizes->at(n.tip) : size);
+  return with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
+}
+
 }  // namespace
 
-specimen::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
-                           const ReadBlocks& read, std::span<const ReadBearing> bearings,
-                           const specimen::BlockSizes* sizes) {
-  using enum specimen::Prism::Axis;
-  const specimen::Prism stand_in(specimen::Region::rectangle(1.0, 1.0), z, 1.0);
-  if (!s.ok()) return stand_in;
+std::variant<specimen::Region, specimen::Prism> make_outline(const Section& s, const ReadOutline& o,
+                                                             const DeckSpace& space, const ReadBlocks& read,
+                                                             std::span<const ReadBearing> bearings,
+                                                             const specimen::BlockSizes* sizes) {
+  using Outline = std::variant<specimen::Region, specimen::Prism>;
+  const bool is_file = o.shape == Shape::cells || o.shape == Shape::polyhedra;
+  const bool is_missing = o.shape == Shape::tessellation && !read.parameters.cells;  // an error already
   try {
-    if (o.polyhedra) return body_of(*o.polyhedra, bearings);
-    if (o.shape == Shape::cylinder)
-      return {round_section({{{}, o.diameter}, y, o.height}, read, sizes, {}), y, o.height};
-    const double depth = *space.depth;
-    if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
-    if (o.shape == Shape::polygon)
-      return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
-    return {round_section({{{}, o.diameter}, z, depth}, read, sizes, bearings), z, depth};
-  } catch (const Error& error) {
-    if (o.shape == Shape::polygon)
-      s.error("corners", error.what());
-    else if (o.polyhedra)
-      s.error("file", error.what());
-    else
-      s.error(error.what());
-    return stand_in;
-  }
-}
-
-specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadBlocks& read,
-                             std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes) {
-  const specimen::BlockParameters& blocks = read.parameters;
-  const bool is_missing = o.shape == Shape::tessellation && !blocks.cells;  // an error already
-  if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
-  try {
-    if (o.cells)
-      return with_seats(specimen::outline_of(o.cells->cells), {}, bearings, o.cells->cells.vertices);
-    if (o.shape == Shape::tessellation)
-      return with_seats(specimen::outline_of(*blocks.cells), {}, bearings, blocks.cells->vertices);
-    std::vector<Circle> circles;
-    const auto round = [&](const Circle& circle, double size) {
-      circles.push_back(circle);
-      return corners_of(circle, size, sizes, bearings, [&](const Vec<2>& place) { return sizes->at(place); });
-    };
-    const double area =
-        std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
-    double size = read.size_in(area);
-    specimen::Region region;
-    if (o.shape == Shape::rectangle) {
-      region = specimen::Region::rectangle(o.width, o.height);
-    } else if (o.shape == Shape::polygon) {
-      region = specimen::Region::polygon(o.corners, side_names(o.corners.size()));
-    } else {
-      region = specimen::Region::polygon(round({{}, o.diameter}, size), {"rim"}, true);
-      if (o.shape == Shape::ring)
-        region =
-            region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
+    if (s.ok() && o.cells)
+      return std::visit([&](const auto& cells) -> Outline { return with_seats(cells, bearings); }, *o.cells);
+    if (s.ok() && !is_missing && !is_file) {
+      if (space.is_solid()) return prism_of(o, space.depth.value_or(0.0), read, bearings, sizes);
+      specimen::Region region = region_of(o, read, bearings, sizes);
+      if (o.shape != Shape::tessellation && read.parameters.count == 0 && read.size == 0.0 &&
+          !region.is_rectangle())
+        s.error(
+            "shape",
+            "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
+      return region;
     }
-    size = read.size_in(region.extent());
-    std::vector<specimen::Hole> holes;
-    for (const auto& hole : o.holes)
-      holes.push_back(hole.corners.empty()
-                          ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}, size), true}
-                          : specimen::Hole{hole.name, hole.corners, false});
-    std::vector<specimen::Notch> notches = o.notches;
-    for (specimen::Notch& n : notches)
-      n.point = specimen::slot_point(n.length(), n.width, sizes ? sizes->at(n.tip) : size);
-    region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
-    if (blocks.count == 0 && read.size == 0.0 && !region.is_rectangle())
-      s.error("shape",
-              "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
-    return region;
   } catch (const Error& error) {
     if (o.cells)
       s.error("file", error.what());
+    else if (space.is_solid() && o.shape == Shape::polygon)
+      s.error("corners", error.what());
     else
       s.error(error.what());
-    return specimen::Region::rectangle(1.0, 1.0);
   }
+  const specimen::Region square = specimen::Region::rectangle(1.0, 1.0);
+  return space.is_solid() ? Outline(specimen::Prism(square, specimen::Prism::Axis::z, 1.0)) : Outline(square);
 }
 
-bool is_outline_known(const Section& root, const AskedSpecimen& specimen) {
+bool is_outline_known(const Section& root, const specimen::SpecimenParameters& specimen) {
   return root.section("specimen").ok() && (specimen.blocks.count > 0 || specimen.blocks.cells);
 }
 
-void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings) {
-  const std::vector<std::string> sides = specimen.sides();
+void check_bearings(const specimen::SpecimenParameters& specimen, std::span<const ReadBearing> bearings) {
+  const std::vector<std::string> sides = specimen::names_of(specimen.sides());
   std::vector<std::string> names = sides;
-  if (specimen.prism)
-    for (const specimen::Side& side : specimen.prism->section().sides())
+  if (specimen.prism())
+    for (const specimen::Side& side : specimen.sides())
       if (side.is_round) std::erase(names, side.name);  // no bearing of a solid lies on a bent side yet
   const auto has_seat = [&](const ReadBearing& b) {
     return std::ranges::find(sides, b.bearing.side) != sides.end();
   };
   for (const ReadBearing& b : bearings)
-    if (b.at && specimen.prism && b.section.ok() && !has_seat(b))
+    if (b.at && specimen.prism() && b.section.ok() && !has_seat(b))
       b.section.error("at",
                       fmt::format("a bearing on a part of a side can be made in a solid only on the rim of "
                                   "a disc yet; side = ... lays one on all of {}",
                                   fmt::join(names, ", ")));
   for (const ReadBearing& b : bearings) {
-    if (!b.z || !specimen.prism || !b.section.ok()) continue;
+    if (!b.z || !specimen.prism() || !b.section.ok()) continue;
     const double middle = 0.5 * (specimen.low()[2] + specimen.high()[2]);
     if (std::abs(*b.z - middle) > kOnCircle * (specimen.high()[2] - specimen.low()[2]))
       b.section.error("at",
@@ -300,7 +308,7 @@ void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> 
     if (!b.at && b.section.ok() && std::ranges::find(names, b.bearing.side) == names.end())
       b.section.error("side",
                       fmt::format("must be a{} side of the specimen, one of {}; got \"{}\"",
-                                  specimen.prism ? " plane" : "", fmt::join(names, ", "), b.bearing.side));
+                                  specimen.prism() ? " plane" : "", fmt::join(names, ", "), b.bearing.side));
 }
 
 }  // namespace pyroclast

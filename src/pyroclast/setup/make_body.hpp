@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <variant>
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
@@ -11,23 +12,18 @@
 
 namespace pyroclast {
 
-/// Returns the solid of a deck; a cube stands in for an error.
-/// \param sizes  sizes of blocks where they are finer in parts
-specimen::Prism make_prism(const Section& s, const ReadOutline& o, const DeckSpace& space,
-                           const ReadBlocks& read, std::span<const ReadBearing> bearings,
-                           const specimen::BlockSizes* sizes = nullptr);
-
-/// Returns the region of a deck in the plane; a square stands in for an error.
+/// Returns the outline of a deck; a square or a cube stands in for an error.
 /// \param sizes  sizes of blocks where they are finer in parts: circles have their sides about as long
-specimen::Region make_region(const Section& s, const ReadOutline& o, const ReadBlocks& read,
-                             std::span<const ReadBearing> bearings,
-                             const specimen::BlockSizes* sizes = nullptr);
+std::variant<specimen::Region, specimen::Prism> make_outline(const Section& s, const ReadOutline& o,
+                                                             const DeckSpace& space, const ReadBlocks& read,
+                                                             std::span<const ReadBearing> bearings,
+                                                             const specimen::BlockSizes* sizes = nullptr);
 
 /// Tells whether the outline of a specimen is that of the deck, and does not stand in for an error in its
 /// table or in a file of blocks.
-bool is_outline_known(const Section& root, const AskedSpecimen& specimen);
+bool is_outline_known(const Section& root, const specimen::SpecimenParameters& specimen);
 
 /// Records an error for each bearing on a side that the specimen does not have.
-void check_bearings(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings);
+void check_bearings(const specimen::SpecimenParameters& specimen, std::span<const ReadBearing> bearings);
 
 }  // namespace pyroclast

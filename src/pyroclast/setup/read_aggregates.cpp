@@ -18,8 +18,8 @@
 #include "pyroclast/setup/sieve_curve.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grading_curve.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
+#include "pyroclast/specimen/stone.hpp"
 #include "pyroclast/specimen/stones_file.hpp"
 #include "pyroclast/tables/measured_table.hpp"
 #include "pyroclast/tables/read_choice.hpp"
@@ -160,13 +160,13 @@ void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
 }
 
 template <int Dim>
-double extent_of(const specimen::Stone<Dim>& stone) {
+double extent_of(const specimen::KnownStone<Dim>& stone) {
   return stone.shape ? stone.shape->extent() : specimen::extent_of_round<Dim>(stone.diameter);
 }
 
 /// Sets the gradation to that of stones that are known, and keeps these.
 template <int Dim>
-void set_known(std::vector<specimen::Stone<Dim>> stones, specimen::AggregateParameters& a) {
+void set_known(std::vector<specimen::KnownStone<Dim>> stones, specimen::AggregateParameters& a) {
   std::vector<std::pair<double, double>> sizes;  // diameter and extent
   for (const auto& stone : stones) sizes.emplace_back(stone.diameter, extent_of(stone));
   std::ranges::stable_sort(sizes, {}, &std::pair<double, double>::first);
@@ -214,7 +214,7 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
   if (phases.empty()) phases = {a.phase};
   if (!read || !s.ok()) return;
   a.place = fmt::format("{}: {}", s.where("csv"), s.path());
-  std::vector<specimen::Stone<Dim>> stones;
+  std::vector<specimen::KnownStone<Dim>> stones;
   try {
     std::vector<std::vector<double>> values;  // by column
     for (std::size_t i = 0; i < read->columns.size(); ++i)
@@ -243,7 +243,7 @@ void read_known_stones(const Section& s, const std::filesystem::path& folder, co
 
 using Columns = std::vector<std::vector<double>>;
 template <int Dim>
-using StoneAndEnd = std::pair<specimen::Stone<Dim>, std::size_t>;
+using StoneAndEnd = std::pair<specimen::KnownStone<Dim>, std::size_t>;
 
 template <int Dim>
 void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
@@ -286,13 +286,13 @@ void read_surfaces(const Section& s, const std::filesystem::path& folder, specim
   }
 }
 
-/// Reads outlines that are known: points of the outline of each grain, in turn.
+/// Reads outlines that are known: points of the outline of each stone, in turn.
 void read_outlines(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
   const Section own =
       s.section("outlines",
-                "outlines of all grains, in the place of a grading: `specimen/outlines.csv` of a "
-                "run, or a table of the number of the grain, x, y of a point of its outline, and "
-                "the number of a phase or none; points of a grain follow each other, and the last may repeat "
+                "outlines of all stones, in the place of a grading: `specimen/outlines.csv` of a "
+                "run, or a table of the number of the stone, x, y of a point of its outline, and "
+                "the number of a phase or none; points of a stone follow each other, and the last may repeat "
                 "the first");
   const StoneColumns asked{{"grain", unit::dimensionless, {{&meaning::grain}, {&meaning::index}}},
                            {"x", unit::length, {{&meaning::x}}},
@@ -325,45 +325,45 @@ specimen::Spread spread_of(const Section& s, std::string_view key, const std::ve
 }
 
 specimen::ShapeParameters read_shape(const Section& s, const DeckSpace& space) {
-  using specimen::GrainShape;
+  using specimen::StoneShape;
   specimen::ShapeParameters p;
-  p.kind = s.choice<GrainShape>(
+  p.kind = s.choice<StoneShape>(
       "kind",
-      {{"ellipse", GrainShape::ellipse, "an ellipse, in a solid an ellipsoid"},
-       {"polygon", GrainShape::polygon,
+      {{"ellipse", StoneShape::ellipse, "an ellipse, in a solid an ellipsoid"},
+       {"polygon", StoneShape::polygon,
         "a convex polygon with corners at random on an ellipse, in a solid a polyhedron with corners on an "
         "ellipsoid"},
-       {"harmonics", GrainShape::harmonics,
+       {"harmonics", StoneShape::harmonics,
         "r = 1 + sum D_n cos(n angle + phase_n) with n from 3 to 12, drawn out to its elongation; in a solid "
         "with spherical harmonics of these degrees"}},
-      "shape of the grains; without this table they are circles, in a solid balls");
+      "shape of the stones; without this table they are circles, in a solid balls");
   p.elongation = spread_of(s, "elongation",
                            s.numbers("elongation", Range::between(1.0, 5.0).usually(1.0, 2.5),
                                      "least and largest length over width of the ellipse, or ellipsoid"));
   if (s.has("flatness")) {
     if (!space.is_solid())
-      s.error("flatness", "is width over thickness of grains of a solid; those of a plane have elongation");
+      s.error("flatness", "is width over thickness of stones of a solid; those of a plane have elongation");
     p.flatness = spread_of(s, "flatness",
                            s.numbers("flatness", Range::between(1.0, 5.0).usually(1.0, 2.5),
                                      "least and largest width over thickness in a solid; without this key "
-                                     "grains are as thick as wide"));
+                                     "stones are as thick as wide"));
   }
   s.know({"flatness"});
   const double turn = 2.0 * std::numbers::pi;
   const auto angles = s.optional_quantities(
       "orientation", unit::angle, Range::between(-turn, turn),
       "least and largest angle of the length from the x axis; without this key all angles are as likely, and "
-      "grains of a solid are always turned at random");
+      "stones of a solid are always turned at random");
   if (!angles.empty() && space.is_solid())
-    s.error("orientation", "grains of a solid are turned at random: leave the key out");
+    s.error("orientation", "stones of a solid are turned at random: leave the key out");
   if (!angles.empty()) p.orientation = spread_of(s, "orientation", angles);
-  if (p.kind == GrainShape::polygon)
+  if (p.kind == StoneShape::polygon)
     p.corners = spread_of(s, "corners",
                           s.numbers("corners", Range::between(space.is_solid() ? 4.0 : 3.0, 24.0),
                                     "least and largest number of corners; in a solid from 4 on"));
   else
     s.know({"corners"});
-  if (p.kind == GrainShape::harmonics) {
+  if (p.kind == StoneShape::harmonics) {
     p.roughness = spread_of(
         s, "roughness",
         s.numbers("roughness", Range::between(0.0, 0.2).usually(0.0, 0.1), "least and largest D_3"));
@@ -423,7 +423,7 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
   else
     read_fuller_grading(s, a);
   if (const auto shape = s.optional_section(
-          "grain_shape", "shapes of the grains; their size is the sieve that they pass, their width"))
+          "grain_shape", "shapes of the stones; their size is the sieve that they pass, their width"))
     a.shape = read_shape(*shape, space);
   a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
                              "between two aggregates, and between an aggregate and the outline");
@@ -465,7 +465,7 @@ void set_fraction(double extent_of_specimen, specimen::AggregateParameters& a) {
   a.fraction = extent / extent_of_specimen;
 }
 
-void check_size(const Section& s, const AskedSpecimen& p) {
+void check_size(const Section& s, const specimen::SpecimenParameters& p) {
   const Vec<3> size = p.high() - p.low();
   double narrowest = size[0];
   for (int i = 1; i < p.dimension(); ++i) narrowest = std::min(narrowest, size[i]);

@@ -24,6 +24,6 @@ void set_fraction(double extent_of_specimen, specimen::AggregateParameters& a);
 
 /// Records an error where the largest aggregate has no place, and warns where the specimen is only a few of
 /// them wide.
-void check_size(const Section& s, const AskedSpecimen& p);
+void check_size(const Section& s, const specimen::SpecimenParameters& p);
 
 }  // namespace pyroclast

@@ -17,7 +17,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/base/overloaded.hpp"
-#include "pyroclast/specimen/json_lists.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 
 namespace pyroclast {
@@ -176,15 +176,21 @@ int count_in_range(const Section& blocks, double count) {
   return 0;
 }
 
+std::span<const specimen::Notch> notches_of(const specimen::SpecimenParameters& specimen) {
+  if (!specimen.region()) return {};
+  return specimen.region()->notches();
+}
+
 /// Returns the names of all parts near which blocks may be finer.
-std::vector<std::string> parts_of(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings,
+std::vector<std::string> parts_of(const specimen::SpecimenParameters& specimen,
+                                  std::span<const ReadBearing> bearings,
                                   std::span<const SetParameters> sets) {
   std::vector<std::string> names{"outline"};
   const auto add = [&](const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
-  for (const std::string& side : specimen.sides()) add(side);
-  for (const specimen::Notch& notch : specimen.region.notches()) {
+  for (const specimen::Side& side : specimen.sides()) add(side.name);
+  for (const specimen::Notch& notch : notches_of(specimen)) {
     add(notch.name);
     add(notch.name + kTip);
   }
@@ -193,30 +199,21 @@ std::vector<std::string> parts_of(const AskedSpecimen& specimen, std::span<const
   return names;
 }
 
-/// Returns a piece of the plane, of one place or two.
-specimen::FinerPiece piece_of(const Vec<2>& from, const Vec<2>& to) {
-  return {resized<3>(from), resized<3>(to)};
-}
-
-/// Adds the pieces of a body's surface that are of a side, or the whole surface, "outline".
-void add_side(const AskedSpecimen& specimen, const std::string& name, specimen::FinerPart& part) {
+/// Adds the parts of a body's surface that are of a side, or the whole surface, "outline".
+void add_side(const specimen::SpecimenParameters& specimen, const std::string& name,
+              specimen::FinerPart& part) {
   const bool is_all = name == "outline";
-  const auto& sides = specimen.prism ? specimen.prism->sides() : specimen.region.sides();
-  const auto add = [&](int side, const specimen::FinerPiece& piece) {
+  const auto& sides = specimen.sides();
+  for (specimen::FlatPart& flat : specimen.flat_parts()) {
+    int side = flat.side;
     while (side >= 0 && !is_all && sides[side].name != name) side = sides[side].part_of;
-    if (side >= 0) part.pieces.push_back(piece);
-  };
-  if (specimen.prism)
-    for (std::size_t plane = 0; plane < specimen.prism->planes().size(); ++plane)
-      add(specimen.prism->planes()[plane].side, specimen.prism->corners_on(plane));
-  else
-    for (const specimen::Piece& piece : specimen.region.pieces())
-      add(piece.side, piece_of(piece.from, piece.to));
+    if (side >= 0) part.pieces.push_back(std::move(flat.corners));
+  }
 }
 
 /// Gives finer blocks the place of a part by its name. A set without a place has that of the set that it lies
 /// within. Records an error where there is none.
-void find_part(const AskedSpecimen& specimen, std::span<const ReadBearing> bearings,
+void find_part(const specimen::SpecimenParameters& specimen, std::span<const ReadBearing> bearings,
                std::span<const SetParameters> sets, std::string name, ReadFiner& finer) {
   specimen::FinerPart& part = finer.part;
   if (const auto set = std::ranges::find(sets, name, &SetParameters::name); set != sets.end()) {
@@ -243,8 +240,8 @@ void find_part(const AskedSpecimen& specimen, std::span<const ReadBearing> beari
       b != bearings.end())
     name = b->bearing.side;
   add_side(specimen, name, part);
-  for (const specimen::Notch& notch : specimen.region.notches()) {
-    if (notch.name == name) part.pieces.push_back(piece_of(notch.mouth, notch.tip));
+  for (const specimen::Notch& notch : notches_of(specimen)) {
+    if (notch.name == name) part.pieces.push_back({resized<3>(notch.mouth), resized<3>(notch.tip)});
     if (notch.name + kTip == name) part.pieces.push_back({resized<3>(notch.tip)});
   }
   if (!part.pieces.empty()) return;
@@ -338,7 +335,7 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
 }
 
 bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBearing> bearings,
-                std::span<const SetParameters> sets, const AskedSpecimen& p) {
+                std::span<const SetParameters> sets, const specimen::SpecimenParameters& p) {
   specimen::BlockParameters& b = read.parameters;
   for (ReadFiner& finer : read.finer) {
     if (!finer.part.name.empty()) find_part(p, bearings, sets, finer.part.name, finer);
@@ -349,10 +346,9 @@ bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBea
            std::ranges::all_of(read.finer, [](const ReadFiner& finer) { return finer.section.ok(); });
   };
   if (!all_ok()) return false;
-  if (p.prism)
-    find_sizes(blocks, specimen::room_in(*p.prism), read.size, b);
-  else
-    find_sizes(blocks, specimen::room_of_blocks(p.region), read.size, b);
+  std::visit(
+      [&](const auto& outline) { find_sizes(blocks, specimen::room_of_blocks(outline), read.size, b); },
+      p.outline);
   for (const ReadFiner& finer : read.finer)
     if (blocks.ok() && finer.part.size >= b.largest_size)
       finer.section.error(
@@ -363,7 +359,7 @@ bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBea
   return all_ok();
 }
 
-int count_of(const Section& blocks, const AskedSpecimen& specimen, double size) {
+int count_of(const Section& blocks, const specimen::SpecimenParameters& specimen, double size) {
   return count_in_range(blocks, specimen.extent() / std::pow(size, specimen.dimension()));
 }
 

@@ -45,9 +45,9 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
 /// Makes blocks finer in parts: finds the places of these, and the number of all blocks, or the size of those
 /// far from them. Tells whether it could; records an error where blocks do not become finer, or are too few.
 bool make_finer(const Section& blocks, ReadBlocks& read, std::span<const ReadBearing> bearings,
-                std::span<const SetParameters> sets, const AskedSpecimen& p);
+                std::span<const SetParameters> sets, const specimen::SpecimenParameters& p);
 
 /// Returns the number of blocks of a size. Records an error where it is out of range.
-int count_of(const Section& blocks, const AskedSpecimen& specimen, double size);
+int count_of(const Section& blocks, const specimen::SpecimenParameters& specimen, double size);
 
 }  // namespace pyroclast

@@ -108,7 +108,7 @@ StatedPores read_pores(const Section& s, bool is_matrix, CurveReader& curves) {
   return p;
 }
 
-std::vector<StatedPores> read_phases(const Section& root, const AskedSpecimen& specimen,
+std::vector<StatedPores> read_phases(const Section& root, const specimen::SpecimenParameters& specimen,
                                      CurveReader& curves) {
   std::vector<StatedPores> pores;
   const Section materials = root.section("materials");
@@ -126,7 +126,7 @@ std::vector<StatedPores> read_phases(const Section& root, const AskedSpecimen& s
 }
 
 /// Refuses pores of phases where no water is asked for.
-void refuse_pores(const Section& root, const AskedSpecimen& specimen) {
+void refuse_pores(const Section& root, const specimen::SpecimenParameters& specimen) {
   const auto materials = root.optional_section("materials");
   if (!materials) return;
   for (const std::string& phase : specimen::phases(specimen))
@@ -199,7 +199,8 @@ std::vector<MoistureBoundaryCondition> read_water_boundaries(const Section& mois
 
 }  // namespace
 
-std::optional<MoistureConditions> read_moisture(const Section& root, const AskedSpecimen& specimen,
+std::optional<MoistureConditions> read_moisture(const Section& root,
+                                                const specimen::SpecimenParameters& specimen,
                                                 const DeckSpace& space, const HeatConditions& heat,
                                                 CurveReader& time_curves, CurveReader& curves) {
   const auto s = root.optional_section(

@@ -15,7 +15,8 @@ namespace pyroclast {
 /// \param heat         statements on heat, which drives the water
 /// \param time_curves  reader of curves of the time from the start of heating
 /// \param curves       reader of curves of the temperature
-std::optional<MoistureConditions> read_moisture(const Section& root, const AskedSpecimen& specimen,
+std::optional<MoistureConditions> read_moisture(const Section& root,
+                                                const specimen::SpecimenParameters& specimen,
                                                 const DeckSpace& space, const HeatConditions& heat,
                                                 CurveReader& time_curves, CurveReader& curves);
 

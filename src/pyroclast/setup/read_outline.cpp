@@ -7,7 +7,6 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
-#include "pyroclast/specimen/polyhedra_file.hpp"
 
 namespace pyroclast {
 
@@ -28,17 +27,24 @@ Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
 constexpr Range kSize = Range::positive().usually(0.01, 10.0);
 
 /// Reads the file that holds all of a specimen; returns none after an error.
-/// \param read  function that reads a file; throws Error
-template <class Read>
-auto read_blocks_file(const Section& s, const std::filesystem::path& folder, Read read)
-    -> std::optional<decltype(read(folder))> {
+std::optional<specimen::FileOfCells> read_blocks_file(const Section& s, const std::filesystem::path& folder,
+                                                      bool is_solid, double join) {
   const std::string name = s.text("file",
                                   "of shape \"cells\" or \"polyhedra\": JSON with the blocks, see "
                                   "[Blocks made elsewhere](../do/bodies.md#blocks-made-elsewhere)");
   if (!s.has("file")) return std::nullopt;
   s.names_file("file", folder / name);
   try {
-    return read(folder / name);
+    auto cells = cells_in_metres(folder / name, join);
+    if (std::holds_alternative<specimen::GivenCells<3>>(cells) == is_solid) return cells;
+    s.error("file",
+            is_solid
+                ? fmt::format("{}: holds cells of the plane, without \"faces\" and \"body\", and is read "
+                              "as blocks in space. Cells of the plane come by [specimen] shape = \"cells\"",
+                              (folder / name).string())
+                : fmt::format("{}: holds blocks of space, with \"faces\" or \"body\", and is read as cells "
+                              "of the plane. {}",
+                              (folder / name).string(), specimen::kInSpace));
   } catch (const Error& error) {
     const bool is_tess = std::filesystem::path(name).extension() == ".tess";
     s.error(
@@ -47,8 +53,8 @@ auto read_blocks_file(const Section& s, const std::filesystem::path& folder, Rea
                     is_tess ? "; a tessellation of Neper, which is of the plane, is blocks.file, and shape = "
                               "\"tessellation\" takes its outline"
                             : ""));
-    return std::nullopt;
   }
+  return std::nullopt;
 }
 
 /// Reads the distance within which the cells of a file are joined, m.
@@ -97,16 +103,8 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
       o.width = s.quantity("width", unit::length, kSize, "of the specimen; the height follows from the file");
     }
     s.know({"holes", "notches"});
-  } else if (o.shape == Shape::cells) {
-    const double join = read_join(s);
-    o.cells = read_blocks_file(
-        s, folder, [join](const std::filesystem::path& file) { return cells_in_metres(file, join); });
-    s.know({"seed", "holes", "notches"});
-  } else if (o.shape == Shape::polyhedra) {
-    const double join = read_join(s);
-    o.polyhedra = read_blocks_file(s, folder, [join](const std::filesystem::path& file) {
-      return specimen::read_polyhedra(file, join);
-    });
+  } else if (o.shape == Shape::cells || o.shape == Shape::polyhedra) {
+    o.cells = read_blocks_file(s, folder, space.is_solid(), read_join(s));
     s.know({"seed", "holes", "notches"});
   } else if (o.shape == Shape::cylinder) {
     o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");
@@ -154,7 +152,8 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
   return o;
 }
 
-void check_outline(const Section& s, const ReadOutline& outline, const AskedSpecimen& specimen) {
+void check_outline(const Section& s, const ReadOutline& outline,
+                   const specimen::SpecimenParameters& specimen) {
   if (!s.ok()) return;
   const auto key = [&]() -> std::string_view {
     switch (outline.shape) {

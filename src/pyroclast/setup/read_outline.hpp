@@ -8,8 +8,7 @@
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/setup/read_space.hpp"
-#include "pyroclast/simulation/specimen_body.hpp"
-#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
 
 namespace pyroclast {
 
@@ -27,8 +26,7 @@ struct ReadOutline {
   };
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
-  std::optional<specimen::GivenCells<2>> cells;
-  std::optional<specimen::GivenCells<3>> polyhedra;
+  std::optional<specimen::FileOfCells> cells;
 };
 
 /// Reads the outline in [specimen]. Errors are recorded in the deck.
@@ -36,6 +34,7 @@ struct ReadOutline {
 ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, const DeckSpace& space);
 
 /// Warns of an outline that is not as large as specimens usually are, unless a key has warned already.
-void check_outline(const Section& s, const ReadOutline& outline, const AskedSpecimen& specimen);
+void check_outline(const Section& s, const ReadOutline& outline,
+                   const specimen::SpecimenParameters& specimen);
 
 }  // namespace pyroclast

@@ -18,7 +18,7 @@ constexpr double kOnOutline = 1e-9;
 
 }  // namespace
 
-std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen) {
+std::vector<ProbePosition> read_probes(const Section& root, const specimen::SpecimenParameters& specimen) {
   std::vector<ProbePosition> probes;
   // A specimen that stands in for an error refuses no probe.
   const bool known = is_outline_known(root, specimen);

@@ -10,6 +10,6 @@ namespace pyroclast {
 
 /// Reads [[probes]], which may be absent. Errors are recorded in the deck.
 /// \param specimen  specimen outside of which no probe may lie
-std::vector<ProbePosition> read_probes(const Section& root, const AskedSpecimen& specimen);
+std::vector<ProbePosition> read_probes(const Section& root, const specimen::SpecimenParameters& specimen);
 
 }  // namespace pyroclast

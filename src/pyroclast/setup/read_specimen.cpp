@@ -48,8 +48,9 @@ void check_matrix(const Section& s, std::string_view key, const std::vector<std:
 
 /// Gives a specimen whose file was not read the phases that [materials] has, each with stones: default phases
 /// in their place would be second errors.
-void let_materials_stand_in(const Section& root, std::span<const ReadBearing> bearings, AskedSpecimen& p) {
-  specimen::GivenCells<2>& cells = p.cells.emplace();
+void let_materials_stand_in(const Section& root, std::span<const ReadBearing> bearings,
+                            specimen::SpecimenParameters& p) {
+  auto& cells = p.cells.emplace<specimen::GivenCells<2>>();
   const Section materials = root.section("materials");
   for (const std::string& name : materials.keys())
     if (materials.is_table(name) && name != "platen" &&
@@ -57,7 +58,7 @@ void let_materials_stand_in(const Section& root, std::span<const ReadBearing> be
       cells.phases.push_back(name);
   cells.phase.resize(cells.phases.size());
   std::iota(cells.phase.begin(), cells.phase.end(), 0);
-  cells.grain = cells.phase;
+  cells.stone = cells.phase;
   if (cells.phases.size() == 1) p.matrix = cells.phases.front();
 }
 
@@ -69,24 +70,20 @@ bool lacks_stones(const Section& s) {
 /// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
 /// effect.
 void read_beside_cells(const Section& root, const Section& s, const DeckSpace& space,
-                       std::span<const ReadBearing> bearings, ReadOutline outline, AskedSpecimen& p) {
+                       std::span<const ReadBearing> bearings, ReadOutline outline,
+                       specimen::SpecimenParameters& p) {
   root.know({"aggregates", "inclusions", "blocks"});
-  if (space.is_solid())
-    p.prism = make_prism(s, outline, space, {}, bearings);
-  else
-    p.region = make_region(s, outline, {}, bearings);
+  p.outline = make_outline(s, outline, space, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
-  if (outline.polyhedra) {
-    p.blocks.count = static_cast<int>(outline.polyhedra->cells.cells.size());
-    p.blocks.phases = outline.polyhedra->phases;
+  if (outline.cells) {
     check_outline(s, outline, p);
-    check_matrix(s, "file", p.blocks.phases, has_matrix, p);
-    p.polyhedra = std::move(outline.polyhedra);
-  } else if (outline.cells) {
-    p.blocks.count = static_cast<int>(outline.cells->cells.cells.size());
-    check_outline(s, outline, p);
-    check_matrix(s, "file", outline.cells->phases, has_matrix, p);
-    p.cells = std::move(outline.cells);
+    std::visit(
+        [&](auto& cells) {
+          p.blocks.count = static_cast<int>(cells.cells.cells.size());
+          check_matrix(s, "file", cells.phases, has_matrix, p);
+          p.cells = std::move(cells);
+        },
+        *outline.cells);
   } else if (!s.ok()) {
     let_materials_stand_in(root, bearings, p);
   }
@@ -111,9 +108,10 @@ std::string first_phase(const specimen::Inclusions& inclusions) {
 
 }  // namespace
 
-AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& folder, const DeckSpace& space,
-                            std::span<const SetParameters> sets, std::span<const ReadBearing> bearings) {
-  AskedSpecimen p;
+specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
+                                           const DeckSpace& space, std::span<const SetParameters> sets,
+                                           std::span<const ReadBearing> bearings) {
+  specimen::SpecimenParameters p;
   const Section s = root.section("specimen");
   ReadOutline outline = read_outline(s, folder, space);
   if (outline.shape == Shape::cells || outline.shape == Shape::polyhedra) {
@@ -133,19 +131,13 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
   p.inclusions = read_inclusions(root, folder, space);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
   ReadBlocks read = read_blocks(blocks, folder, outline, space, aggregates || !p.inclusions.empty());
-  const auto make_body = [&](const specimen::BlockSizes* sizes) {
-    if (space.is_solid())
-      p.prism = make_prism(s, outline, space, read, bearings, sizes);
-    else
-      p.region = make_region(s, outline, read, bearings, sizes);
-  };
-  make_body(nullptr);
+  p.outline = make_outline(s, outline, space, read, bearings);
   if (!read.finer.empty() && s.ok() && blocks.ok()) {
     if (make_finer(blocks, read, bearings, sets, p)) {
       const auto& [count, finer, largest] =
           std::tie(read.parameters.count, read.parameters.finer, read.parameters.largest_size);
       const specimen::BlockSizes sizes(std::pow(p.extent() / count, 1.0 / p.dimension()), largest, finer);
-      make_body(&sizes);
+      p.outline = make_outline(s, outline, space, read, bearings, &sizes);
     } else {
       read.parameters.finer.clear();
     }
@@ -185,8 +177,8 @@ AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& fo
         "has a block first"},
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
        {"follow", specimen::Superposition::follow,
-        "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the grains, "
-        "see [Grains](../do/bodies.md#grains)"}},
+        "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the stones, "
+        "see [Stones](../do/bodies.md#stones)"}},
       "when a block is aggregate");
   if (p.superposition == specimen::Superposition::follow && p.blocks.cells)
     superposition.error("rule", "\"follow\" has no meaning beside blocks.file: those blocks are made");

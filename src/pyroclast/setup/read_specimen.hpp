@@ -16,8 +16,8 @@ namespace pyroclast {
 /// \param sets      sets of the deck, near which blocks may be finer
 /// \param bearings  bearings on the specimen
 /// \param space     space in which the deck describes it
-AskedSpecimen read_specimen(const Section& root, const std::filesystem::path& folder, const DeckSpace& space,
-                            std::span<const SetParameters> sets = {},
-                            std::span<const ReadBearing> bearings = {});
+specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
+                                           const DeckSpace& space, std::span<const SetParameters> sets = {},
+                                           std::span<const ReadBearing> bearings = {});
 
 }  // namespace pyroclast

@@ -10,7 +10,7 @@ namespace pyroclast {
 
 /// Reads which sides of the specimen lie in planes of symmetry. Records an error for a side that cannot.
 /// \param bearings  bearings on the specimen, its platens among them
-std::vector<PlaneOfSymmetry> read_symmetry(const Section& root, const AskedSpecimen& specimen,
+std::vector<PlaneOfSymmetry> read_symmetry(const Section& root, const specimen::SpecimenParameters& specimen,
                                            const std::vector<Bearing>& bearings);
 
 }  // namespace pyroclast

@@ -158,8 +158,8 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
   }
 }
 
-bool is_cylinder(const AskedSpecimen& specimen) {
-  return specimen.prism && specimen.prism->axis() == specimen::Prism::Axis::y;
+bool is_cylinder(const specimen::SpecimenParameters& specimen) {
+  return specimen.prism() && specimen.prism()->axis() == specimen::Prism::Axis::y;
 }
 
 /// Boundaries of a table of the deck: what flows through them, and the faces of each.
@@ -180,7 +180,7 @@ std::vector<DeckBoundaries> boundaries_of(const HeatConditions& heat) {
 /// Records an error for each boundary on a side or set that the specimen does not have.
 void check_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{BoundaryFaces::kOutline, BoundaryFaces::kBox};
-  for (const std::string& side : setup.specimen.sides()) names.push_back(side);
+  for (const specimen::Side& side : setup.specimen.sides()) names.push_back(side.name);
   if (is_cylinder(setup.specimen)) names.insert(names.end(), kQuartersOfRim.begin(), kQuartersOfRim.end());
   for (const auto& set : setup.sets)
     if (set.of != SetOf::contacts) names.push_back(set.name);
@@ -217,7 +217,7 @@ void check_symmetric_sides(const Section& root, const HeatConditions& heat,
 /// Warns of blocks that are coarser than any that were studied, or than a test heated under load allows
 /// (docs/validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
-  const AskedSpecimen& s = setup.specimen;
+  const specimen::SpecimenParameters& s = setup.specimen;
   if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.moving) return;
   const double size = s.largest_block_size(), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
@@ -350,7 +350,7 @@ void check_contacts(const Section& root, const Setup& setup) {
 
 /// Records an error where a bearing is too thin: beside the specimen's coordinates, doubles would not hold
 /// it.
-void check_thickness(const Section& s, double thickness, const AskedSpecimen& specimen) {
+void check_thickness(const Section& s, double thickness, const specimen::SpecimenParameters& specimen) {
   constexpr double kThinnest = 1e-9;  // over the size of the specimen
   const double least = kThinnest * std::pow(specimen.extent(), 1.0 / specimen.dimension());
   if (s.ok() && thickness < least)
@@ -369,7 +369,7 @@ bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>&
   }
   const double thickness = s->quantity("thickness", unit::length, Range::positive(), "of each platen");
   check_thickness(*s, thickness, setup.specimen);
-  const auto sides = setup.specimen.sides();
+  const auto sides = specimen::names_of(setup.specimen.sides());
   const auto lacks = [&](const char* name) { return std::ranges::find(sides, name) == sides.end(); };
   for (const char* name : {"bottom", "top", "left", "right"})
     if (!is_cylinder(setup.specimen) && lacks(name)) {
@@ -436,8 +436,8 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   moving.strain_of_concrete = concrete.of_phases;
   setup.block_materials =
       read_block_materials(root, phases, materials_of(moving.bearings), rules, concrete, curves);
-  moving.contacts = read_contacts(root, phases, setup.specimen.phases_of_stones(), setup.specimen.matrix,
-                                  has_platens, rules.on_cooling, find_law, curves);
+  moving.contacts = read_contacts(root, phases, specimen::phases_of_stones(setup.specimen),
+                                  setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
   setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);
@@ -563,12 +563,12 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, MadeSpecimen spe
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, SpecimenBody body, std::shared_ptr<Team> team,
                                             std::shared_ptr<Ranks> ranks) {
   if (setup.moving) body.model->symmetry = setup.moving->symmetry;
-  if (!setup.specimen.prism) body.notches = setup.specimen.region.notches();
+  if (const specimen::Region* region = setup.specimen.region()) body.notches = region->notches();
   return std::make_unique<Simulation>(std::move(body), setup.block_materials, setup.heat, setup.probes,
                                       setup.records, setup.moving, std::move(team), std::move(ranks));
 }
 
-double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts) {
+double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {
   if (specimen.blocks.count == 0) return contacts.fracture_zone_size.value_or(1.0);
   return specimen.block_size();
 }

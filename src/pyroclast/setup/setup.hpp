@@ -26,7 +26,7 @@ struct CheckpointChoice {
 /// Content of a deck, in its parts and in SI.
 struct Setup {
   std::string title;
-  AskedSpecimen specimen;
+  specimen::SpecimenParameters specimen;
   double thickness = 1.0;                      ///< thickness out of plane, m; of a solid 1
   std::vector<BlockMaterial> block_materials;  ///< by phase of the specimen, then those of bearings
   ExpansionReading expansion_reading = ExpansionReading::secant;
@@ -85,6 +85,6 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, SpecimenBody bod
 
 /// Returns the block size that a deck foresees, m; where the tessellation is read from a file, the size at
 /// which t_b holds.
-double expected_block_size(const AskedSpecimen& specimen, const ContactParameters& contacts);
+double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts);
 
 }  // namespace pyroclast

@@ -151,7 +151,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
 std::vector<std::string> Simulation::warnings_of_specimen() const {
   if (!specimen_ && !told_) return {};
   std::string line;
-  if (moves()) line = skeleton(*model_, specimen_ ? grains(*specimen_) : told_->grain, materials_.contacts);
+  if (moves()) line = skeleton(*model_, specimen_ ? stones(*specimen_) : told_->stone, materials_.contacts);
   if (!ranks().is_first()) return {};
   auto lines = specimen_ ? warnings(*specimen_) : told_->warnings;
   if (!line.empty()) lines.push_back(std::move(line));

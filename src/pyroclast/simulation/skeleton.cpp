@@ -59,11 +59,11 @@ class Clusters {
 
 }  // namespace
 
-Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
+Skeleton largest_skeleton(const Model& model, std::span<const int> stone,
                           const std::vector<ContactMaterial>& contacts) {
   const std::vector<int> cell = cells_of_blocks(model);
-  const auto is_of_stone = [&](int block) { return !model.is_of_bearing(block) && grain[cell[block]] >= 0; };
-  Clusters clusters(grain.size());
+  const auto is_of_stone = [&](int block) { return !model.is_of_bearing(block) && stone[cell[block]] >= 0; };
+  Clusters clusters(stone.size());
   struct Joined {
     int a, b;
   };
@@ -93,7 +93,7 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
   double whole = 0.0;
   for (const StonyCell& stony : cells) {
     whole += stony.volume;
-    of_stone[grain[stony.cell]] += stony.volume;
+    of_stone[stone[stony.cell]] += stony.volume;
     of_cluster[clusters.of(stony.cell)] += stony.volume;
   }
   if (whole == 0.0) return {};
@@ -103,14 +103,14 @@ Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
   const auto [largest, volume] = largest_of(of_cluster);
   std::set<int> stones;
   for (const StonyCell& stony : cells)
-    if (clusters.of(stony.cell) == largest) stones.insert(grain[stony.cell]);
+    if (clusters.of(stony.cell) == largest) stones.insert(stone[stony.cell]);
   return {static_cast<int>(stones.size()), volume, volume / whole, volume / largest_of(of_stone).second};
 }
 
-std::string skeleton(const Model& model, std::span<const int> grain,
+std::string skeleton(const Model& model, std::span<const int> stone,
                      const std::vector<ContactMaterial>& contacts) {
-  if (grain.empty()) return {};
-  const Skeleton found = largest_skeleton(model, grain, contacts);
+  if (stone.empty()) return {};
+  const Skeleton found = largest_skeleton(model, stone, contacts);
   if (found.share < kClearlyLarge || found.of_largest < kFewStones) return {};
   const bool is_plane = model.dimension() == 2;
   return fmt::format(
@@ -123,7 +123,7 @@ std::string skeleton(const Model& model, std::span<const int> grain,
 std::vector<std::string> warnings(const MadeSpecimen& specimen, const Model& model,
                                   const std::vector<ContactMaterial>& contacts) {
   auto lines = warnings(specimen);
-  if (auto line = skeleton(model, grains(specimen), contacts); !line.empty())
+  if (auto line = skeleton(model, stones(specimen), contacts); !line.empty())
     lines.push_back(std::move(line));
   return lines;
 }

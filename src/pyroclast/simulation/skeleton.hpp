@@ -19,16 +19,16 @@ struct Skeleton {
 };
 
 /// Returns the largest skeleton: a collective. Ranks but the first get none.
-/// \param grain     stone of each block of the specimen, in their order; -1: none
+/// \param stone     stone of each block of the specimen, in their order; -1: none
 /// \param contacts  materials of the interfaces of the model
-Skeleton largest_skeleton(const Model& model, std::span<const int> grain,
+Skeleton largest_skeleton(const Model& model, std::span<const int> stone,
                           const std::vector<ContactMaterial>& contacts);
 
 /// Returns a line that says where stones form a skeleton: one of a quarter of the stones' volume or more that
 /// is twice as large as the largest stone. Empty where there is none, or where stones are not known. A
 /// collective; empty on ranks but the first.
-/// \param grain  as above, or empty
-std::string skeleton(const Model& model, std::span<const int> grain,
+/// \param stone  as above, or empty
+std::string skeleton(const Model& model, std::span<const int> stone,
                      const std::vector<ContactMaterial>& contacts);
 
 /// Returns what a user should know of a specimen and of the contacts between its blocks, one line each.

@@ -10,7 +10,6 @@
 #include "pyroclast/base/memory.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/simulation/sums.hpp"
-#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 
 namespace pyroclast {
@@ -57,68 +56,32 @@ Press::Specimen between_platens(const specimen::Specimen<3>& specimen, const Mod
 
 }  // namespace
 
-std::vector<std::string> AskedSpecimen::sides() const {
-  return specimen::names_of(prism ? prism->sides() : region.sides());
-}
-
-std::vector<std::string> AskedSpecimen::phases_of_stones() const {
-  auto names = polyhedra ? specimen::phases_of_stones(polyhedra->phases, polyhedra->phase, polyhedra->grain)
-                         : specimen::phases_of_stones(*this);
-  std::erase(names, matrix);
-  return names;
-}
-
-Vec<3> AskedSpecimen::low() const {
-  return prism ? prism->low() : resized<3>(region.low());
-}
-
-Vec<3> AskedSpecimen::high() const {
-  return prism ? prism->high() : resized<3>(region.high());
-}
-
-double AskedSpecimen::distance(const Vec<3>& point) const {
-  return prism ? prism->distance(point) : region.distance(resized<2>(point));
-}
-
-double AskedSpecimen::extent() const {
-  return prism ? prism->extent() : region.extent();
-}
-
-double AskedSpecimen::block_size() const {
-  if (blocks.count == 0) return 0.0;
-  return prism ? std::cbrt(extent() / blocks.count) : std::sqrt(extent() / blocks.count);
-}
-
-double AskedSpecimen::largest_block_size() const {
-  return blocks.finer.empty() ? block_size() : blocks.largest_size;
-}
-
 const std::vector<std::string>& phases(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) -> const std::vector<std::string>& { return s.phases; }, specimen);
 }
 
-const std::vector<int>& grains(const MadeSpecimen& specimen) {
-  return std::visit([](const auto& s) -> const std::vector<int>& { return s.grain; }, specimen);
+const std::vector<int>& stones(const MadeSpecimen& specimen) {
+  return std::visit([](const auto& s) -> const std::vector<int>& { return s.stone; }, specimen);
 }
 
 std::vector<std::string> warnings(const MadeSpecimen& specimen) {
   return std::visit([](const auto& s) { return warnings(s); }, specimen);
 }
 
-double estimate_memory(const AskedSpecimen& asked, bool conducts_heat) {
+double estimate_memory(const specimen::SpecimenParameters& asked, bool conducts_heat) {
   const double of_solid = asked.blocks.shortest_edge > 0.0 ? kBytesPerMergedCell : kBytesPerRawCell;
-  return kBytesFixed + (asked.prism ? of_solid : kBytesPerBlock) * (conducts_heat ? kOfConduction : 1.0) *
+  return kBytesFixed + (asked.prism() ? of_solid : kBytesPerBlock) * (conducts_heat ? kOfConduction : 1.0) *
                            static_cast<double>(asked.blocks.count);
 }
 
-MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team, bool conducts_heat) {
+MadeSpecimen make_checked_specimen(const specimen::SpecimenParameters& asked, Team* team,
+                                   bool conducts_heat) {
   const double needed = estimate_memory(asked, conducts_heat);
   const double available = available_memory();
   if (needed > available)
     throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
                             asked.blocks.count, needed * 1e-9, available * 1e-9));
-  if (asked.polyhedra) return specimen::specimen_from<3>(*asked.polyhedra, *asked.prism);
-  if (asked.prism) return specimen::make_specimen<3>(asked, *asked.prism, team);
+  if (asked.prism()) return specimen::make_specimen<3>(asked, team);
   return specimen::make_specimen(asked, team);
 }
 

@@ -16,49 +16,25 @@
 
 namespace pyroclast {
 
-/// Specimen that is asked for, in the plane or in space.
-struct AskedSpecimen : specimen::SpecimenParameters {
-  std::optional<specimen::Prism> prism;  ///< body in space; the region is then empty
-  /// Blocks of the body in space, where they were made before; `blocks` then has their number and phases.
-  std::optional<specimen::GivenCells<3>> polyhedra;
-
-  int dimension() const { return prism ? 3 : 2; }  ///< Returns 2 or 3.
-  std::vector<std::string> sides() const;          ///< Returns the names of its sides.
-  /// Returns the phases other than the matrix whose blocks belong to stones that are known.
-  std::vector<std::string> phases_of_stones() const;
-  Vec<3> low() const;   ///< Returns the lower corner of the box around it, m.
-  Vec<3> high() const;  ///< Returns the upper corner, m.
-  /// Returns the distance of a point from the outline, m, negative or 0 within the specimen.
-  double distance(const Vec<3>& point) const;
-  /// Tells whether all blocks come from a file; then no seed counts.
-  bool is_of_file() const { return cells || polyhedra; }
-  double extent() const;  ///< Returns the area, m², of a solid the volume, m³.
-  /// Returns the size of a block as foreseen, m: the root of the mean area, of a solid of the mean volume. 0
-  /// where the number of blocks is not known.
-  double block_size() const;
-  /// Returns the size of blocks far from finer ones, m; as above where blocks are alike.
-  double largest_block_size() const;
-};
-
 /// Specimen that was made, in the plane or in space.
 using MadeSpecimen = std::variant<specimen::Specimen<2>, specimen::Specimen<3>>;
 
 /// Returns the names of the phases that its blocks can have.
 const std::vector<std::string>& phases(const MadeSpecimen& specimen);
 /// Returns the stone of each block, -1: of none; empty where stones are not known.
-const std::vector<int>& grains(const MadeSpecimen& specimen);
+const std::vector<int>& stones(const MadeSpecimen& specimen);
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const MadeSpecimen& specimen);
 
 /// Returns an upper estimate of the memory that a run of a specimen needs, bytes.
 /// \param conducts_heat  whether the run solves heat conduction
-double estimate_memory(const AskedSpecimen& asked, bool conducts_heat);
+double estimate_memory(const specimen::SpecimenParameters& asked, bool conducts_heat);
 
 /// Makes a specimen. Throws Error when the specimen cannot be made, or a run of it would not fit into the
 /// free memory.
 /// \param team           threads that make it; without a team the calling thread works alone
 /// \param conducts_heat  whether the run solves heat conduction
-MadeSpecimen make_checked_specimen(const AskedSpecimen& asked, Team* team = nullptr,
+MadeSpecimen make_checked_specimen(const specimen::SpecimenParameters& asked, Team* team = nullptr,
                                    bool conducts_heat = false);
 
 /// Numbers of a specimen that materials, heat and exchanges ask for.
@@ -78,7 +54,7 @@ SpecimenNumbers numbers_of(const MadeSpecimen& specimen);
 struct SpecimenTold {
   std::string text;                          ///< description for the screen
   std::vector<std::string> warnings;         ///< see warnings
-  std::vector<int> grain;                    ///< stone of each block, see skeleton; may be empty
+  std::vector<int> stone;                    ///< stone of each block, see skeleton; may be empty
   std::string facts;                         ///< facts for the summary, as JSON
   std::map<std::string, std::string> files;  ///< files of the folder specimen/, by name
 };

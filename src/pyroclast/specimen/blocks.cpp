@@ -15,16 +15,15 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/block_order.hpp"
 #include "pyroclast/specimen/block_sizes.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_seeds.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
-#include "pyroclast/specimen/regularisation_space.hpp"
 #include "pyroclast/specimen/room.hpp"
 #include "pyroclast/specimen/spaced_seeds.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_seeds.hpp"
 #include "pyroclast/specimen/topology.hpp"
 #include "pyroclast/specimen/united_cells.hpp"
 
@@ -39,42 +38,149 @@ constexpr int most_rounds = 60;
 constexpr int kMostRoundsInSpace = 20;
 /// Number of places tried for a free seed before an Error says that there is none.
 constexpr int kAttempts = 100'000;
-/// Number of places tried before a free seed may come closer to the surface of a grain.
+/// Number of places tried before a free seed may come closer to the surface of a stone.
 constexpr int kAttemptsAtOneDistance = 2000;
-/// Steps of the search for the distance of seeds along grains.
-constexpr int kBisections = 14;
+/// Steps of the search for the distance of seeds along stones.
+template <int Dim>
+constexpr int kBisections = Dim == 2 ? 14 : 8;
 
-/// Least distance of a free seed from the surface of a grain, in spacings: at first, and where seeds find no
+/// Least distance of a free seed from the surface of a stone, in spacings: at first, and where seeds find no
 /// place.
-constexpr double kClearOfGrains = 0.75, kLeastClear = 0.45;
-/// Area of a block beside the surface of a grain, over that of a free one.
-constexpr double kAreaBesideGrain = 0.72;
-/// Share of its area by which the block of a grain may be off, and rounds in which such blocks are corrected.
-constexpr double kOffInArea = 0.005;
+constexpr double kClearOfStones = 0.75, kLeastClear = 0.45;
+/// Extent of a block beside the surface of a stone, over the power of the distance of seeds.
+template <int Dim>
+constexpr double kBesideStone = Dim == 2 ? 0.72 : 0.5;
+/// Share of its extent by which the blocks of a stone may be off, and rounds in which such blocks are
+/// corrected.
+constexpr double kOffInExtent = 0.005;
 constexpr int kCorrections = 12;
-/// Exponent of a correction. By a half one grain alone would be right at once; grains at a narrow gap move
-/// edges twice as far.
-constexpr double kCorrection = 0.3;
+/// Exponent of a correction. By the root one stone alone would be right at once; stones at a narrow gap move
+/// facets farther.
+template <int Dim>
+constexpr double kCorrection = Dim == 2 ? 0.3 : 0.25;
 /// Rounds after which a correction that leaves blocks unfit is taken back.
 constexpr int kRoundsOfCorrection = 8;
-/// Round from which a seed beside a grain whose block is unfit gives way to a free one.
+/// Round from which a seed beside a stone whose block is unfit gives way to a free one.
 constexpr int kGivesWay = 4;
 
-/// Blocks of one grain.
-struct BlocksOfGrain {
-  int count = 0;
-  double area = 0.0;  ///< m²
+/// Stones whose surfaces seeds follow, and how they do.
+template <int Dim>
+class Following {
+ public:
+  /// \param outline  seeds that the outline asks for; null in space
+  Following(const BlockParameters& parameters, std::span<const Stone<Dim>> stones, const OutlineOf<Dim>& body,
+            const OutlineSeeds* outline, const BlockSizes& sizes)
+      : parameters_(parameters),
+        stones_(stones),
+        body_(body),
+        outline_(outline),
+        sizes_(sizes),
+        ways_(stones.size()),
+        aim_(stones.size(), 1.0) {
+    spacing_ = spacing_along();
+  }
+
+  /// Returns the seeds along surfaces.
+  const StoneSeeds<Dim>& along() const { return *along_; }
+
+  /// Places the seeds along surfaces anew, farther from each other by a factor.
+  void follow_wider(double factor) { follow(spacing_ *= factor); }
+
+  /// Follows stones whose blocks are too large or too small as larger or smaller ones, and small stones that
+  /// did not become one block by one seed. Tells whether there was one.
+  /// \param stone        stone of each cell, -1: of none
+  /// \param are_regular  true for blocks that are regularised: then others are aimed at before that
+  bool correct(const Cells<Dim>& cells, const std::vector<int>& stone, bool are_regular = false) {
+    struct OfStone {
+      int count = 0;
+      double extent = 0.0;  ///< of its blocks
+    };
+    std::vector<OfStone> blocks(stones_.size());
+    for (std::size_t cell = 0; cell < stone.size(); ++cell) {
+      if (stone[cell] < 0) continue;
+      blocks[stone[cell]].extent += extent(cells, cell);
+      ++blocks[stone[cell]].count;
+    }
+    bool is_off = false;
+    for (std::size_t i = 0; i < stones_.size(); ++i) {
+      if (blocks[i].count > 1 && along_->is_one_cell(static_cast<int>(i)) && !ways_[i].is_of_one_seed) {
+        ways_[i] = {1.0, true};
+        is_off = true;
+        continue;
+      }
+      double share = blocks[i].extent / ((are_regular ? 1.0 : aim_[i]) * extent(stones_[i]));
+      if (std::abs(share - 1.0) < (are_regular ? 2.0 : 1.0) * kOffInExtent) continue;
+      is_off = true;
+      if (are_regular) share = std::clamp(share, 0.9, 1.1);
+      if (are_regular) aim_[i] /= share;
+      ways_[i].size *= std::clamp(std::pow(share, -kCorrection<Dim>), 0.95, 1.05);
+    }
+    return is_off;
+  }
+
+  /// Calls f(stone, whether the stone is one block) for each block that seeds along stones make: the cells of
+  /// a small stone become one. The stone is -1 between stones.
+  template <class F>
+  void for_each_block(const std::vector<int>& owners, F&& f) const {
+    std::vector<char> has_one(stones_.size(), 0);
+    for (const int stone : owners) {
+      const bool is_one = stone >= 0 && along_->is_one_cell(stone);
+      if (!is_one || !std::exchange(has_one[stone], 1)) f(stone, is_one);
+    }
+  }
+
+ private:
+  void follow(double spacing) { along_.emplace(stones_, ways_, body_, outline_, sizes_.scaled_to(spacing)); }
+
+  static double power(double length) { return Dim == 2 ? length * length : length * length * length; }
+
+  /// Finds the distance of seeds along surfaces with which all blocks are about as large, those beside a
+  /// surface and the free ones, m. Throws Error where there are not enough blocks.
+  double spacing_along() {
+    const double room =
+        parameters_.count - (outline_ ? static_cast<double>(outline_->positions().size()) : 0.0);
+    const auto too_many = [&](double spacing) {
+      follow(spacing);
+      // extent in which blocks of the mean size would be as many
+      double blocks = 0.0, extent_left = body_.extent();
+      for_each_block(along_->owners(), [&](int stone, bool is_one) {
+        ++blocks;
+        extent_left -= is_one ? extent(stones_[stone]) / power(sizes_.relative(stones_[stone].centre))
+                              : kBesideStone<Dim> * power(spacing);
+      });
+      return blocks + std::max(0.0, extent_left / power(spacing)) > room;
+    };
+    double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
+    for (int i = 0; i < kBisections<Dim>; ++i) {
+      const double middle = std::sqrt(low * high);
+      (too_many(middle) ? low : high) = middle;
+    }
+    if (too_many(high))
+      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} stones: take more",
+                              parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
+                              stones_.size()));
+    return high;
+  }
+
+  const BlockParameters& parameters_;
+  std::span<const Stone<Dim>> stones_;
+  const OutlineOf<Dim>& body_;
+  const OutlineSeeds* outline_;
+  const BlockSizes& sizes_;
+  std::vector<WayToFollow> ways_;
+  std::vector<double> aim_;  ///< extent of the blocks of each stone before they are regularised, over its own
+  double spacing_ = 0.0;     ///< mean distance of seeds along surfaces, m
+  std::optional<StoneSeeds<Dim>> along_;
 };
 
-/// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of grains,
+/// Seeds of a region: first the seeds that its outline asks for, then those along the surfaces of stones,
 /// then the free ones.
 class SeedDraw {
  public:
-  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Grain<2>> grains,
+  SeedDraw(const BlockParameters& parameters, const Region& region, std::span<const Stone<2>> stones,
            Random& random)
       : parameters_(parameters),
         region_(region),
-        grains_(grains),
         random_(random),
         sizes_(sizes_of<2>(parameters, region)),
         outline_(region, sizes_) {
@@ -86,24 +192,23 @@ class SeedDraw {
     seeds.position = outline_.positions();
     seeds.radius = outline_.radii();
     owner_.assign(kept_, -1);
-    if (!grains.empty()) {
-      ways_.resize(grains.size());
-      along_spacing_ = spacing_along();
+    if (!stones.empty()) {
+      following_.emplace(parameters, stones, region, &outline_, sizes_);
       add_along();
     }
     fill_up();
   }
 
-  /// Draws the seeds of unfit blocks anew. A seed along a grain whose cell is empty, or stays unfit, gives
-  /// way. Where the outline asks for a seed, or a grain does, the free seed nearest to it is drawn anew
+  /// Draws the seeds of unfit blocks anew. A seed along a stone whose cell is empty, or stays unfit, gives
+  /// way. Where the outline asks for a seed, or a stone does, the free seed nearest to it is drawn anew
   /// instead. A radius stays with its seed, or the cells of small radii would die out.
   /// \param unfit  seeds, ascending
   void redraw(const std::vector<int>& unfit, bool are_empty, int round) {
     std::vector<std::size_t> numbers;
     for (auto seed = unfit.rbegin(); seed != unfit.rend(); ++seed) {  // Clang 14 cannot do views::reverse
       const auto number = static_cast<std::size_t>(*seed);
-      const bool is_of_grain = number >= outline_.positions().size() && number < kept_;
-      if (is_of_grain && (are_empty || round >= kGivesWay)) {
+      const bool is_of_stone = number >= outline_.positions().size() && number < kept_;
+      if (is_of_stone && (are_empty || round >= kGivesWay)) {
         drop(number);
         for (std::size_t& other : numbers) --other;
       } else {
@@ -114,22 +219,9 @@ class SeedDraw {
     fill_up();
   }
 
-  /// Follows grains whose blocks are too large or too small as larger or smaller ones, and small grains that
-  /// did not become one block by one seed. Tells whether there was one.
-  bool correct(const std::vector<BlocksOfGrain>& blocks) {
-    bool is_off = false;
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
-      const double share = blocks[i].area / extent(grains_[i]);
-      if (blocks[i].count > 1 && is_one_cell(static_cast<int>(i)) && !ways_[i].is_of_one_seed) {
-        ways_[i] = {1.0, true};
-        is_off = true;
-        continue;
-      }
-      if (std::abs(share - 1.0) < kOffInArea) continue;
-      is_off = true;
-      ways_[i].size *= std::clamp(std::pow(share, -kCorrection), 0.95, 1.05);
-    }
-    if (!is_off) return false;
+  /// Corrects how stones are followed, see Following::correct. Tells whether that changed.
+  bool correct(const Blocks<2>& blocks) {
+    if (!following_ || !following_->correct(blocks.cells, blocks.stone)) return false;
     const auto first_free = static_cast<std::ptrdiff_t>(kept_);
     const Seeds<2> free{{seeds.position.begin() + first_free, seeds.position.end()},
                         {seeds.radius.begin() + first_free, seeds.radius.end()}};
@@ -137,7 +229,7 @@ class SeedDraw {
     seeds.position.resize(kept_);
     seeds.radius.resize(kept_);
     owner_.resize(kept_);
-    along_.emplace(grains_, ways_, region_, &outline_, sizes_.scaled_to(along_spacing_));
+    following_->follow_wider(1.0);
     add_along();
     const auto missing = static_cast<std::size_t>(std::max(0, parameters_.count - block_count()));
     const auto count = static_cast<std::ptrdiff_t>(std::min(free.position.size(), missing));
@@ -150,35 +242,25 @@ class SeedDraw {
   std::size_t kept() const { return kept_; }
   const BlockSizes& sizes() const { return sizes_; }
 
-  /// Returns the grain of each seed, index into the grains, -1: of none; empty where blocks do not follow
-  /// grains.
+  /// Returns the stone of each seed, index into the stones, -1: of none; empty where blocks do not follow
+  /// stones.
   std::vector<int> owners(const std::vector<Vec<2>>& positions) const {
-    if (!along_) return {};
+    if (!following_) return {};
     std::vector<int> result = owner_;
-    for (std::size_t i = kept_; i < positions.size(); ++i) result.push_back(along_->grain_at(positions[i]));
+    for (std::size_t i = kept_; i < positions.size(); ++i)
+      result.push_back(following_->along().stone_at(positions[i]));
     return result;
   }
 
-  bool is_one_cell(int grain) const { return along_->is_one_cell(grain); }
+  bool is_one_cell(int stone) const { return following_->along().is_one_cell(stone); }
 
   Seeds<2> seeds;
 
  private:
-  /// Calls f(grain, whether the grain is one block) for each block that seeds along grains make: the cells of
-  /// a small grain become one. The grain is -1 between grains.
-  template <class F>
-  void for_each_block(const std::vector<int>& owners, F&& f) const {
-    std::vector<char> has_one(grains_.size(), 0);
-    for (const int grain : owners) {
-      const bool is_one = grain >= 0 && along_->is_one_cell(grain);
-      if (!is_one || !std::exchange(has_one[grain], 1)) f(grain, is_one);
-    }
-  }
-
   /// Returns the number of blocks of the seeds.
   int block_count() const {
-    auto count = static_cast<int>(seeds.position.size() - kept_);
-    for_each_block(owner_, [&](int, bool) { ++count; });
+    auto count = static_cast<int>(seeds.position.size() - (following_ ? kept_ : 0));
+    if (following_) following_->for_each_block(owner_, [&](int, bool) { ++count; });
     return count;
   }
 
@@ -215,38 +297,11 @@ class SeedDraw {
     seeds.position[unfit] = place;
   }
 
-  /// Finds the distance of seeds along surfaces with which all blocks are about as large, those beside a
-  /// surface and the free ones, m. Throws Error where there are not enough blocks.
-  double spacing_along() {
-    const double room = parameters_.count - static_cast<double>(outline_.positions().size());
-    const auto too_many = [&](double spacing) {
-      along_.emplace(grains_, ways_, region_, &outline_, sizes_.scaled_to(spacing));
-      // area in which blocks of the mean size would be as many
-      double blocks = 0.0, area = region_.extent();
-      for_each_block(along_->owners(), [&](int grain, bool is_one) {
-        ++blocks;
-        const double relative = is_one ? sizes_.relative(grains_[grain].centre) : 1.0;
-        area -=
-            is_one ? extent(grains_[grain]) / (relative * relative) : kAreaBesideGrain * spacing * spacing;
-      });
-      return blocks + std::max(0.0, area / (spacing * spacing)) > room;
-    };
-    double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
-    for (int i = 0; i < kBisections; ++i) {
-      const double middle = std::sqrt(low * high);
-      (too_many(middle) ? low : high) = middle;
-    }
-    if (too_many(high))
-      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} grains: take more",
-                              parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
-                              grains_.size()));
-    return high;
-  }
-
   void add_along() {
-    seeds.position.insert(seeds.position.end(), along_->positions().begin(), along_->positions().end());
-    seeds.radius.insert(seeds.radius.end(), along_->radii().begin(), along_->radii().end());
-    owner_.insert(owner_.end(), along_->owners().begin(), along_->owners().end());
+    const StoneSeeds<2>& along = following_->along();
+    seeds.position.insert(seeds.position.end(), along.positions().begin(), along.positions().end());
+    seeds.radius.insert(seeds.radius.end(), along.radii().begin(), along.radii().end());
+    owner_.insert(owner_.end(), along.owners().begin(), along.owners().end());
     kept_ = seeds.position.size();
   }
 
@@ -257,12 +312,12 @@ class SeedDraw {
   }
 
   Vec<2> free_position() {
-    double clear = kClearOfGrains;
+    double clear = kClearOfStones;
     for (int attempt = 1; attempt <= kAttempts; ++attempt) {
       const Vec<2> position = places_ ? places_->draw(random_) : anywhere();
-      if (along_ && attempt % kAttemptsAtOneDistance == 0) clear = std::max(kLeastClear, clear - 0.05);
+      if (attempt % kAttemptsAtOneDistance == 0) clear = std::max(kLeastClear, clear - 0.05);
       const bool is_free = region_.is_rectangle() || outline_.leave_room_at(position);
-      if (is_free && (!along_ || along_->leave_room_at(position, clear))) return position;
+      if (is_free && (!following_ || following_->along().leave_room_at(position, clear))) return position;
     }
     throw Error(
         fmt::format("no place for a seed was found in {} attempts: blocks of {:.3g} mm are too large for "
@@ -272,16 +327,13 @@ class SeedDraw {
 
   const BlockParameters& parameters_;
   const Region& region_;
-  std::span<const Grain<2>> grains_;
   Random& random_;
   BlockSizes sizes_;
   std::optional<PlaceDraw<2>> places_;  ///< where blocks are not alike
   OutlineSeeds outline_;
-  double along_spacing_ = 0.0;  ///< mean distance of seeds along surfaces, m
-  std::vector<WayToFollow> ways_;
-  std::optional<GrainSeeds<2>> along_;
-  std::vector<int> owner_;  ///< grain of each seed that is kept, -1: of none
-  std::size_t kept_ = 0;    ///< number of seeds that the outline and grains ask for
+  std::optional<Following<2>> following_;
+  std::vector<int> owner_;  ///< stone of each seed that is kept, -1: of none
+  std::size_t kept_ = 0;    ///< number of seeds that the outline and stones ask for
 };
 
 /// Returns the name of the side of the outline that is nearest to a point.
@@ -292,41 +344,29 @@ std::string side_near(const Region& region, const Vec<2>& point) {
   return region.sides()[nearest->side].name;
 }
 
-/// Makes one cell of the cells of each small grain, where it is convex. Cells keep their order by their first
+/// Makes one cell of the cells of each small stone, where it is convex. Cells keep their order by their first
 /// one.
-/// \param grain  grain of each cell; follows
+/// \param stone  stone of each cell; follows
 /// \param seed   seed of each cell; follows
-void unite_small_grains(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& grain,
+void unite_small_stones(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& stone,
                         std::vector<int>& seed) {
   std::map<int, std::vector<int>> small;
-  for (std::size_t c = 0; c < grain.size(); ++c)
-    if (grain[c] >= 0 && draw.is_one_cell(grain[c])) small[grain[c]].push_back(static_cast<int>(c));
+  for (std::size_t c = 0; c < stone.size(); ++c)
+    if (stone[c] >= 0 && draw.is_one_cell(stone[c])) small[stone[c]].push_back(static_cast<int>(c));
   std::vector<std::vector<int>> groups;
   for (auto& [number, cells] : small) groups.push_back(std::move(cells));
   const std::vector<int> before = unite(tessellation, groups);
   for (std::size_t c = 0; c < before.size(); ++c) {
-    grain[c] = grain[before[c]];
+    stone[c] = stone[before[c]];
     seed[c] = seed[before[c]];
   }
-  grain.resize(before.size());
+  stone.resize(before.size());
   seed.resize(before.size());
 }
 
-std::vector<BlocksOfGrain> blocks_of_grains(const Blocks<2>& blocks, std::size_t grains) {
-  std::vector<BlocksOfGrain> result(grains);
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < blocks.grain.size(); ++c) {
-    if (blocks.grain[c] < 0) continue;
-    corners(blocks.cells, c, polygon);
-    result[blocks.grain[c]].area += area(polygon);
-    ++result[blocks.grain[c]].count;
-  }
-  return result;
-}
-
 Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& region,
-                               std::span<const Grain<2>> grains, Random& random, Team* team) {
-  SeedDraw draw(parameters, region, grains, random);
+                               std::span<const Stone<2>> stones, Random& random, Team* team) {
+  SeedDraw draw(parameters, region, stones, random);
   Blocks<2> blocks{};
   std::optional<Blocks<2>> fit;
   int corrections = 0;
@@ -340,18 +380,18 @@ Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& 
     if (!are_empty) {
       std::vector<int> seed(seeds.position.size());
       std::iota(seed.begin(), seed.end(), 0);
-      blocks.grain = draw.owners(seeds.position);
-      if (!grains.empty()) unite_small_grains(draw, result.cells, blocks.grain, seed);
-      Regularisation done = regularise(result.cells, region, parameters.shortest_edge, draw.sizes());
+      blocks.stone = draw.owners(seeds.position);
+      if (!stones.empty()) unite_small_stones(draw, result.cells, blocks.stone, seed);
+      const RegularisedCells done =
+          regularise(result.cells, region, {parameters.shortest_edge}, draw.sizes());
       blocks.cells = std::move(result.cells);
-      blocks.done.edges_removed = done.edges_removed;
+      blocks.done.vertices_merged = done.vertices_merged;
       blocks.done.edges_left_short = done.edges_left_short;
       for (const int cell : done.unfit) unfit.push_back(seed[cell]);
       std::ranges::sort(unfit);
     }
     if (unfit.empty()) {
-      if (corrections == kCorrections || !draw.correct(blocks_of_grains(blocks, grains.size())))
-        return blocks;
+      if (corrections == kCorrections || !draw.correct(blocks)) return blocks;
       ++corrections;
       fit = blocks;
       continue;
@@ -373,17 +413,10 @@ Blocks<2> tessellate_until_fit(const BlockParameters& parameters, const Region& 
   }
 }
 
-/// Factor of the volume of a stone by which it is followed larger or smaller in a correction: the cube root
-/// would be right at once but for narrow gaps.
-constexpr double kCorrectionInSpace = 0.25;
-/// Volume of a block beside the surface of a stone, over the cube of the distance of seeds.
-constexpr double kVolumeBesideStone = 0.5;
 /// Factor of the distance of seeds along stones where these take more than all blocks.
 constexpr double kWider = 1.02;
 /// Times that blocks are regularised in all; after the first one stones whose volume is off are corrected.
 constexpr int kRegularisations = 2;
-/// Steps of the search for the distance of seeds along stones in space.
-constexpr int kBisectionsInSpace = 8;
 /// Places tried before a free seed may come a step closer to the surface of a stone.
 constexpr int kTriesAtOneDistance = 500;
 
@@ -391,16 +424,13 @@ constexpr int kTriesAtOneDistance = 500;
 /// the body.
 class FollowingSeeds {
  public:
-  FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Grain<3>> stones,
+  FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Stone<3>> stones,
                  const BlockSizes& sizes, Random& random)
       : parameters_(parameters),
         body_(body),
-        stones_(stones),
         sizes_(sizes),
         random_(random),
-        ways_(stones.size()),
-        aim_(stones.size(), 1.0) {
-    spacing_ = spacing_along();
+        following_(parameters, stones, body, nullptr, sizes) {
     make({});
   }
 
@@ -416,19 +446,16 @@ class FollowingSeeds {
     }
   }
 
-  /// Follows stones whose blocks are too large or too small as larger or smaller ones. Tells whether there
-  /// was one.
-  bool correct(const Cells<3>& cells) {
-    const std::vector<double> volume = volumes(cells);
-    bool is_off = false;
-    for (std::size_t i = 0; i < stones_.size(); ++i) {
-      const double share = volume[i] / (aim_[i] * extent(stones_[i]));
-      if (std::abs(share - 1.0) < kOffInArea) continue;
-      is_off = true;
-      ways_[i].size *= std::clamp(std::pow(share, -kCorrectionInSpace), 0.95, 1.05);
-    }
-    if (!is_off) return false;
-    remake();
+  /// Corrects how stones are followed, see Following::correct. Tells whether that changed, and then makes the
+  /// seeds anew.
+  bool correct(const Cells<3>& cells, bool are_regular) {
+    if (!following_.correct(cells, owner, are_regular)) return false;
+    before_.emplace(seeds, owner, is_free_);
+    std::vector<Vec<3>> free;
+    for (std::size_t i = 0; i < owner.size(); ++i)
+      if (is_free_[i]) free.push_back(seeds.position[i]);
+    following_.follow_wider(1.0);
+    make(free);
     return true;
   }
 
@@ -440,83 +467,21 @@ class FollowingSeeds {
     return true;
   }
 
-  /// Aims at other volumes where those of regularised blocks are off. Tells whether one was, and then makes
-  /// the seeds anew.
-  bool aim(const Cells<3>& regular) {
-    const std::vector<double> volume = volumes(regular);
-    bool is_off = false;
-    for (std::size_t i = 0; i < stones_.size(); ++i) {
-      const double share = volume[i] / extent(stones_[i]);
-      if (std::abs(share - 1.0) < 2.0 * kOffInArea) continue;
-      is_off = true;
-      aim_[i] /= std::clamp(share, 0.9, 1.1);
-      ways_[i].size *= std::pow(std::clamp(share, 0.9, 1.1), -kCorrectionInSpace);
-    }
-    if (is_off) remake();
-    return is_off;
-  }
-
   Seeds<3> seeds;
   std::vector<int> owner;  ///< stone of each seed, -1: of none
 
  private:
-  std::vector<double> volumes(const Cells<3>& cells) const {
-    std::vector<double> volume(stones_.size());
-    for (std::size_t cell = 0; cell < owner.size(); ++cell)
-      if (owner[cell] >= 0) volume[owner[cell]] += extent(cells, cell);
-    return volume;
-  }
-
-  void remake() {
-    before_.emplace(seeds, owner, is_free_);
-    std::vector<Vec<3>> free;
-    for (std::size_t i = 0; i < owner.size(); ++i)
-      if (is_free_[i]) free.push_back(seeds.position[i]);
-    make(free);
-  }
-
-  void follow(double spacing) { along_.emplace(stones_, ways_, body_, nullptr, sizes_.scaled_to(spacing)); }
-
-  /// Finds the distance of seeds along surfaces with which all blocks are about as large, m. Throws Error
-  /// where there are not enough blocks.
-  double spacing_along() {
-    const auto too_many = [&](double spacing) {
-      follow(spacing);
-      double volume = body_.extent();  // in which blocks of the mean size would be as many
-      const double of_block = spacing * spacing * spacing;
-      for (const int stone : along_->owners()) {
-        const bool is_one = stone >= 0 && along_->is_one_cell(stone);
-        const double relative = is_one ? sizes_.relative(stones_[stone].centre) : 1.0;
-        volume -= is_one ? extent(stones_[stone]) / (relative * relative * relative)
-                         : kVolumeBesideStone * of_block;
-      }
-      const auto blocks = static_cast<double>(along_->owners().size());
-      return blocks + std::max(0.0, volume / of_block) > parameters_.count;
-    };
-    double low = 0.5 * sizes_.mean(), high = 3.0 * sizes_.mean();
-    for (int i = 0; i < kBisectionsInSpace; ++i) {
-      const double middle = std::sqrt(low * high);
-      (too_many(middle) ? low : high) = middle;
-    }
-    if (too_many(high))
-      throw Error(fmt::format("{}{} blocks are too few to follow the surfaces of {} stones: take more",
-                              parameters_.place.empty() ? "" : parameters_.place + ": ", parameters_.count,
-                              stones_.size()));
-    return high;
-  }
-
   /// Places the seeds along surfaces, and free ones up to the number of blocks.
   /// \param places  places of free seeds, taken as far as they are needed
   void make(const std::vector<Vec<3>>& places) {
-    follow(spacing_);
     const std::size_t count = parameters_.count;
-    while (along_->owners().size() > count) follow(spacing_ *= kWider);
-    seeds.position = along_->positions();
-    seeds.radius = along_->radii();
-    owner = along_->owners();
+    while (along().owners().size() > count) following_.follow_wider(kWider);
+    seeds.position = along().positions();
+    seeds.radius = along().radii();
+    owner = along().owners();
     is_free_.assign(owner.size(), 0);
     for (const Vec<3>& place : places)
-      if (owner.size() < count && along_->leave_room_at(place, kLeastClear)) add_free(place);
+      if (owner.size() < count && along().leave_room_at(place, kLeastClear)) add_free(place);
     if (owner.size() < count) {
       SpacedSeedDraw draw = free_draw(seeds.position);
       while (owner.size() < count) add_free(draw.draw());
@@ -524,10 +489,12 @@ class FollowingSeeds {
     sort();
   }
 
+  const StoneSeeds<3>& along() const { return following_.along(); }
+
   SpacedSeedDraw free_draw(const std::vector<Vec<3>>& standing) {
     SpacedSeedDraw draw(body_, sizes_, random_, [this](const Vec<3>& place, int tried) {
-      return along_->leave_room_at(
-          place, std::max(kLeastClear, kClearOfGrains - 0.05 * (tried / kTriesAtOneDistance)));
+      return along().leave_room_at(
+          place, std::max(kLeastClear, kClearOfStones - 0.05 * (tried / kTriesAtOneDistance)));
     });
     for (const Vec<3>& place : standing) draw.add(place);
     return draw;
@@ -545,7 +512,7 @@ class FollowingSeeds {
     const double spread = parameters_.radius_spread;
     seeds.position[i] = place;
     seeds.radius[i] = 0.5 * sizes_.at(place) * random_.uniform(1.0 - spread, 1.0 + spread);
-    owner[i] = along_->grain_at(place);
+    owner[i] = along().stone_at(place);
   }
 
   void sort() {
@@ -562,13 +529,9 @@ class FollowingSeeds {
 
   const BlockParameters& parameters_;
   const Prism& body_;
-  std::span<const Grain<3>> stones_;
   const BlockSizes& sizes_;
   Random& random_;
-  std::vector<WayToFollow> ways_;
-  std::vector<double> aim_;  ///< volume of the blocks of each stone before they are regularised, over its own
-  double spacing_ = 0.0;     ///< mean distance of seeds along surfaces, m
-  std::optional<GrainSeeds<3>> along_;
+  Following<3> following_;
   std::vector<char> is_free_;                                                        ///< of each seed
   std::optional<std::tuple<Seeds<3>, std::vector<int>, std::vector<char>>> before_;  ///< the last correction
 };
@@ -584,29 +547,29 @@ void add_sizes(const BlockSizes& sizes, Blocks<Dim>& blocks) {
 }  // namespace
 
 Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team,
-                      std::span<const Grain<2>> grains) {
+                      std::span<const Stone<2>> stones) {
   Blocks<2> blocks{};
   if (!parameters.cells) {
-    blocks = tessellate_until_fit(parameters, region, grains, random, team);
+    blocks = tessellate_until_fit(parameters, region, stones, random, team);
     require_valid(blocks.cells, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
     blocks.cells = *parameters.cells;
-    const Regularisation done = regularise(blocks.cells, region, parameters.shortest_edge);
-    blocks.done.edges_removed = done.edges_removed;
+    const RegularisedCells done = regularise(blocks.cells, region, {parameters.shortest_edge});
+    blocks.done.vertices_merged = done.vertices_merged;
     blocks.done.edges_left_short = done.edges_left_short;
   }
-  const std::vector<int> grain = std::exchange(blocks.grain, {});
+  const std::vector<int> stone = std::exchange(blocks.stone, {});
   const BlockSizes sizes = sizes_of<2>(parameters, region);
   for (const std::size_t before : number_along_curve(blocks.cells, region.box())) {
     if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
-    if (!grain.empty()) blocks.grain.push_back(grain[before]);
+    if (!stone.empty()) blocks.stone.push_back(stone[before]);
   }
   add_sizes(sizes, blocks);
   return blocks;
 }
 
 Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random, Team* team,
-                      std::span<const Grain<3>> stones) {
+                      std::span<const Stone<3>> stones) {
   const BlockSizes sizes = sizes_of<3>(parameters, body);
   std::optional<FollowingSeeds> following;
   if (!stones.empty()) following.emplace(parameters, body, stones, sizes, random);
@@ -630,20 +593,20 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
     }
     failed = 0;
     require_valid(result.cells, body, what);
-    if (following && corrections < most_corrections && following->correct(result.cells)) {
+    if (following && corrections < most_corrections && following->correct(result.cells, false)) {
       ++corrections;
       continue;
     }
-    if (following) blocks.grain = following->owner;
+    if (following) blocks.stone = following->owner;
     if (parameters.shortest_edge > 0.0) {
       const auto regular =
           regularise(result.cells, body, result.plane, {parameters.shortest_edge, parameters.largest_bend},
-                     sizes, blocks.grain);
+                     sizes, blocks.stone);
       blocks.done.vertices_merged = regular.vertices_merged;
       blocks.done.edges_left_short = regular.edges_left_short;
       require_valid(result.cells, body, what);
       if (following && ++regularisations < kRegularisations && most_corrections > corrections &&
-          following->aim(result.cells)) {
+          following->correct(result.cells, true)) {
         most_corrections += kCorrections;
         continue;
       }

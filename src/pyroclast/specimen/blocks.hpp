@@ -16,7 +16,7 @@ struct Blocks {
   std::vector<int> phase;
   /// Stone of which each block is, index into the stones, -1: of none; empty where blocks do not follow
   /// stones.
-  std::vector<int> grain;
+  std::vector<int> stone;
   /// Size that each block was to have, m; empty where blocks are alike.
   std::vector<double> size;
   Metrics<Dim> done;  ///< counts of what has been done to the blocks
@@ -35,13 +35,13 @@ BlockSizes sizes_of(const BlockParameters& parameters, const OutlineOf<Dim>& out
 /// `parameters.cells`. Throws Error when the blocks are not valid at the end; it names the side of the
 /// outline with invalid blocks.
 /// \param team  as for make_specimen
-/// \param grains  grains whose surfaces blocks follow
+/// \param stones  stones whose surfaces blocks follow
 Blocks<2> make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
-                      Team* team = nullptr, std::span<const Grain<2>> grains = {});
+                      Team* team = nullptr, std::span<const Stone<2>> stones = {});
 /// Draws seeds that keep their distance, tessellates the body and regularises. Seeds whose cells fail are
 /// drawn anew. Where blocks follow stones, these are followed larger or smaller until the volumes of their
 /// blocks are right.
 Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Random& random,
-                      Team* team = nullptr, std::span<const Grain<3>> stones = {});
+                      Team* team = nullptr, std::span<const Stone<3>> stones = {});
 
 }  // namespace pyroclast::specimen

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <variant>
 
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -17,16 +19,24 @@ namespace pyroclast::specimen {
 template <int Dim>
 std::string cells_text(const Specimen<Dim>& specimen);
 
-/// Content of a file of cells. The name of its list of vertices may have another unit: `vertices_mm`.
-struct CellsFile {
-  GivenCells<2> cells;  ///< cells in `unit`
-  std::string unit;     ///< unit of length, as it is written
-};
+/// Says, for messages, how blocks in space come.
+inline constexpr const char* kInSpace =
+    "Blocks in space come by [specimen] shape = \"polyhedra\" and file, which is JSON with their faces (see "
+    "docs/do/bodies.md, Blocks made elsewhere)";
 
-/// Reads a file of cells and turns the cells counter-clockwise. Throws Error, with the file, for a text of
-/// another form, see also `checked`.
-CellsFile read_cells(const std::filesystem::path& file);
-/// Reads cells from a text; `name` takes the file's place in messages.
-CellsFile cells_from(const std::string& text, const std::string& name);
+/// Function from a unit of length to one that turns numbers of it into m. Throws Error for another unit.
+using ToMetres = std::function<std::function<double(double)>(const std::string& unit)>;
+
+/// Cells of a file, in the plane or in space.
+using FileOfCells = std::variant<GivenCells<2>, GivenCells<3>>;
+
+/// Reads a file of cells and completes them. The names of its lists of vertices and sizes may have another
+/// unit, such as `vertices_mm`. Throws Error, with the file, for a text of another form, and as `completed`.
+/// \param to_metres  empty: m is the only unit
+/// \param join       distance below which vertices are joined, m; 0: none
+FileOfCells read_cells(const std::filesystem::path& file, const ToMetres& to_metres = {}, double join = 0.0);
+/// Reads cells from a text; `name` takes the file's place in messages; it may be empty.
+FileOfCells cells_from(const std::string& text, const std::string& name, const ToMetres& to_metres = {},
+                       double join = 0.0);
 
 }  // namespace pyroclast::specimen

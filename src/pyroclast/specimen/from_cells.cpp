@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,12 +13,16 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/pieces.hpp"
 #include "pyroclast/specimen/polygon.hpp"
-#include "pyroclast/specimen/polyhedra_file.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
+
+/// Sine of the angle between two planes of the body below which a vertex on both has no place of its own.
+constexpr double kParallel = 1e-4;
+/// Farthest way onto the line or point where planes meet, over the largest distance from one of them.
+constexpr double kFarthest = 10.0;
 
 /// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
 /// are not one piece, or parts of the outline meet in one point.
@@ -156,26 +162,6 @@ void make_upright(std::vector<Vec<2>>& corners, double slack) {
   std::rotate(corners.begin(), corners.end() - static_cast<std::ptrdiff_t>(lowest), corners.end());
 }
 
-void require_cells(const GivenCells<2>& cells) {
-  const Cells<2>& t = cells.cells;
-  require_lists(t.cells.size(), cells.phases, cells.phase, cells.size, cells.grain);
-  for (std::size_t c = 0; c < t.cells.size(); ++c) {
-    if (t.cells[c].size() < 3)
-      throw Error(fmt::format("{} has {} corners, but needs 3", Numbering{}.cell(c), t.cells[c].size()));
-    for (int v : t.cells[c])
-      if (v < 0 || v >= std::ssize(t.vertices))
-        throw Error(fmt::format("{} names vertex {} (from 0), but there are {}", Numbering{}.cell(c), v,
-                                t.vertices.size()));
-    std::vector<int> sorted = t.cells[c];
-    std::ranges::sort(sorted);
-    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
-      throw Error(fmt::format("{} names vertex {} (from 0) twice", Numbering{}.cell(c), *twice));
-  }
-  for (std::size_t v = 0; v < t.vertices.size(); ++v)
-    if (!std::isfinite(t.vertices[v][0]) || !std::isfinite(t.vertices[v][1]))
-      throw Error(fmt::format("vertex {} (from 0) is not finite", v));
-}
-
 Region outline_of_loops(const Cells<2>& tessellation, const std::vector<Facet<2>>& edges,
                         const Numbering& numbering) {
   const double slack = slack_of(tessellation);
@@ -199,6 +185,154 @@ Region outline_of_loops(const Cells<2>& tessellation, const std::vector<Facet<2>
   if (names.front() == "bottom" && origin == Vec<2>{})
     return Region::rectangle(opposite[0], opposite[1]).with_holes(holes);
   return Region::polygon(std::move(outer), names).with_holes(holes);
+}
+
+/// Throws Error, naming the cell, counted from 0, when there are no cells, when a list has another length,
+/// when a vertex is not finite, and when a cell is of a phase that does not exist, has a size that is not
+/// above 0, or a stone below -1.
+template <int Dim>
+void require_lists(const GivenCells<Dim>& given) {
+  const std::size_t cells = given.cells.cells.size();
+  if (cells == 0) throw Error("there are no cells");
+  const auto require_one_each = [&](std::size_t count, const char* what) {
+    if (count != cells) throw Error(fmt::format("there are {} cells, but the {} of {}", cells, what, count));
+  };
+  require_one_each(given.phase.size(), "phases");
+  if (!given.size.empty()) require_one_each(given.size.size(), "sizes");
+  if (!given.stone.empty()) require_one_each(given.stone.size(), "stones");
+  for (std::size_t v = 0; v < given.cells.vertices.size(); ++v)
+    if (!std::ranges::all_of(given.cells.vertices[v].c, [](double x) { return std::isfinite(x); }))
+      throw Error(fmt::format("vertex {} (from 0) is not finite", v));
+  const Numbering number;
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (const int phase = given.phase[c]; phase < 0 || phase >= std::ssize(given.phases))
+      throw Error(fmt::format("{} is of phase {} (from 0), but there are {}", number.cell(c), phase,
+                              given.phases.size()));
+    if (!given.size.empty() && (!(given.size[c] > 0.0) || !std::isfinite(given.size[c])))
+      throw Error(
+          fmt::format("{} has the size {}; it must be greater than 0", number.cell(c), given.size[c]));
+    if (!given.stone.empty() && given.stone[c] < -1)
+      throw Error(fmt::format("{} is of stone {}; the least number is 0, or -1 for none", number.cell(c),
+                              given.stone[c]));
+  }
+}
+
+/// What the numbers of a list count, in words.
+struct Counted {
+  const char *one, *many;
+};
+
+/// Throws Error where a list has too few numbers, one twice, or one that nothing has.
+void require_numbers(const std::vector<std::vector<int>>& lists, const char* item, std::size_t fewest,
+                     const Counted& of, std::size_t there_are) {
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    std::vector<int> sorted = lists[i];
+    std::ranges::sort(sorted);
+    if (sorted.size() < fewest)
+      throw Error(
+          fmt::format("{} {} (from 0) has {} {}, but needs {}", item, i, sorted.size(), of.many, fewest));
+    if (const int wrong = sorted.front() < 0 ? sorted.front() : sorted.back();
+        wrong < 0 || std::cmp_greater_equal(wrong, there_are))
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0), but there are {}", item, i, of.one, wrong,
+                              there_are));
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      throw Error(fmt::format("{} {} (from 0) names {} {} (from 0) twice", item, i, of.one, *twice));
+  }
+}
+
+/// Finds the cells on both sides of each face, and turns the faces of the surface outwards. A face goes
+/// counter-clockwise seen from outside of a convex cell where its area points away from the cell's middle.
+/// \param number  number of each face in the file
+void find_neighbours(Cells<3>& cells, const std::vector<int>& number) {
+  std::vector<std::vector<std::pair<int, bool>>> cells_of(cells.faces.size());
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
+    Vec<3> sum{};
+    double corners = 0.0;
+    for (const int f : cells.cells[cell])
+      for (const int v : cells.faces[f].corners) {
+        sum += cells.vertices[v];
+        ++corners;
+      }
+    for (const int f : cells.cells[cell]) {
+      const Facet<3>& face = cells.faces[f];
+      const Vec<3> away = cells.vertices[face.corners.front()] - sum * (1.0 / corners);
+      cells_of[f].emplace_back(static_cast<int>(cell), dot(area_vector(cells, face), away) > 0.0);
+    }
+  }
+  for (std::size_t f = 0; f < cells.faces.size(); ++f) {
+    Facet<3>& face = cells.faces[f];
+    const auto& its_cells = cells_of[f];
+    if (its_cells.empty() || its_cells.size() > 2)
+      throw Error(
+          fmt::format("face {} (from 0) is of {} cells, but must be of 1 or 2", number[f], its_cells.size()));
+    const auto [first, is_of_first] = its_cells[0];
+    if (its_cells.size() == 1) {
+      face.inner = first;
+      if (!is_of_first) std::reverse(face.corners.begin() + 1, face.corners.end());
+    } else {
+      face.inner = its_cells[is_of_first ? 0 : 1].first;
+      face.outer = its_cells[is_of_first ? 1 : 0].first;
+    }
+  }
+}
+
+/// Finds the plane of the body nearest to all corners of a face. Returns it, and the corner farthest from it.
+std::pair<const Plane*, int> plane_of(const Facet<3>& face, const Cells<3>& cells, const Prism& body) {
+  std::pair<const Plane*, int> found{};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Plane& plane : body.planes()) {
+    const auto off = [&](int v) { return std::abs(plane.distance(cells.vertices[v])); };
+    const int farthest = *std::ranges::max_element(face.corners, {}, off);
+    if (off(farthest) >= nearest) continue;
+    nearest = off(farthest);
+    found = {&plane, farthest};
+  }
+  return found;
+}
+
+/// Returns a place laid onto some planes, in turn.
+/// \param slack  farthest way onto a plane, m: where planes hardly differ, their common line may be far away
+Vec<3> laid_on(const std::vector<const Plane*>& planes, Vec<3> place, double slack) {
+  std::vector<Vec<3>> taken;  // directions in which it may not move any more
+  for (const Plane* plane : planes) {
+    Vec<3> way = plane->normal;
+    for (const Vec<3>& direction : taken) way = way - dot(way, direction) * direction;
+    const double length = norm(way), far = plane->distance(place) / length;
+    if (length < kParallel || std::abs(far) > slack) continue;
+    way *= 1.0 / length;
+    place = place - far * way;
+    taken.push_back(way);
+    for (int d = 0; d < 3; ++d)  // exactly, where the plane is across an axis
+      if (std::ranges::count(plane->normal.c, 0.0) == 2 && plane->normal[d] != 0.0)
+        place[d] = plane->offset * plane->normal[d];
+  }
+  return place;
+}
+
+/// Lays vertices that are off by rounding onto the sides of their faces. Throws Error where a face of the
+/// surface lies on no side.
+/// \param number  number of each face in the file
+void lay_on_sides(Cells<3>& cells, const Prism& body, const std::vector<int>& number) {
+  const double slack = kOffSide * side_of<3>(body.extent() / static_cast<double>(cells.cells.size())),
+               exact = kExact * norm(body.high() - body.low());
+  std::vector<std::vector<const Plane*>> planes(cells.vertices.size());
+  for (std::size_t f = 0; f < cells.faces.size(); ++f) {
+    const Facet<3>& face = cells.faces[f];
+    if (face.outer >= 0) continue;
+    const auto [plane, farthest] = plane_of(face, cells, body);
+    const Vec<3>& at = cells.vertices[farthest];
+    if (const double off = std::abs(plane->distance(at)); off > slack)
+      throw Error(fmt::format(
+          "face {} (from 0), of cell {} alone, lies on no side of the body: its corner ({:.6g}, "
+          "{:.6g}, {:.6g}) m is {:.3g} m off \"{}\", the nearest; {:.3g} m is allowed, {:g} of a block",
+          number[f], face.inner, at[0], at[1], at[2], off, body.sides()[plane->side].name, slack, kOffSide));
+    for (const int v : face.corners)
+      if (std::ranges::find(planes[v], plane) == planes[v].end()) planes[v].push_back(plane);
+  }
+  for (std::size_t v = 0; v < planes.size(); ++v) {
+    const Vec<3> laid = laid_on(planes[v], cells.vertices[v], kFarthest * slack);
+    if (norm(laid - cells.vertices[v]) > exact) cells.vertices[v] = laid;
+  }
 }
 
 }  // namespace
@@ -243,64 +377,65 @@ Region outline_of(const Cells<2>& tessellation, const Numbering& numbering) {
   }
 }
 
-void require_lists(std::size_t cells, const std::vector<std::string>& phases, const std::vector<int>& phase,
-                   const std::vector<double>& size, const std::vector<int>& grain) {
-  if (cells == 0) throw Error("there are no cells");
-  const auto require_one_each = [&](std::size_t count, const char* what) {
-    if (count != cells) throw Error(fmt::format("there are {} cells, but the {} of {}", cells, what, count));
-  };
-  require_one_each(phase.size(), "phases");
-  if (!size.empty()) require_one_each(size.size(), "sizes");
-  if (!grain.empty()) require_one_each(grain.size(), "stones");
-  const Numbering number;
-  for (std::size_t c = 0; c < cells; ++c) {
-    if (phase[c] < 0 || phase[c] >= std::ssize(phases))
-      throw Error(fmt::format("{} is of phase {} (from 0), but there are {}", number.cell(c), phase[c],
-                              phases.size()));
-    if (!size.empty() && (!(size[c] > 0.0) || !std::isfinite(size[c])))
-      throw Error(fmt::format("{} has the size {}; it must be greater than 0", number.cell(c), size[c]));
-    if (!grain.empty() && grain[c] < -1)
-      throw Error(
-          fmt::format("{} is of stone {}; the least number is 0, or -1 for none", number.cell(c), grain[c]));
-  }
-}
-
-GivenCells<2> checked(GivenCells<2> cells) {
-  require_cells(cells);
+GivenCells<2> checked(GivenCells<2> given) {
+  Cells<2>& cells = given.cells;
+  require_lists(given);
+  require_numbers(cells.cells, "cell", 3, {"vertex", "vertices"}, cells.vertices.size());
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < cells.cells.cells.size(); ++c) {
-    corners(cells.cells, c, polygon);
-    if (area(polygon) < 0.0) std::ranges::reverse(cells.cells.cells[c]);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    corners(cells, c, polygon);
+    if (area(polygon) < 0.0) std::ranges::reverse(cells.cells[c]);
   }
-  return cells;
+  return given;
 }
 
-Specimen<2> specimen_from(GivenCells<2> cells) {
-  cells = checked(std::move(cells));
-  lay_on_sides(cells.cells);
-  const Region region = outline_of(cells.cells);
-  return specimen_from(std::move(cells), region);
+GivenCells<2> completed(GivenCells<2> given, double join) {
+  given = joined(checked(std::move(given)), join);
+  lay_on_sides(given.cells);
+  given.outline = outline_of(given.cells);
+  return given;
+}
+
+GivenCells<3> completed(GivenCells<3> given, double join) {
+  Cells<3>& cells = given.cells;
+  require_lists(given);
+  std::vector<std::vector<int>> loops;
+  for (const Facet<3>& face : cells.faces) loops.push_back(face.corners);
+  require_numbers(loops, "face", 3, {"vertex", "vertices"}, cells.vertices.size());
+  require_numbers(cells.cells, "cell", 4, {"face", "faces"}, cells.faces.size());
+  std::vector<int> number(cells.faces.size());
+  std::iota(number.begin(), number.end(), 0);
+  if (join > 0.0) number = specimen::join(cells, join);
+  find_neighbours(cells, number);
+  try {
+    if (const std::string pieces = describe_pieces<3>(cells, cells.faces); !pieces.empty())
+      throw Error(pieces);
+    lay_on_sides(cells, given.outline, number);
+  } catch (const Error& error) {
+    throw Error(error.what() + describe_joinable(cells));
+  }
+  return given;
 }
 
 template <int Dim>
-Specimen<Dim> specimen_from(GivenCells<Dim> given, const OutlineOf<Dim>& outline) {
+Specimen<Dim> specimen_from(GivenCells<Dim> given) {
+  const OutlineOf<Dim>& outline = given.outline;
   const std::string origin = given.origin.empty() ? "The cells" : given.origin;
-  if constexpr (Dim == 2)
-    given = checked(std::move(given));
-  else
-    find_sides(given.cells, outline);
+  if constexpr (Dim == 3)
+    for (Facet<3>& face : given.cells.faces)
+      if (face.outer < 0) face.side = plane_of(face, given.cells, outline).first->side;
   require_valid(given.cells, outline, origin);
-  Specimen<Dim> specimen{.outline = outline,
+  Specimen<Dim> specimen{.outline = std::move(given.outline),
                          .cells = std::move(given.cells),
                          .phases = std::move(given.phases),
                          .phase = std::move(given.phase),
-                         .grain = std::move(given.grain),
+                         .stone = std::move(given.stone),
                          .size = std::move(given.size)};
   measure(specimen);
   return specimen;
 }
 
-template Specimen<2> specimen_from<2>(GivenCells<2>, const Region&);
-template Specimen<3> specimen_from<3>(GivenCells<3>, const Prism&);
+template Specimen<2> specimen_from<2>(GivenCells<2>);
+template Specimen<3> specimen_from<3>(GivenCells<3>);
 
 }  // namespace pyroclast::specimen

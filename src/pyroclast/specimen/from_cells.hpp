@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <utility>
 
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -32,25 +30,23 @@ void lay_on_sides(Cells<2>& tessellation);
 /// whether vertices could be joined (`describe_joinable`).
 Region outline_of(const Cells<2>& tessellation, const Numbering& numbering = {});
 
-/// Tests the lists that cells bring along, in the plane or in space. Throws Error, naming the cell, counted
-/// from 0, when there are no cells, when a list has another length, and when a cell is of a phase that does
-/// not exist, has a size that is not above 0, or a stone below -1.
-/// \param cells  number of cells
-/// \param size   size that each was to have, or empty
-/// \param grain  stone of each, or empty
-void require_lists(std::size_t cells, const std::vector<std::string>& phases, const std::vector<int>& phase,
-                   const std::vector<double>& size, const std::vector<int>& grain);
-
-/// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when a cell names a vertex
-/// that does not exist, and as `require_lists`.
+/// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when there are no cells,
+/// when a list has another length, when a cell names a vertex that does not exist, or one twice, and when it
+/// is of a phase that does not exist, has a size that is not above 0, or a stone below -1.
 GivenCells<2> checked(GivenCells<2> cells);
 
-/// Makes a specimen of cells that come from elsewhere, in either sense. Throws Error as `checked`, and when a
-/// cell is not convex, or does not fit together with its neighbours.
-Specimen<2> specimen_from(GivenCells<2> cells);
-/// Makes a specimen of cells in the plane or in space whose outline, perhaps with patches, is known. Throws
-/// Error as above, in space when the cells do not fill the body.
+/// Completes cells that come from elsewhere, whose vertices, cells and lists alone are known, in space also
+/// the corners of faces, in either sense, and the outline: joins them (`joined`, `join`), finds neighbours,
+/// turns cells and faces, and lays vertices that a file rounds onto the sides, see kOffSide; in the plane
+/// finds the outline. Throws Error as `checked`, when the cells are in several pieces, and in space when a
+/// face on the surface lies on none of the sides; the message then says whether vertices could be joined.
+/// \param join  distance below which vertices are joined, m; 0: none
+GivenCells<2> completed(GivenCells<2> cells, double join = 0.0);
+GivenCells<3> completed(GivenCells<3> cells, double join = 0.0);
+
+/// Makes a specimen of cells that are complete. Throws Error when a cell is not convex, or does not fit
+/// together with its neighbours, or when the cells do not fill their outline.
 template <int Dim>
-Specimen<Dim> specimen_from(GivenCells<Dim> cells, const OutlineOf<Dim>& outline);
+Specimen<Dim> specimen_from(GivenCells<Dim> cells);
 
 }  // namespace pyroclast::specimen

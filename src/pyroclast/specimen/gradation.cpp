@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/shell.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -51,41 +51,41 @@ double passing(const AggregateParameters& parameters, double size) {
 
 namespace {
 
-/// Returns a grain of width 1 of the shapes asked for.
+/// Returns a stone of width 1 of the shapes asked for.
 template <int Dim>
-Grain<Dim> draw_unit_grain(const ShapeParameters& parameters, Random& random) {
-  Grain<Dim> grain{{}, 1.0};
+Stone<Dim> draw_unit_stone(const ShapeParameters& parameters, Random& random) {
+  Stone<Dim> stone{{}, 1.0};
   if constexpr (Dim == 2)
-    grain.shape = draw_outline(parameters, random);
+    stone.shape = draw_outline(parameters, random);
   else
-    grain.shape = draw_shell(parameters, random);
-  return grain;
+    stone.shape = draw_shell(parameters, random);
+  return stone;
 }
 
-/// Returns a grain at the origin, larger by a factor.
+/// Returns a stone at the origin, larger by a factor.
 template <int Dim>
-Grain<Dim> scaled(Grain<Dim> grain, double factor) {
-  grain.diameter *= factor;
-  if (grain.shape) grain.shape = grain.shape->scaled(factor);
-  return grain;
+Stone<Dim> scaled(Stone<Dim> stone, double factor) {
+  stone.diameter *= factor;
+  if (stone.shape) stone.shape = stone.shape->scaled(factor);
+  return stone;
 }
 
 }  // namespace
 
 template <int Dim>
-std::vector<Grain<Dim>> draw_grains(const AggregateParameters& parameters, double specimen_extent,
+std::vector<Stone<Dim>> draw_stones(const AggregateParameters& parameters, double specimen_extent,
                                     Random& random) {
   const double total = parameters.fraction * specimen_extent;
   const std::vector<double>& sieves = parameters.sieves;
-  std::vector<Grain<Dim>> grains;
+  std::vector<Stone<Dim>> stones;
   double remaining = 0.0;
-  Grain<Dim> next = draw_unit_grain<Dim>(parameters.shape, random);
-  // extent of the next grain over that of a round one
+  Stone<Dim> next = draw_unit_stone<Dim>(parameters.shape, random);
+  // extent of the next stone over that of a round one
   const auto factor = [&] { return next.shape ? extent(next) / extent_of_round<Dim>(1.0) : 1.0; };
   const auto take = [&](double diameter) {
-    grains.push_back(scaled(next, diameter));
-    remaining -= extent(grains.back());
-    next = draw_unit_grain<Dim>(parameters.shape, random);
+    stones.push_back(scaled(next, diameter));
+    remaining -= extent(stones.back());
+    next = draw_unit_stone<Dim>(parameters.shape, random);
   };
   for (std::size_t i = sieves.size() - 1; i > 0; --i) {
     const double low = sieves[i - 1];
@@ -98,19 +98,19 @@ std::vector<Grain<Dim>> draw_grains(const AggregateParameters& parameters, doubl
     }
   }
   if (remaining > 0.5 * factor() * extent_of_round<Dim>(parameters.d_min)) take(parameters.d_min);
-  std::ranges::stable_sort(grains, std::greater<>(), &Grain<Dim>::diameter);
-  return grains;
+  std::ranges::stable_sort(stones, std::greater<>(), &Stone<Dim>::diameter);
+  return stones;
 }
 
-template std::vector<Grain<2>> draw_grains(const AggregateParameters&, double, Random&);
-template std::vector<Grain<3>> draw_grains(const AggregateParameters&, double, Random&);
+template std::vector<Stone<2>> draw_stones(const AggregateParameters&, double, Random&);
+template std::vector<Stone<3>> draw_stones(const AggregateParameters&, double, Random&);
 
 template <int Dim>
 std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
-                                      const std::vector<Grain<Dim>>& aggregates,
+                                      const std::vector<Stone<Dim>>& aggregates,
                                       std::span<const double> sizes) {
   if (aggregates.empty()) throw Error("No grading curve: the specimen has no aggregates.");
-  const double total = extent_of(std::span<const Grain<Dim>>(aggregates));
+  const double total = extent_of(std::span<const Stone<Dim>>(aggregates));
   std::vector<GradationPoint> points;
   for (const double size : sizes) {
     double realised = 0.0;
@@ -121,9 +121,9 @@ std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
   return points;
 }
 
-template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Grain<2>>&,
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Stone<2>>&,
                                                std::span<const double>);
-template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Grain<3>>&,
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<Stone<3>>&,
                                                std::span<const double>);
 
 }  // namespace pyroclast::specimen

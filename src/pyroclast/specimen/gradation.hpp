@@ -16,12 +16,12 @@ double fuller_passing(const AggregateParameters& parameters, double size);
 /// or Fuller's.
 double passing(const AggregateParameters& parameters, double size);
 
-/// Draws grains (largest first, at the origin) with a total extent of `fraction` times that of the specimen
+/// Draws stones (largest first, at the origin) with a total extent of `fraction` times that of the specimen
 /// (m², in space m³). Each size interval takes the extent that the grading curve gives it, largest interval
 /// first; within an interval sizes follow the curve too. Extent that an interval cannot use goes to the next
 /// interval that has a share; the total is off by at most half that of the smallest aggregate.
 template <int Dim>
-std::vector<Grain<Dim>> draw_grains(const AggregateParameters& parameters, double specimen_extent,
+std::vector<Stone<Dim>> draw_stones(const AggregateParameters& parameters, double specimen_extent,
                                     Random& random);
 
 /// Point of the grading curves, both rescaled to the coarse range.
@@ -35,7 +35,7 @@ struct GradationPoint {
 /// for plots like the paper's Fig. 5. Throws Error when there are no aggregates.
 template <int Dim>
 std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
-                                      const std::vector<Grain<Dim>>& aggregates,
+                                      const std::vector<Stone<Dim>>& aggregates,
                                       std::span<const double> sizes);
 
 }  // namespace pyroclast::specimen

@@ -189,30 +189,6 @@ void for_each_cell(const Seeds<Dim>& seeds, const OutlineOf<Dim>& outline, const
   });
 }
 
-/// Returns the prism's upper face, counter-clockwise.
-std::vector<Vec<2>> upper_face(voro::voronoicell_neighbor& prism, const Vec<3>& position) {
-  std::vector<int> neighbours, faces;
-  std::vector<double> vertices;
-  prism.neighbors(neighbours);
-  prism.face_vertices(faces);
-  prism.vertices(position[0], position[1], 0.0, vertices);
-  std::vector<Vec<2>> polygon;
-  std::size_t at = 0;
-  for (const int neighbour : neighbours) {
-    const auto count = static_cast<std::size_t>(faces[at]);
-    if (neighbour == kUpperWall) {
-      for (std::size_t i = at + 1; i <= at + count; ++i) {
-        const auto v = 3 * static_cast<std::size_t>(faces[i]);
-        polygon.push_back({{vertices[v], vertices[v + 1]}});
-      }
-      break;
-    }
-    at += count + 1;
-  }
-  if (polygon.size() >= 3 && area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
-  return polygon;
-}
-
 double snapped(double x, double wall) {
   if (std::abs(x) < kMergeDistance<2>) return 0.0;
   return std::abs(x - wall) < kMergeDistance<2> ? wall : x;
@@ -235,6 +211,15 @@ RawCell raw_cell(voro::voronoicell_neighbor& cell, const Vec<3>& position) {
     begin += 1 + raw.loops.back().size();
   }
   return raw;
+}
+
+/// Returns the upper face of a cell in the slab, counter-clockwise.
+std::vector<Vec<2>> upper_face(const RawCell& prism) {
+  std::vector<Vec<2>> polygon;
+  for (std::size_t f = 0; f < prism.loops.size(); ++f)
+    if (prism.beyond[f] == kUpperWall)
+      for (const int v : prism.loops[f]) polygon.push_back(resized<2>(prism.vertices[v]));
+  return polygon;
 }
 
 /// Returns the number of the vertex of each point: those of the cells in turn, of which some coincide.
@@ -411,7 +396,7 @@ Laguerre<2> laguerre_cells(const Seeds<2>& seeds, const Region& region, Team* te
   std::vector<std::vector<Vec<2>>> polygons(seeds.position.size());
   for_each_cell<voro::voronoicell_neighbor>(
       seeds, region, spacings, team, [&](std::size_t seed, auto& prism, const Vec<3>& position) {
-        std::vector<Vec<2>>& polygon = polygons[seed] = upper_face(prism, position);
+        std::vector<Vec<2>>& polygon = polygons[seed] = upper_face(raw_cell(prism, position));
         if (!clip(polygon, resized<2>(position), pieces, kMergeDistance<2>)) polygon.clear();
         for (Vec<2>& p : polygon) p = {{snapped(p[0], width), snapped(p[1], height)}};
       });

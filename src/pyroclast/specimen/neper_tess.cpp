@@ -17,9 +17,9 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/convex_parts.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
-#include "pyroclast/specimen/json_lists.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/topology.hpp"

@@ -175,10 +175,10 @@ template class Ball<3>;
 
 Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   const std::size_t n = corners_.size();
-  if (n < 3) throw Error(fmt::format("an outline of a grain has {} corners; allowed are three or more", n));
+  if (n < 3) throw Error(fmt::format("an outline of a stone has {} corners; allowed are three or more", n));
   if (const auto repeated = repeated_corner(corners_))
     throw Error(fmt::format(
-        "corner {} of an outline of a grain (from 0) repeats the one before, at ({:.6g}, {:.6g}) m",
+        "corner {} of an outline of a stone (from 0) repeats the one before, at ({:.6g}, {:.6g}) m",
         *repeated, corners_[*repeated][0], corners_[*repeated][1]));
   area_ = area(corners_);
   if (area_ < 0.0) {
@@ -188,7 +188,7 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = i + 2; k < n; ++k)
       if (cross_each_other(corners_[i], corners_[next(i)], corners_[k], corners_[next(k)]))
-        throw Error("an outline of a grain crosses itself");
+        throw Error("an outline of a stone crosses itself");
   double length = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double piece = norm(corners_[next(i)] - corners_[i]);
@@ -196,7 +196,7 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
     length += piece;
   }
   starts_.push_back(length);
-  if (!(area_ > 1e-6 * length * length)) throw Error("an outline of a grain has no area");
+  if (!(area_ > 1e-6 * length * length)) throw Error("an outline of a stone has no area");
   const Vec<2> middle = centroid(corners_);
   for (Vec<2>& corner : corners_) corner -= middle;
   double turn = 0.0;
@@ -209,7 +209,7 @@ Outline::Outline(std::vector<Vec<2>> corners) : corners_(std::move(corners)) {
     if (std::abs(turn_here) > kCorner) corners_along_.push_back(starts_[i]);
   }
   if (turn > 3.0 * std::numbers::pi)
-    throw Error("an outline of a grain runs around more than once: are two grains under one number?");
+    throw Error("an outline of a stone runs around more than once: are two stones under one number?");
   inner_radius_ = std::max(0.0, -nearest({}).distance);
   if (inner_radius_ < kThin * bounding_radius_) place_within_ = middle_of_chord();
 }
@@ -338,7 +338,7 @@ std::pair<std::shared_ptr<const Outline>, Vec<2>> outline_around(std::vector<Vec
 }
 
 std::shared_ptr<const Outline> draw_outline(const ShapeParameters& p, Random& random) {
-  if (p.kind == GrainShape::circle) return nullptr;
+  if (p.kind == StoneShape::circle) return nullptr;
   const double elongation = random.uniform(p.elongation.low, p.elongation.high);
   const double angle = random.uniform(p.orientation.low, p.orientation.high);
   std::vector<Vec<2>> corners;
@@ -346,9 +346,9 @@ std::shared_ptr<const Outline> draw_outline(const ShapeParameters& p, Random& ra
     corners.push_back(turned({{radius * std::cos(at) * elongation, radius * std::sin(at)}}, angle));
   };
   const auto around = [](double i, double n) { return 2.0 * std::numbers::pi * i / n; };
-  if (p.kind == GrainShape::ellipse) {
+  if (p.kind == StoneShape::ellipse) {
     for (int i = 0; i < kPieces; ++i) add(1.0, around(i, kPieces));
-  } else if (p.kind == GrainShape::polygon) {
+  } else if (p.kind == StoneShape::polygon) {
     const int count = static_cast<int>(random.uniform(p.corners.low, p.corners.high + 1.0));
     const double first = random.uniform();
     for (int i = 0; i < count; ++i) add(1.0, around(first + i + random.uniform(-kUneven, kUneven), count));

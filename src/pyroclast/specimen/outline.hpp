@@ -94,7 +94,7 @@ std::optional<std::size_t> repeated_corner(std::span<const Vec<2>> corners);
 /// may repeat the first.
 std::pair<std::shared_ptr<const Outline>, Vec<2>> outline_around(std::vector<Vec<2>> points);
 
-/// Draws the outline of a grain whose width is 1. A circle draws nothing and returns none.
+/// Draws the outline of a stone whose width is 1. A circle draws nothing and returns none.
 std::shared_ptr<const Outline> draw_outline(const ShapeParameters& parameters, Random& random);
 
 }  // namespace pyroclast::specimen

@@ -10,10 +10,10 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/growth.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -23,33 +23,33 @@ namespace {
 template <int Dim>
 constexpr double kDensestPlacement = Dim == 2 ? 0.8 : 0.7;
 
-/// Finds a free place for a grain; tells whether there is one within `attempts` centres.
+/// Finds a free place for a stone; tells whether there is one within `attempts` centres.
 template <int Dim>
-bool find_place(Grain<Dim>& grain, const Room<Dim>& room, const GrainGrid<Dim>& grid,
+bool find_place(Stone<Dim>& stone, const Room<Dim>& room, const StoneGrid<Dim>& grid,
                 const AggregateParameters& parameters, Random& random) {
-  const double inner = grain.shape ? grain.shape->inner_radius() : 0.5 * grain.diameter;
+  const double inner = stone.shape ? stone.shape->inner_radius() : 0.5 * stone.diameter;
   const double margin = inner + parameters.minimum_gap;
   for (int d = 0; d < Dim; ++d)
     if (2.0 * margin > room.high[d] - room.low[d]) return false;
   for (int attempt = 0; attempt < parameters.attempts; ++attempt) {
     for (int d = 0; d < Dim; ++d)
-      grain.centre[d] = random.uniform(room.low[d] + margin, room.high[d] - margin);
-    if (room.distance && room.distance(grain.centre) > -margin) continue;
-    if (grain.shape && !lies_within(grain, room, parameters.minimum_gap)) continue;
-    if (!grid.overlaps(grain, parameters.minimum_gap)) return true;
+      stone.centre[d] = random.uniform(room.low[d] + margin, room.high[d] - margin);
+    if (room.distance && room.distance(stone.centre) > -margin) continue;
+    if (stone.shape && !lies_within(stone, room, parameters.minimum_gap)) continue;
+    if (!grid.overlaps(stone, parameters.minimum_gap)) return true;
   }
   return false;
 }
 
-/// Throws Error for grains that can never fit: with their gaps they would take more than any packing.
+/// Throws Error for stones that can never fit: with their gaps they would take more than any packing.
 template <int Dim>
-void require_feasible(const std::vector<Grain<Dim>>& grains, double specimen_extent,
+void require_feasible(const std::vector<Stone<Dim>>& stones, double specimen_extent,
                       const AggregateParameters& parameters) {
   double sum = 0.0;
-  for (const auto& grain : grains) {
-    const double larger = (grain.diameter + parameters.minimum_gap) / grain.diameter;
-    sum += grain.shape ? extent(grain) * larger * larger
-                       : extent_of_round<Dim>(grain.diameter + parameters.minimum_gap);
+  for (const auto& stone : stones) {
+    const double larger = (stone.diameter + parameters.minimum_gap) / stone.diameter;
+    sum += stone.shape ? extent(stone) * larger * larger
+                       : extent_of_round<Dim>(stone.diameter + parameters.minimum_gap);
   }
   if (sum / specimen_extent < kDensestPlacement<Dim>) return;
   throw Error(fmt::format(
@@ -57,97 +57,97 @@ void require_feasible(const std::vector<Grain<Dim>>& grains, double specimen_ext
       "{:.4g} mm between them "
       "would take {:.2f} of the specimen, and random placement fills {} at most; allow a lower fraction, a "
       "larger d_min, or a smaller minimum_gap",
-      parameters.place, parameters.fraction, grains.size(),
-      grains.front().shape ? "grains" : (Dim == 2 ? "circles" : "balls"), 1e3 * grains.back().diameter,
-      1e3 * grains.front().diameter, 1e3 * parameters.minimum_gap, sum / specimen_extent,
+      parameters.place, parameters.fraction, stones.size(),
+      stones.front().shape ? "stones" : (Dim == 2 ? "circles" : "balls"), 1e3 * stones.back().diameter,
+      1e3 * stones.front().diameter, 1e3 * parameters.minimum_gap, sum / specimen_extent,
       kDensestPlacement<Dim>));
 }
 
 template <int Dim>
-[[noreturn]] void throw_no_place(const std::vector<Grain<Dim>>& grains, std::size_t placed,
+[[noreturn]] void throw_no_place(const std::vector<Stone<Dim>>& stones, std::size_t placed,
                                  double specimen_extent, const AggregateParameters& parameters) {
   throw Error(fmt::format(
       "{}: the aggregates do not fit: after {} of {}, {} fraction of {:.3f} of the {:.3f} asked for, "
       "one of {:.4g} mm found no place in {} attempts, nor do all of them come apart while they grow; allow "
       "a "
       "lower fraction, a smaller minimum_gap than {:.4g} mm, or more attempts",
-      parameters.place, placed, grains.size(), Dim == 2 ? "an area" : "a volume",
-      extent_of(std::span(grains).first(placed)) / specimen_extent, parameters.fraction,
-      1e3 * grains[placed].diameter, parameters.attempts, 1e3 * parameters.minimum_gap));
+      parameters.place, placed, stones.size(), Dim == 2 ? "an area" : "a volume",
+      extent_of(std::span(stones).first(placed)) / specimen_extent, parameters.fraction,
+      1e3 * stones[placed].diameter, parameters.attempts, 1e3 * parameters.minimum_gap));
 }
 
 }  // namespace
 
 template <int Dim>
-bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance) {
+bool lies_within(const Stone<Dim>& stone, const Room<Dim>& room, double distance) {
   const auto is_in_box = [&](const Vec<Dim>& point, double least) {
     for (int d = 0; d < Dim; ++d)
       if (point[d] - least < room.low[d] || point[d] + least > room.high[d]) return false;
     return true;
   };
-  if (!grain.shape) {
-    const double least = 0.5 * grain.diameter + distance;
-    return is_in_box(grain.centre, least) && (!room.distance || room.distance(grain.centre) <= -least);
+  if (!stone.shape) {
+    const double least = 0.5 * stone.diameter + distance;
+    return is_in_box(stone.centre, least) && (!room.distance || room.distance(stone.centre) <= -least);
   }
   if constexpr (Dim == 2) {
-    if (!std::ranges::all_of(corners_of(grain), [&](const Vec<2>& c) { return is_in_box(c, distance); }))
+    if (!std::ranges::all_of(corners_of(stone), [&](const Vec<2>& c) { return is_in_box(c, distance); }))
       return false;
-    return !room.distance || (room.distance(place_within(grain)) < 0.0 &&
+    return !room.distance || (room.distance(place_within(stone)) < 0.0 &&
                               std::ranges::none_of(room.lines, [&](const std::array<Vec<2>, 2>& line) {
-                                return are_closer(grain, line[0], line[1], distance);
+                                return are_closer(stone, line[0], line[1], distance);
                               }));
   } else {
     if (!room.distance)
-      return std::ranges::all_of(corners_of(grain), [&](const Vec<3>& c) { return is_in_box(c, distance); });
-    if (room.distance(grain.centre) <= -reach(grain) - distance) return true;
-    return std::ranges::all_of(corners_of(grain),
+      return std::ranges::all_of(corners_of(stone), [&](const Vec<3>& c) { return is_in_box(c, distance); });
+    if (room.distance(stone.centre) <= -reach(stone) - distance) return true;
+    return std::ranges::all_of(corners_of(stone),
                                [&](const Vec<3>& c) { return room.distance(c) <= -distance; });
   }
 }
 
-template bool lies_within(const Grain<2>&, const Room<2>&, double);
-template bool lies_within(const Grain<3>&, const Room<3>&, double);
+template bool lies_within(const Stone<2>&, const Room<2>&, double);
+template bool lies_within(const Stone<3>&, const Room<3>&, double);
 
 template <int Dim>
-std::vector<Grain<Dim>> place(const std::vector<Grain<Dim>>& grains, const Room<Dim>& room,
-                              const AggregateParameters& parameters, const std::vector<Grain<Dim>>& standing,
+std::vector<Stone<Dim>> place(const std::vector<Stone<Dim>>& stones, const Room<Dim>& room,
+                              const AggregateParameters& parameters, const std::vector<Stone<Dim>>& standing,
                               Random& random) {
-  require_feasible<Dim>(grains, room.extent, parameters);
-  // Bins twice the smallest diameter: a small grain looks at few neighbours, a large one lists in few bins.
-  GrainGrid<Dim> grid(room.low, room.high, 2.0 * parameters.d_min);
-  for (const auto& grain : standing) grid.insert(grain);
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    Grain<Dim> grain = grains[i];
-    if (!find_place(grain, room, grid, parameters, random)) {
-      auto grown = grow(grains, room, parameters.minimum_gap, standing, random);
-      if (!grown) throw_no_place<Dim>(grains, i, room.extent, parameters);
+  require_feasible<Dim>(stones, room.extent, parameters);
+  // Bins twice the smallest diameter: a small stone looks at few neighbours, a large one lists in few bins.
+  StoneGrid<Dim> grid(room.low, room.high, 2.0 * parameters.d_min);
+  for (const auto& stone : standing) grid.insert(stone);
+  for (std::size_t i = 0; i < stones.size(); ++i) {
+    Stone<Dim> stone = stones[i];
+    if (!find_place(stone, room, grid, parameters, random)) {
+      auto grown = grow(stones, room, parameters.minimum_gap, standing, random);
+      if (!grown) throw_no_place<Dim>(stones, i, room.extent, parameters);
       return std::move(*grown);
     }
-    grid.insert(grain);
+    grid.insert(stone);
   }
   return {grid.stones().begin() + static_cast<std::ptrdiff_t>(standing.size()), grid.stones().end()};
 }
 
-template std::vector<Grain<2>> place(const std::vector<Grain<2>>&, const Room<2>&, const AggregateParameters&,
-                                     const std::vector<Grain<2>>&, Random&);
-template std::vector<Grain<3>> place(const std::vector<Grain<3>>&, const Room<3>&, const AggregateParameters&,
-                                     const std::vector<Grain<3>>&, Random&);
+template std::vector<Stone<2>> place(const std::vector<Stone<2>>&, const Room<2>&, const AggregateParameters&,
+                                     const std::vector<Stone<2>>&, Random&);
+template std::vector<Stone<3>> place(const std::vector<Stone<3>>&, const Room<3>&, const AggregateParameters&,
+                                     const std::vector<Stone<3>>&, Random&);
 
 template <int Dim>
 void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
-                    Random& random, std::vector<Grain<Dim>>& standing) {
-  const auto grains = draw_grains<Dim>(parameters, room.extent, random);
-  for (Grain<Dim>& grain : place(grains, room, parameters, standing, random)) {
-    grain.phase = phase;
-    grain.kind = kind;
-    standing.push_back(grain);
+                    Random& random, std::vector<Stone<Dim>>& standing) {
+  const auto stones = draw_stones<Dim>(parameters, room.extent, random);
+  for (Stone<Dim>& stone : place(stones, room, parameters, standing, random)) {
+    stone.phase = phase;
+    stone.kind = kind;
+    standing.push_back(stone);
   }
 }
 
 template void draw_and_place(const Room<2>&, const AggregateParameters&, int, int, Random&,
-                             std::vector<Grain<2>>&);
+                             std::vector<Stone<2>>&);
 template void draw_and_place(const Room<3>&, const AggregateParameters&, int, int, Random&,
-                             std::vector<Grain<3>>&);
+                             std::vector<Stone<3>>&);
 
 void require_placed(double placed, double asked, const AggregateParameters& parameters) {
   if (std::abs(placed - asked) > 0.01)
@@ -159,7 +159,7 @@ void require_placed(double placed, double asked, const AggregateParameters& para
 }
 
 std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
-                                std::span<const Grain<2>> standing, Random& random) {
+                                std::span<const Stone<2>> standing, Random& random) {
   const auto fits = [&](const Fibre& fibre) {
     for (const Vec<2>& end : {fibre.from, fibre.to})
       if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
@@ -168,7 +168,7 @@ std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
              cross_each_other(fibre.from, fibre.to, piece.from, piece.to);
     };
     return std::ranges::none_of(region.pieces_before_cuts(), meets) &&
-           std::ranges::none_of(standing, [&](const Grain<2>& a) {
+           std::ranges::none_of(standing, [&](const Stone<2>& a) {
              return are_closer(a, fibre.from, fibre.to, p.minimum_gap);
            });
   };

@@ -9,23 +9,23 @@
 
 namespace pyroclast::specimen {
 
-/// Tells whether a grain lies within a room and keeps a distance from the room's surface (m).
+/// Tells whether a stone lies within a room and keeps a distance from the room's surface (m).
 template <int Dim>
-bool lies_within(const Grain<Dim>& grain, const Room<Dim>& room, double distance);
+bool lies_within(const Stone<Dim>& stone, const Room<Dim>& room, double distance);
 
-/// Takes and places: puts each grain (largest first) at a random centre in the room. There the grain keeps
-/// `minimum_gap` to the others, to grains that stand already, and to the surface. Where a grain finds no
+/// Takes and places: puts each stone (largest first) at a random centre in the room. There the stone keeps
+/// `minimum_gap` to the others, to stones that stand already, and to the surface. Where a stone finds no
 /// place within `attempts` centres, all of them begin anew, smaller, and grow while they push each other away
 /// (grow). Throws Error when they do not fit in that way either.
 template <int Dim>
-std::vector<Grain<Dim>> place(const std::vector<Grain<Dim>>& grains, const Room<Dim>& room,
-                              const AggregateParameters& parameters, const std::vector<Grain<Dim>>& standing,
+std::vector<Stone<Dim>> place(const std::vector<Stone<Dim>>& stones, const Room<Dim>& room,
+                              const AggregateParameters& parameters, const std::vector<Stone<Dim>>& standing,
                               Random& random);
 
-/// Draws the grains of a kind, places them as above and adds them to those that stand.
+/// Draws the stones of a kind, places them as above and adds them to those that stand.
 template <int Dim>
 void draw_and_place(const Room<Dim>& room, const AggregateParameters& parameters, int phase, int kind,
-                    Random& random, std::vector<Grain<Dim>>& standing);
+                    Random& random, std::vector<Stone<Dim>>& standing);
 
 /// Throws Error when the placed fraction of aggregate is off by more than 0.01 from that asked for.
 /// \param parameters  parameters that ask for aggregates, whose place and smallest diameter the message names
@@ -34,6 +34,6 @@ void require_placed(double placed, double asked, const AggregateParameters& para
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.
 std::vector<Fibre> place_fibres(const FibreParameters& parameters, const Region& region,
-                                std::span<const Grain<2>> standing, Random& random);
+                                std::span<const Stone<2>> standing, Random& random);
 
 }  // namespace pyroclast::specimen

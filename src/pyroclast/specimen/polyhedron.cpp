@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 

@@ -65,17 +65,19 @@ double Prism::distance(const Vec<3>& point) const {
   return farthest;
 }
 
-std::vector<Vec<3>> Prism::corners_on(std::size_t plane) const {
+std::vector<FlatPart> Prism::flat_parts() const {
+  std::vector<FlatPart> parts;
+  for (const Plane& plane : planes_) parts.push_back({{}, plane.normal, plane.side});
   const auto& pieces = section_.pieces();
-  if (plane < pieces.size()) {
-    const auto& [from, to, side] = pieces[plane];
-    return {in_space(from, axis_, 0.0), in_space(to, axis_, 0.0), in_space(to, axis_, length()),
-            in_space(from, axis_, length())};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto& [from, to, side] = pieces[i];
+    parts[i].corners = {in_space(from, axis_, 0.0), in_space(to, axis_, 0.0), in_space(to, axis_, length()),
+                        in_space(from, axis_, length())};
+    for (const bool is_far : {false, true})
+      parts[pieces.size() + (is_far ? 1 : 0)].corners.push_back(
+          in_space(from, axis_, is_far ? length() : 0.0));
   }
-  std::vector<Vec<3>> corners;
-  for (const Piece& piece : pieces)
-    corners.push_back(in_space(piece.from, axis_, plane == pieces.size() ? 0.0 : length()));
-  return corners;
+  return parts;
 }
 
 Room<3> room_in(const Prism& body) {

@@ -35,8 +35,7 @@ class Prism {
   const std::vector<Plane>& planes() const { return planes_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
-  /// Returns the corners around the face on a plane, m.
-  std::vector<Vec<3>> corners_on(std::size_t plane) const;
+  std::vector<FlatPart> flat_parts() const;     ///< Returns the faces on the planes, in turn.
   double length() const { return planes_.back().offset; }  ///< Returns the length along the axis, m.
   double extent() const { return volume_; }                ///< Returns the volume, m³.
   const Region& section() const { return section_; }
@@ -59,5 +58,8 @@ Vec<3> in_space(const Vec<2>& of_section, Prism::Axis axis, double along);
 
 /// Returns the room in a body, which must outlive it.
 Room<3> room_in(const Prism& body);
+inline Room<3> room_of_blocks(const Prism& body) {
+  return room_in(body);
+}
 
 }  // namespace pyroclast::specimen

@@ -161,6 +161,16 @@ std::vector<std::string> names_of(std::span<const Side> sides) {
   return names;
 }
 
+std::vector<FlatPart> Region::flat_parts() const {
+  std::vector<FlatPart> parts;
+  for (const auto& [from, to, side] : pieces_) {
+    const Vec<2> along = to - from;
+    parts.push_back(
+        {{resized<3>(from), resized<3>(to)}, Vec<3>{{along[1], -along[0], 0.0}} * (1.0 / norm(along)), side});
+  }
+  return parts;
+}
+
 int find_side(std::span<const Side> sides, std::string_view name) {
   const auto found = std::ranges::find(sides, name, &Side::name);
   return found == sides.end() ? -1 : static_cast<int>(found - sides.begin());

@@ -66,6 +66,13 @@ struct Piece {
   int side;         ///< index into Region::sides
 };
 
+/// Flat part of an outline: a piece in the plane, a face in space.
+struct FlatPart {
+  std::vector<Vec<3>> corners;  ///< m
+  Vec<3> normal;                ///< unit vector, out of the body
+  int side;                     ///< index into the sides of the outline
+};
+
 /// Closed line without crossings, walked with the body on its left: counter-clockwise around a body,
 /// clockwise around a hole.
 struct Loop {
@@ -124,6 +131,7 @@ class Region {
   const std::vector<Side>& sides() const { return sides_; }
   const std::vector<Loop>& loops() const { return loops_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
+  std::vector<FlatPart> flat_parts() const;  ///< Returns the pieces as parts of an outline.
   const std::vector<Notch>& notches() const { return notches_; }
   const Box& box() const { return box_; }
   const Vec<2>& low() const { return box_.low; }    ///< Returns the lower corner of the box, m.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -46,20 +47,16 @@ class Regulariser {
     }
   }
 
-  Regularisation run() {
+  RegularisedCells run() {
     int removed = 0;
     std::vector<Facet<2>> left = short_edges();
     // Each pass raises the mean edge a little and may shorten edges beside a merge, so passes go on until
     // one finds nothing to do.
-    for (bool changed = !left.empty(); changed;) {
-      changed = false;
-      for (const Facet<2>& edge : left) {
-        if (merge(edge.corners[0], edge.corners[1])) {
-          ++removed;
-          changed = true;
-        }
-      }
-      if (changed) left = short_edges();
+    for (int before = -1; before < removed && !left.empty();) {
+      before = removed;
+      for (const Facet<2>& edge : left)
+        if (merge(edge.corners[0], edge.corners[1])) ++removed;
+      if (removed > before) left = short_edges();
     }
     std::vector<int> unfit = unfit_cells(left);
     drop_unused(tessellation_);
@@ -67,10 +64,10 @@ class Regulariser {
   }
 
  private:
-  Vec<2>& at(int v) { return tessellation_.vertices[static_cast<std::size_t>(v)]; }
-  const LineSet& lines_of(int v) const { return lines_[static_cast<std::size_t>(v)]; }
-  std::vector<int>& cells_around(int v) { return around_[static_cast<std::size_t>(v)]; }
-  std::vector<int>& cell(int c) { return tessellation_.cells[static_cast<std::size_t>(c)]; }
+  Vec<2>& at(int v) { return tessellation_.vertices[v]; }
+  const LineSet& lines_of(int v) const { return lines_[v]; }
+  std::vector<int>& cells_around(int v) { return around_[v]; }
+  std::vector<int>& cell(int c) { return tessellation_.cells[c]; }
   bool merged_away(int v) { return cells_around(v).empty(); }
 
   /// Returns the size of blocks in the middle of an edge over the mean size.
@@ -94,13 +91,10 @@ class Regulariser {
     thinnest_ = sliver_share * shortest_;
 
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < length.size(); ++i) {
+    for (std::size_t i = 0; i < length.size(); ++i)
       if (length[i] < shortest_) order.push_back(i);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t i, std::size_t j) { return length[i] < length[j]; });
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return length[i]; });
     std::vector<Facet<2>> found;
-    found.reserve(order.size());
     for (const std::size_t i : order) found.push_back(edges_[i]);
     return found;
   }
@@ -116,7 +110,7 @@ class Regulariser {
 
   /// Returns the vertex that stands for `v` after all merges.
   int kept(int v) {
-    int& next = kept_[static_cast<std::size_t>(v)];
+    int& next = kept_[v];
     if (next != v) next = kept(next);
     return next;
   }
@@ -131,13 +125,8 @@ class Regulariser {
       // The end on more lines stays in place. Where each end has lines of its own, no place is on all of
       // them.
       const auto lines = both(lines_of(a), lines_of(b));
-      if (lines == lines_of(a)) {
-        positions = positions.subspan(merge_positions.size() - 2, 1);
-      } else if (lines == lines_of(b)) {
-        positions = positions.last(1);
-      } else {
-        return false;
-      }
+      if (lines != lines_of(a) && lines != lines_of(b)) return false;
+      positions = lines == lines_of(a) ? positions.last(2).first(1) : positions.last(1);
     }
     gather_blocks(a, b);
     const Vec<2> from = at(a);
@@ -156,11 +145,10 @@ class Regulariser {
   void gather_blocks(int a, int b) {
     touched_ = cells_around(a);
     touched_.insert(touched_.end(), cells_around(b).begin(), cells_around(b).end());
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    sort_unique(touched_);
     before_.clear();
     for (const int c : touched_) {
-      corners(tessellation_, static_cast<std::size_t>(c), polygon_);
+      corners(tessellation_, c, polygon_);
       before_.push_back(shape_of(polygon_));
     }
   }
@@ -188,7 +176,7 @@ class Regulariser {
 
   void carry_out(int a, int b, const Vec<2>& place) {
     at(a) = place;
-    lines_[static_cast<std::size_t>(a)] = *both(lines_of(a), lines_of(b));
+    lines_[a] = *both(lines_of(a), lines_of(b));
     for (const int c : cells_around(b)) {
       auto& vertices = cell(c);
       if (std::find(vertices.begin(), vertices.end(), a) != vertices.end()) {
@@ -198,7 +186,7 @@ class Regulariser {
       }
     }
     cells_around(b).clear();
-    kept_[static_cast<std::size_t>(b)] = a;
+    kept_[b] = a;
     cells_around(a) = touched_;
   }
 
@@ -218,20 +206,17 @@ class Regulariser {
     for (const std::size_t c : flat) {
       for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));
     }
-    for (const Facet<2>& e : left_short) {
-      unfit.push_back(e.outer < 0 || area_of(e.inner) < area_of(e.outer) ? e.inner : e.outer);
-    }
-    std::sort(unfit.begin(), unfit.end());
-    unfit.erase(std::unique(unfit.begin(), unfit.end()), unfit.end());
+    for (const Facet<2>& e : left_short)
+      unfit.push_back(e.outer < 0 || areas_[e.inner] < areas_[e.outer] ? e.inner : e.outer);
+    sort_unique(unfit);
     return unfit;
   }
 
   std::vector<int> flat_corners(std::size_t c) {
     std::vector<int> flat;
     corners(tessellation_, c, polygon_);
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+    for (std::size_t i = 0; i < polygon_.size(); ++i)
       if (interior_angle(polygon_, i) > largest_angle_allowed) flat.push_back(tessellation_.cells[c][i]);
-    }
     return flat;
   }
 
@@ -239,13 +224,10 @@ class Regulariser {
   /// close together: this makes the corner flat, whatever cell lies there.
   int smallest_neighbour(int v, int flat) {
     int smallest = flat;
-    for (const int c : cells_around(v)) {
-      if (c != flat && (smallest == flat || area_of(c) < area_of(smallest))) smallest = c;
-    }
+    for (const int c : cells_around(v))
+      if (c != flat && (smallest == flat || areas_[c] < areas_[smallest])) smallest = c;
     return smallest;
   }
-
-  double area_of(int c) const { return areas_[static_cast<std::size_t>(c)]; }
 
   Cells<2>& tessellation_;
   double share_;
@@ -263,9 +245,9 @@ class Regulariser {
 
 }  // namespace
 
-Regularisation regularise(Cells<2>& tessellation, const Region& region, double shortest_edge,
-                          const BlockSizes& sizes) {
-  return Regulariser(tessellation, region, shortest_edge, sizes).run();
+RegularisedCells regularise(Cells<2>& tessellation, const Region& region, const RegularCells& asked,
+                            const BlockSizes& sizes) {
+  return Regulariser(tessellation, region, asked.shortest_edge, sizes).run();
 }
 
 }  // namespace pyroclast::specimen

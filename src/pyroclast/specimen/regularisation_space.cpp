@@ -1,5 +1,3 @@
-#include "pyroclast/specimen/regularisation_space.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,8 @@
 #include <utility>
 
 #include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {

@@ -16,7 +16,7 @@ struct Room {
   double extent;       ///< area, m², or volume, m³, of the body
   /// Distance of a point from the surface of the body, m, negative within; empty where the body is the box.
   std::function<double(const Vec<Dim>&)> distance;
-  /// Ends of the straight lines around a body in the plane that is no box, m, and of its slits: grains with
+  /// Ends of the straight lines around a body in the plane that is no box, m, and of its slits: stones with
   /// an outline keep away from them.
   std::vector<std::array<Vec<Dim>, 2>> lines = {};
 };
@@ -25,8 +25,8 @@ struct Room {
 /// goes through aggregate.
 Room<2> room_in(const Region& region);
 
-/// Returns the room of blocks in a region, which must outlive it, with its notches. Grains with an outline
-/// lie there too: blocks could not follow a grain on both sides of a notch.
+/// Returns the room of blocks in a region, which must outlive it, with its notches. Stones with an outline
+/// lie there too: blocks could not follow a stone on both sides of a notch.
 Room<2> room_of_blocks(const Region& region);
 
 }  // namespace pyroclast::specimen

@@ -708,12 +708,12 @@ Shell ball_of_shell(double radius) {
 }
 
 std::shared_ptr<const Shell> draw_shell(const ShapeParameters& p, Random& random) {
-  if (p.kind == GrainShape::circle) return nullptr;
+  if (p.kind == StoneShape::circle) return nullptr;
   const double elongation = random.uniform(p.elongation.low, p.elongation.high);
   const double flatness = random.uniform(p.flatness.low, p.flatness.high);
   const Turn turn(random);
   Triangulated drawn;
-  if (p.kind == GrainShape::polygon) {
+  if (p.kind == StoneShape::polygon) {
     const int count = static_cast<int>(random.uniform(p.corners.low, p.corners.high + 1.0));
     std::vector<Vec<3>> corners = points_of_ball(count, 1.0);
     const double off = 1.0 / std::sqrt(static_cast<double>(count));
@@ -724,13 +724,13 @@ std::shared_ptr<const Shell> draw_shell(const ShapeParameters& p, Random& random
     drawn = convex_hull(corners);
   } else {
     drawn = ball_of_triangles();
-    if (p.kind == GrainShape::harmonics)
+    if (p.kind == StoneShape::harmonics)
       add_harmonics(random.uniform(p.roughness.low, p.roughness.high), p.decay, random, drawn.vertices);
   }
   for (Vec<3>& v : drawn.vertices) v = turn({{v[0] * elongation, v[1], v[2] / flatness}});
-  if (p.kind == GrainShape::polygon)
+  if (p.kind == StoneShape::polygon)
     while (drawn.longest_edge() > 2.0 * kLongestEdge) drawn.halve();
-  const Shell shell(std::move(drawn.vertices), std::move(drawn.triangles), p.kind != GrainShape::polygon);
+  const Shell shell(std::move(drawn.vertices), std::move(drawn.triangles), p.kind != StoneShape::polygon);
   const double width = shell.width_across(turn({{1.0, 0.0, 0.0}}));
   return std::static_pointer_cast<const Shell>(shell.scaled(1.0 / width));
 }

@@ -9,7 +9,7 @@
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/specimen/block_sizes.hpp"
 #include "pyroclast/specimen/cells.hpp"
-#include "pyroclast/specimen/grain_grid.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 
 namespace pyroclast::specimen {
 
@@ -35,7 +35,7 @@ class SpacedSeedDraw {
   Random& random_;
   Allows allows_;
   std::optional<PlaceDraw<3>> places_;  ///< where blocks are not alike
-  GrainGrid<3> grid_;
+  StoneGrid<3> grid_;
 };
 
 /// Returns the numbers of places in the order in which Morton's curve through the body's box meets them.

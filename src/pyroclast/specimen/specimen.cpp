@@ -15,17 +15,17 @@
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
-#include "pyroclast/specimen/grain.hpp"
-#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/superposition.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Way out of a message about a notch in a grain.
+/// Way out of a message about a notch in a stone.
 constexpr std::string_view kOnlyCircles = ": notches cut through circles alone, so an outline must end there";
 /// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
@@ -99,12 +99,12 @@ void require_valid(const SpecimenParameters& p) {
 
 namespace {
 
-/// Returns the end of a message that names the side or notch on which a grain with an outline lies; empty
+/// Returns the end of a message that names the side or notch on which a stone with an outline lies; empty
 /// where it lies on none.
-std::string side_under(const Grain<2>& grain, const Region& region, double tolerance) {
-  if (!grain.shape) return {};
+std::string side_under(const Stone<2>& stone, const Region& region, double tolerance) {
+  if (!stone.shape) return {};
   const auto told = [&](const Side& side, const Vec<2>& from, const Vec<2>& to) {
-    if (!are_closer(grain, from, to, -tolerance)) return std::string();
+    if (!are_closer(stone, from, to, -tolerance)) return std::string();
     return fmt::format(", but on \"{}\"{}", side.name, side.is_cut ? kOnlyCircles : "");
   };
   for (const auto& [from, to, side] : region.pieces())
@@ -117,44 +117,36 @@ std::string side_under(const Grain<2>& grain, const Region& region, double toler
 }
 
 /// Nothing that a stone in space lies on is named yet.
-std::string side_under(const Grain<3>& /*stone*/, const Prism& /*body*/, double /*tolerance*/) {
+std::string side_under(const Stone<3>& /*stone*/, const Prism& /*body*/, double /*tolerance*/) {
   return {};
-}
-
-/// Returns the room of stones with a shape.
-Room<2> room_of_shapes(const Region& region) {
-  return room_of_blocks(region);
-}
-Room<3> room_of_shapes(const Prism& body) {
-  return room_in(body);
 }
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 template <int Dim>
 void add_listed(const AggregateParameters& asked, int kind, Specimen<Dim>& specimen) {
-  const auto* const listed = std::get_if<std::vector<Stone<Dim>>>(&asked.stones);
+  const auto* const listed = std::get_if<std::vector<KnownStone<Dim>>>(&asked.stones);
   if (!listed) throw Error(fmt::format("{}: the stones belong to another dimension", asked.place));
-  const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_shapes(specimen.outline);
-  GrainGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
-  for (const Grain<Dim>& stone : specimen.stones) grid.insert(stone);
-  std::vector<Grain<Dim>> stones;
-  for (const Stone<Dim>& stone : *listed) {
-    const double tolerance = kTouching * stone.diameter;
+  const Room<Dim> of_round = room_in(specimen.outline), of_shapes = room_of_blocks(specimen.outline);
+  StoneGrid<Dim> grid(specimen.outline.low(), specimen.outline.high(), 2.0 * asked.d_min);
+  for (const Stone<Dim>& stone : specimen.stones) grid.insert(stone);
+  std::vector<Stone<Dim>> stones;
+  for (const KnownStone<Dim>& known : *listed) {
+    const double tolerance = kTouching * known.diameter;
     const auto fail = [&](std::string_view what) {
       std::vector<std::string> at;
-      for (const double x : stone.centre.c) at.push_back(fmt::format("{:.6g}", 1e3 * x));
-      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({}) mm {}", asked.place, stone.place,
-                              1e3 * stone.diameter, fmt::join(at, ", "), what));
+      for (const double x : known.centre.c) at.push_back(fmt::format("{:.6g}", 1e3 * x));
+      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({}) mm {}", asked.place, known.place,
+                              1e3 * known.diameter, fmt::join(at, ", "), what));
     };
-    const Grain<Dim> grain{stone.centre, stone.diameter, place_in(specimen.phases, stone.phase), kind,
-                           stone.shape};
-    if (!lies_within(grain, stone.shape ? of_shapes : of_round, -tolerance))
-      fail("does not lie in the specimen, all of it" + side_under(grain, specimen.outline, tolerance));
-    if (grid.overlaps(grain, -tolerance)) fail("lies on another: stones may touch, and not overlap");
-    grid.insert(grain);
-    stones.push_back(grain);
+    const Stone<Dim> stone{known.centre, known.diameter, place_in(specimen.phases, known.phase), kind,
+                           known.shape};
+    if (!lies_within(stone, stone.shape ? of_shapes : of_round, -tolerance))
+      fail("does not lie in the specimen, all of it" + side_under(stone, specimen.outline, tolerance));
+    if (grid.overlaps(stone, -tolerance)) fail("lies on another: stones may touch, and not overlap");
+    grid.insert(stone);
+    stones.push_back(stone);
   }
-  std::ranges::stable_sort(stones, std::greater<>(), &Grain<Dim>::diameter);
+  std::ranges::stable_sort(stones, std::greater<>(), &Stone<Dim>::diameter);
   specimen.stones.insert(specimen.stones.end(), stones.begin(), stones.end());
 }
 
@@ -165,7 +157,7 @@ void add_stones(const AggregateParameters& asked, int kind, Random& random, Spec
   if (asked.are_known()) return add_listed(asked, kind, specimen);
   if (asked.fraction == 0.0) return;
   draw_and_place(
-      asked.shape.kind == GrainShape::circle ? room_in(specimen.outline) : room_of_shapes(specimen.outline),
+      asked.shape.kind == StoneShape::circle ? room_in(specimen.outline) : room_of_blocks(specimen.outline),
       asked, place_in(specimen.phases, asked.phase), kind, random, specimen.stones);
 }
 
@@ -187,7 +179,7 @@ void add_inclusions(const SpecimenParameters& p, Random& random, Specimen<Dim>& 
     else if constexpr (Dim == 2)
       add_fibres(std::get<FibreParameters>(inclusions), random, specimen);
   specimen.fraction_placed =
-      extent_of(std::span<const Grain<Dim>>(specimen.stones)) / specimen.outline.extent();
+      extent_of(std::span<const Stone<Dim>>(specimen.stones)) / specimen.outline.extent();
   const auto kinds = stone_kinds(p);
   const auto with_largest = std::ranges::max_element(
       kinds, {}, [](const auto* asked) { return asked->fraction > 0.0 ? asked->d_min : 0.0; });
@@ -205,8 +197,7 @@ double share_beside_matrix(const Specimen<Dim>& specimen) {
 
 /// Throws Error for what a solid cannot have yet.
 void require_of_space(const SpecimenParameters& p) {
-  if (p.cells || p.blocks.cells || !p.blocks.phases.empty())
-    throw Error("a solid cannot be made of cells of a plane");
+  if (p.blocks.cells) throw Error("a solid cannot be made of cells of a plane");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
   if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
   for (const auto* const kind : stone_kinds(p)) {
@@ -221,9 +212,9 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
   const auto kinds = stone_kinds(p);
   const double whole = specimen.outline.extent();
   std::vector<double> superposed(specimen.stones.size());
-  for (std::size_t cell = 0; cell < specimen.grain.size(); ++cell)
-    if (const int grain = specimen.grain[cell]; grain >= 0)
-      superposed[grain] += extent(specimen.cells, cell) / whole;
+  for (std::size_t cell = 0; cell < specimen.stone.size(); ++cell)
+    if (const int stone = specimen.stone[cell]; stone >= 0)
+      superposed[stone] += extent(specimen.cells, cell) / whole;
   std::vector<SizeClass> classes;
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
     const auto& asked = *kinds[kind];
@@ -234,7 +225,7 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
       its.asked = asked.fraction * (passing(asked, to) - passing(asked, from));
       const bool is_last = i + 1 == asked.sieves.size();
       for (std::size_t b = 0; b < specimen.stones.size(); ++b) {
-        const Grain<3>& ball = specimen.stones[b];
+        const Stone<3>& ball = specimen.stones[b];
         if (ball.kind != kind || ball.diameter < from || (is_last ? ball.diameter > to : ball.diameter >= to))
           continue;
         ++its.stones;
@@ -261,10 +252,51 @@ void add_phases_of(const AggregateParameters& kind, std::vector<std::string>& na
       kind.stones);
 }
 
+/// Calls a function of the cells that are made elsewhere.
+template <class F>
+auto of_cells(const SpecimenParameters& p, F f) {
+  const auto* solid = std::get_if<GivenCells<3>>(&p.cells);
+  return solid ? f(*solid) : f(std::get<GivenCells<2>>(p.cells));
+}
+
 }  // namespace
 
+const std::vector<Side>& SpecimenParameters::sides() const {
+  return std::visit(
+      [](const auto& o) -> const auto& { return o.sides(); }, outline);
+}
+
+std::vector<FlatPart> SpecimenParameters::flat_parts() const {
+  return std::visit([](const auto& o) { return o.flat_parts(); }, outline);
+}
+
+Vec<3> SpecimenParameters::low() const {
+  return std::visit([](const auto& o) { return resized<3>(o.low()); }, outline);
+}
+
+Vec<3> SpecimenParameters::high() const {
+  return std::visit([](const auto& o) { return resized<3>(o.high()); }, outline);
+}
+
+double SpecimenParameters::distance(const Vec<3>& point) const {
+  return prism() ? prism()->distance(point) : region()->distance(resized<2>(point));
+}
+
+double SpecimenParameters::extent() const {
+  return std::visit([](const auto& o) { return o.extent(); }, outline);
+}
+
+double SpecimenParameters::block_size() const {
+  if (blocks.count == 0) return 0.0;
+  return prism() ? side_of<3>(extent() / blocks.count) : side_of<2>(extent() / blocks.count);
+}
+
+double SpecimenParameters::largest_block_size() const {
+  return blocks.finer.empty() ? block_size() : blocks.largest_size;
+}
+
 bool has_shapes(const AggregateParameters& kind) {
-  if (!kind.are_known()) return kind.shape.kind != GrainShape::circle;
+  if (!kind.are_known()) return kind.shape.kind != StoneShape::circle;
   return std::visit(
       [](const auto& list) {
         return std::ranges::any_of(list, [](const auto& stone) { return stone.shape != nullptr; });
@@ -280,7 +312,7 @@ std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& pa
 }
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
-  if (parameters.cells) return parameters.cells->phases;
+  if (parameters.is_of_file()) return of_cells(parameters, [](const auto& given) { return given.phases; });
   if (!parameters.blocks.phases.empty()) return parameters.blocks.phases;
   std::vector<std::string> names;
   add_phases_of(parameters.aggregates, names);
@@ -294,19 +326,16 @@ std::vector<std::string> phases(const SpecimenParameters& parameters) {
 }
 
 std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters) {
-  if (const auto& cells = parameters.cells)
-    return phases_of_stones(cells->phases, cells->phase, cells->grain);
-  if (!parameters.blocks.phases.empty()) return {};
   std::vector<std::string> names;
-  for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
-  return names;
-}
-
-std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
-                                          const std::vector<int>& phase, const std::vector<int>& grain) {
-  std::vector<std::string> names;
-  for (std::size_t cell = 0; cell < grain.size(); ++cell)
-    if (grain[cell] >= 0) add_once(phases[phase[cell]], names);
+  if (parameters.is_of_file()) {
+    of_cells(parameters, [&](const auto& given) {
+      for (std::size_t cell = 0; cell < given.stone.size(); ++cell)
+        if (given.stone[cell] >= 0) add_once(given.phases[given.phase[cell]], names);
+    });
+  } else if (parameters.blocks.phases.empty()) {
+    for (const auto* const kind : stone_kinds(parameters)) add_phases_of(*kind, names);
+  }
+  std::erase(names, parameters.matrix);
   return names;
 }
 
@@ -314,7 +343,7 @@ std::vector<std::string> warnings(const Specimen<2>& s) {
   if (s.fraction_placed == 0.0) return {};
   const double change = s.fraction_of_stones / s.fraction_placed - 1.0;
   if (std::abs(change) <= kSmallChange) return {};
-  // blocks that follow grains have no covered fraction
+  // blocks that follow stones have no covered fraction
   const char* const remedy =
       s.covered_fraction > 0.0 ? "more blocks, or [superposition] rule = \"fit\"" : "more blocks";
   return {
@@ -357,7 +386,15 @@ void measure(Specimen<Dim>& s, const Metrics<Dim>& done) {
 }
 
 template <int Dim>
-Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& outline, Team* team) {
+Specimen<Dim> make_specimen(const SpecimenParameters& p, Team* team) {
+  const auto& outline = std::get<OutlineOf<Dim>>(p.outline);
+  if (p.is_of_file()) {
+    GivenCells<Dim> given = std::get<GivenCells<Dim>>(p.cells);
+    given.outline = outline;  // with patches
+    Specimen<Dim> specimen = specimen_from(std::move(given));
+    specimen.matrix = place_in(specimen.phases, p.matrix);
+    return specimen;
+  }
   if constexpr (Dim == 3) require_of_space(p);
   require(outline.extent() > 0.0, Dim == 2 ? "The area of the specimen" : "The volume of the specimen",
           outline.extent(), Dim == 2 ? "a positive area" : "a positive volume");
@@ -368,34 +405,34 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& o
   Specimen<Dim> specimen{.outline = outline, .phases = phases(p)};
   add_inclusions(p, aggregate_random, specimen);
 
-  const std::span<const Grain<Dim>> stones(specimen.stones);
+  const std::span<const Stone<Dim>> stones(specimen.stones);
   const bool follows = p.superposition == Superposition::follow;
   Blocks<Dim> blocks =
-      make_blocks(p.blocks, outline, block_random, team, follows ? stones : std::span<const Grain<Dim>>());
+      make_blocks(p.blocks, outline, block_random, team, follows ? stones : std::span<const Stone<Dim>>());
   specimen.cells = std::move(blocks.cells);
   specimen.size = std::move(blocks.size);
   if (blocks.phase.empty()) {
     const int matrix = specimen.matrix = place_in(specimen.phases, p.matrix);
     if (follows) {
-      specimen.grain = std::move(blocks.grain);
-      specimen.grain.resize(specimen.cells.cells.size(), -1);
-      for (const int grain : specimen.grain)
-        specimen.phase.push_back(grain < 0 ? matrix : specimen.stones[grain].phase);
+      specimen.stone = std::move(blocks.stone);
+      specimen.stone.resize(specimen.cells.cells.size(), -1);
+      for (const int stone : specimen.stone)
+        specimen.phase.push_back(stone < 0 ? matrix : specimen.stones[stone].phase);
     } else {
       Superposed superposed = superpose<Dim>(specimen.cells, outline, stones, p, matrix);
       specimen.covered_fraction = superposed.covered_fraction;
       specimen.phase = std::move(superposed.phase);
-      specimen.grain = std::move(superposed.grain);
+      specimen.stone = std::move(superposed.stone);
     }
     specimen.fraction_of_stones = share_beside_matrix(specimen);
-    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.grain);
+    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.stone);
     specimen.fraction_superposed = share_beside_matrix(specimen);
   } else {
     specimen.phase = std::move(blocks.phase);
   }
   if constexpr (Dim == 3) {
     const BlockSizes sizes = sizes_of<3>(p.blocks, outline);
-    specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Grain<3>& stone) {
+    specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Stone<3>& stone) {
       return stone.diameter < kSmallestStone * sizes.at(stone.centre);
     }));
     specimen.classes = classes_of(p, specimen);
@@ -404,16 +441,9 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, const OutlineOf<Dim>& o
   return specimen;
 }
 
-Specimen<2> make_specimen(const SpecimenParameters& parameters, Team* team) {
-  if (!parameters.cells) return make_specimen<2>(parameters, parameters.region, team);
-  Specimen<2> specimen = specimen_from(*parameters.cells, parameters.region);
-  specimen.matrix = place_in(specimen.phases, parameters.matrix);
-  return specimen;
-}
-
 template void measure<2>(Specimen<2>&, const Metrics<2>&);
 template void measure<3>(Specimen<3>&, const Metrics<3>&);
-template Specimen<2> make_specimen<2>(const SpecimenParameters&, const Region&, Team*);
-template Specimen<3> make_specimen<3>(const SpecimenParameters&, const Prism&, Team*);
+template Specimen<2> make_specimen<2>(const SpecimenParameters&, Team*);
+template Specimen<3> make_specimen<3>(const SpecimenParameters&, Team*);
 
 }  // namespace pyroclast::specimen

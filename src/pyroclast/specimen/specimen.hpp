@@ -23,12 +23,12 @@ inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
 /// Aggregate as placed, before blocks take its place: a circle, in a solid a ball, or a shape of its own.
 template <int Dim>
-struct Grain {
+struct Stone {
   Vec<Dim> centre;  ///< m
   /// Diameter, m; of another shape its width: the sieve that it passes.
   double diameter;
   int phase = 0;  ///< index into the specimen's phases
-  int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are grains, in turn
+  int kind = 0;   ///< 0 for the first aggregates, then counting the inclusions that are stones, in turn
   std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
 
@@ -40,17 +40,17 @@ struct Fibre {
 
 /// Stone that is known, read from a list.
 template <int Dim>
-struct Stone {
+struct KnownStone {
   Vec<Dim> centre;    ///< m
-  double diameter;    ///< m, as of a grain
+  double diameter;    ///< m, as of a stone
   std::string phase;  ///< phase of the stone
   std::string place;  ///< place that states the stone, "stones.csv:7", for errors
   std::shared_ptr<const Surface<Dim>> shape = {};  ///< shape around the centre; none: it is round
 };
 /// Stones that are known, of a plane or of a solid.
-using KnownStones = std::variant<std::vector<Stone<2>>, std::vector<Stone<3>>>;
+using KnownStones = std::variant<std::vector<KnownStone<2>>, std::vector<KnownStone<3>>>;
 
-enum class GrainShape : std::uint8_t {
+enum class StoneShape : std::uint8_t {
   circle,    ///< a ball in a solid
   ellipse,   ///< an ellipse of this elongation, in a solid an ellipsoid
   polygon,   ///< convex, with corners at random on an ellipse (Wang, Kwan and Chan 1999); so in a solid
@@ -63,9 +63,9 @@ struct Spread {
   double low, high;
 };
 
-/// Shapes of grains asked for.
+/// Shapes of stones asked for.
 struct ShapeParameters {
-  GrainShape kind = GrainShape::circle;
+  StoneShape kind = StoneShape::circle;
   Spread elongation{1.0, 1.0};                ///< length over width
   Spread flatness{1.0, 1.0};                  ///< in a solid: width over thickness
   Spread orientation{0.0, std::numbers::pi};  ///< angle of the length from the x axis, radians
@@ -116,7 +116,7 @@ enum class Superposition : std::uint8_t {
   area,      ///< a block is aggregate where circles cover more than a stated fraction of it
   fit,       ///< a block is aggregate above the fraction by which the blocks take the area of the circles
   centroid,  ///< a block is of the aggregate in whose circle its centroid lies
-  follow     ///< nothing is superposed: blocks follow the surfaces of grains, by mirrored seeds
+  follow     ///< nothing is superposed: blocks follow the surfaces of stones, by mirrored seeds
 };
 
 /// Largest bend that may be allowed to the faces between blocks of a solid, rad: triangles of a face that is
@@ -151,19 +151,18 @@ struct GivenCells {
   Cells<Dim> cells;
   std::vector<std::string> phases;  ///< phases that the blocks can have
   std::vector<int> phase;           ///< phase of each block, index into `phases`
-  /// Size that each block was to have, in the unit of the vertices, as Specimen has it; empty where blocks
-  /// are alike.
-  std::vector<double> size = {};
-  std::vector<int> grain = {};  ///< number of the stone of each block; -1: none. Empty where none are known
+  std::vector<double> size = {};    ///< size that each block was to have, m; empty where blocks are alike
+  std::vector<int> stone = {};  ///< number of the stone of each block; -1: none. Empty where none are known
+  OutlineOf<Dim> outline = {};  ///< outline of all cells together; in the plane `completed` finds it
   std::string origin = {};      ///< text that begins messages, such as the name of a file; may be empty
-  OutlineOf<Dim> outline = {};  ///< body of blocks in space; that of blocks in the plane is not read
 };
 
+/// Specimen that is asked for, in the plane or in space.
 struct SpecimenParameters {
-  Region region;
-  /// Cells of the whole specimen, whose outline is the region; then only the matrix counts of the members
-  /// below.
-  std::optional<GivenCells<2>> cells;
+  std::variant<Region, Prism> outline;
+  /// Cells of the whole specimen; then only the outline, the matrix and the number of blocks count beside
+  /// them.
+  std::variant<std::monostate, GivenCells<2>, GivenCells<3>> cells;
   std::uint64_t seed = 0;
   std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
   AggregateParameters aggregates;
@@ -172,9 +171,28 @@ struct SpecimenParameters {
   Superposition superposition = Superposition::area;
   /// Fraction of a block above which it is aggregate, for Superposition::area.
   double covered_fraction = 0.5;
+
+  /// Returns the region or the prism; null where the outline is the other.
+  const Region* region() const { return std::get_if<Region>(&outline); }
+  const Prism* prism() const { return std::get_if<Prism>(&outline); }
+  int dimension() const { return prism() ? 3 : 2; }  ///< Returns 2 or 3.
+  const std::vector<Side>& sides() const;            ///< Returns the sides of the outline.
+  std::vector<FlatPart> flat_parts() const;          ///< Returns the flat parts of the outline.
+  Vec<3> low() const;                                ///< Returns the lower corner of the box around it, m.
+  Vec<3> high() const;                               ///< Returns the upper corner, m.
+  /// Returns the distance of a point from the outline, m, negative or 0 within the specimen.
+  double distance(const Vec<3>& point) const;
+  double extent() const;  ///< Returns the area, m², of a solid the volume, m³.
+  /// Tells whether all blocks come from a file; then no seed counts.
+  bool is_of_file() const { return cells.index() > 0; }
+  /// Returns the size of a block as foreseen, m: the root of the mean area, of a solid of the mean volume. 0
+  /// where the number of blocks is not known.
+  double block_size() const;
+  /// Returns the size of blocks far from finer ones, m; as above where blocks are alike.
+  double largest_block_size() const;
 };
 
-/// Throws Error when a parameter other than the region is out of range.
+/// Throws Error when a parameter other than the outline is out of range.
 void require_valid(const SpecimenParameters& parameters);
 
 /// Tells whether stones of a kind have shapes, and are not all round.
@@ -187,17 +205,15 @@ std::vector<const AggregateParameters*> stone_kinds(const SpecimenParameters& pa
 /// aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
 
-/// Returns those of these phases whose blocks belong to stones that are known.
+/// Returns those of these phases, but for the matrix, whose blocks belong to stones that are known.
 std::vector<std::string> phases_of_stones(const SpecimenParameters& parameters);
-/// Returns the same of cells that are made elsewhere, from the stone of each.
-std::vector<std::string> phases_of_stones(const std::vector<std::string>& phases,
-                                          const std::vector<int>& phase, const std::vector<int>& grain);
 
 /// Quality of blocks in the plane or in space; lengths in m.
 struct CommonMetrics {
   double mean_size = 0.0;        ///< root of the mean area, cube root of the mean volume: the block size
   double shortest_edge = 0.0;    ///< shortest edge of any block
   double zones_per_block = 0.0;  ///< mean number of zones
+  int vertices_merged = 0;       ///< vertices that became one with another; in the plane edges that are gone
   int edges_left_short = 0;      ///< edges left by regularisation that are shorter than asked for
   int seeds_redrawn = 0;         ///< seeds drawn anew because their cell could not be made valid
 };
@@ -211,7 +227,6 @@ struct Metrics<2> : CommonMetrics {
   double mean_edge = 0.0;
   int shortest_edge_cell = -1;
   Vec<2> shortest_edge_at{};
-  int edges_removed = 0;        ///< edges removed by regularisation
   double smallest_angle = 0.0;  ///< smallest angle of any zone, degrees
   int smallest_angle_cell = -1;
 };
@@ -223,7 +238,6 @@ struct Metrics<3> : CommonMetrics {
   int lowest_zone_cell = -1;  ///< cell of this zone
   int most_corners = 0;       ///< most corners of a face between blocks
   double largest_bend = 0.0;  ///< largest bend of a face, see bend(); degrees
-  int vertices_merged = 0;    ///< vertices that became one with another
 };
 
 /// Measures blocks.
@@ -254,10 +268,10 @@ struct Specimen {
   std::vector<int> phase = {};           ///< phase of each cell, index into `phases`
   /// Stone of which each cell is, index into `stones` where these are known; -1: of none. May be empty where
   /// cells are made elsewhere.
-  std::vector<int> grain = {};
+  std::vector<int> stone = {};
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
   std::vector<double> size = {};
-  std::vector<Grain<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
+  std::vector<Stone<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
   std::vector<Fibre> fibres = {};       ///< fibres as placed
   /// Share of stones asked for and placed, and of blocks that are not matrix.
   double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
@@ -276,11 +290,8 @@ struct Specimen {
 /// tessellation can be made.
 /// \param team  team that shares the cells of the tessellation out; without a team the calling thread works
 ///              alone
-template <int Dim>
-Specimen<Dim> make_specimen(const SpecimenParameters& parameters, const OutlineOf<Dim>& outline,
-                            Team* team = nullptr);
-/// Makes a specimen of the parameters' region, or of their cells as they are.
-Specimen<2> make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
+template <int Dim = 2>
+Specimen<Dim> make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
 
 /// Measures a specimen whose cells and their phases are known: adds the shares of phases and the metrics.
 template <int Dim>

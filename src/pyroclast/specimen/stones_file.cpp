@@ -10,8 +10,8 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/shell.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -22,7 +22,7 @@ class ObjReader {
   ObjReader(const std::filesystem::path& file, double unit, const std::string& phase)
       : text_(read_file(file)), file_(file.string()), unit_(unit), phase_(phase), phase_here_(phase) {}
 
-  std::vector<Stone<3>> stones() {
+  std::vector<KnownStone<3>> stones() {
     for (std::string_view rest = text_; !rest.empty();) {
       ++line_;
       const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -120,21 +120,21 @@ class ObjReader {
   int line_ = 0, begin_ = 1;  ///< lines, from 1: the one that is read, and the one where the stone begins
   std::vector<Vec<3>> vertices_;
   std::vector<Shell::Triangle> triangles_;
-  std::vector<Stone<3>> stones_;
+  std::vector<KnownStone<3>> stones_;
 };
 
 }  // namespace
 
-std::vector<Stone<3>> read_stones_obj(const std::filesystem::path& file, double unit,
-                                      const std::string& phase) {
+std::vector<KnownStone<3>> read_stones_obj(const std::filesystem::path& file, double unit,
+                                           const std::string& phase) {
   return ObjReader(file, unit, phase).stones();
 }
 
-std::string stones_obj(std::span<const Grain<3>> stones, std::span<const std::string> phases) {
+std::string stones_obj(std::span<const Stone<3>> stones, std::span<const std::string> phases) {
   std::string text = "# stones as they were placed, in m: an object each, of the phase that usemtl names\n";
   int first = 1;
   for (std::size_t i = 0; i < stones.size(); ++i) {
-    const Grain<3>& stone = stones[i];
+    const Stone<3>& stone = stones[i];
     const auto* shell = dynamic_cast<const Shell*>(stone.shape.get());
     const Shell ball = shell ? *shell : ball_of_shell(0.5 * stone.diameter);
     if (!shell) shell = &ball;

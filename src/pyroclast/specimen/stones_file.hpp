@@ -14,10 +14,10 @@ namespace pyroclast::specimen {
 /// smooth; other lines are not read. Throws Error, with the line, for what is no stone.
 /// \param unit   length of 1 in the file, m
 /// \param phase  phase of stones without a name of their own
-std::vector<Stone<3>> read_stones_obj(const std::filesystem::path& file, double unit,
-                                      const std::string& phase);
+std::vector<KnownStone<3>> read_stones_obj(const std::filesystem::path& file, double unit,
+                                           const std::string& phase);
 
 /// Returns the text of such a file, in m: of all stones, balls among them as many triangles.
-std::string stones_obj(std::span<const Grain<3>> stones, std::span<const std::string> phases);
+std::string stones_obj(std::span<const Stone<3>> stones, std::span<const std::string> phases);
 
 }  // namespace pyroclast::specimen

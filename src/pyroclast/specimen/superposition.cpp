@@ -7,9 +7,9 @@
 #include <map>
 #include <numeric>
 
-#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
@@ -28,7 +28,7 @@ void for_each_corner(const Cells<3>& cells, std::size_t cell, F f) {
 }
 
 /// Returns what a cell and a stone have in common, m².
-double common(const Cells<2>& cells, std::size_t cell, const Grain<2>& stone) {
+double common(const Cells<2>& cells, std::size_t cell, const Stone<2>& stone) {
   std::vector<Vec<2>> polygon;
   corners(cells, cell, polygon);
   return stone.shape ? common_area(polygon, corners_of(stone))
@@ -36,45 +36,45 @@ double common(const Cells<2>& cells, std::size_t cell, const Grain<2>& stone) {
 }
 
 /// Returns what a cell and a ball have in common, m³.
-double common(const Cells<3>& cells, std::size_t cell, const Grain<3>& stone) {
+double common(const Cells<3>& cells, std::size_t cell, const Stone<3>& stone) {
   return common_volume(cells, cell, stone.centre, 0.5 * stone.diameter);
 }
 
 /// Returns the stone in which the centroid of each cell lies, -1: in none.
 template <int Dim>
 std::vector<int> stones_at_centroids(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
-                                     std::span<const Grain<Dim>> stones) {
-  const GrainGrid<Dim> grid(outline.low(), outline.high(), stones);
-  std::vector<int> grain, nearby;
+                                     std::span<const Stone<Dim>> stones) {
+  const StoneGrid<Dim> grid(outline.low(), outline.high(), stones);
+  std::vector<int> found, nearby;
   for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
     const Vec<Dim> centre = centroid(cells, cell);
     grid.collect(centre, centre, nearby);
     const auto around = std::ranges::find_if(nearby, [&](int stone) { return holds(stones[stone], centre); });
-    grain.push_back(around == nearby.end() ? -1 : *around);
+    found.push_back(around == nearby.end() ? -1 : *around);
   }
-  return grain;
+  return found;
 }
 
 /// Gives each stone, the largest first, the cell of which it covers most and that none took before, while
 /// that brings the extent of the cells nearer to that of the stones.
 /// \param missing  extent of the stones that no cell has; follows
 template <int Dim>
-void give_each_its_cell(const Cells<Dim>& cells, std::span<const Grain<Dim>> stones,
+void give_each_its_cell(const Cells<Dim>& cells, std::span<const Stone<Dim>> stones,
                         std::span<const CommonPart> parts, double& missing, Superposed& result) {
   std::vector<std::vector<CommonPart>> of_stone(stones.size());
-  for (const CommonPart& part : parts) of_stone[part.grain].push_back(part);
+  for (const CommonPart& part : parts) of_stone[part.stone].push_back(part);
   std::vector<int> order(stones.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater<>(), [&](int stone) { return stones[stone].diameter; });
   for (const int stone : order) {
     std::ranges::stable_sort(of_stone[stone], std::greater<>(), &CommonPart::extent);
     const auto free = std::ranges::find_if(
-        of_stone[stone], [&](const CommonPart& part) { return result.grain[part.cell] < 0; });
+        of_stone[stone], [&](const CommonPart& part) { return result.stone[part.cell] < 0; });
     if (free == of_stone[stone].end()) continue;
     const double taken = extent(cells, static_cast<std::size_t>(free->cell));
     if (0.5 * taken >= missing) break;
     missing -= taken;
-    result.grain[free->cell] = stone;
+    result.stone[free->cell] = stone;
     result.phase[free->cell] = stones[stone].phase;
   }
 }
@@ -82,7 +82,7 @@ void give_each_its_cell(const Cells<Dim>& cells, std::span<const Grain<Dim>> sto
 /// Finds the share above which covered cells are aggregate, so that their extent comes as near as it can to
 /// that of the stones.
 template <int Dim>
-void fit(const Cells<Dim>& cells, std::span<const Grain<Dim>> stones, std::span<const CommonPart> parts,
+void fit(const Cells<Dim>& cells, std::span<const Stone<Dim>> stones, std::span<const CommonPart> parts,
          std::span<const Cover> covers, Superposed& result) {
   double missing = extent_of(stones);
   if constexpr (Dim == 3) give_each_its_cell(cells, stones, parts, missing, result);
@@ -91,7 +91,7 @@ void fit(const Cells<Dim>& cells, std::span<const Grain<Dim>> stones, std::span<
   };
   std::vector<Candidate> candidates;
   for (std::size_t cell = 0; cell < covers.size(); ++cell)
-    if (result.grain[cell] < 0) candidates.push_back({covers[cell].share, extent(cells, cell)});
+    if (result.stone[cell] < 0) candidates.push_back({covers[cell].share, extent(cells, cell)});
   std::ranges::sort(candidates, std::greater<>(), &Candidate::share);
   std::size_t taken = 0;
   for (; taken < candidates.size() && 0.5 * candidates[taken].extent < missing; ++taken)
@@ -125,8 +125,8 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
 
 template <int Dim>
 std::vector<CommonPart> common_parts(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
-                                     std::span<const Grain<Dim>> stones) {
-  const GrainGrid<Dim> grid(outline.low(), outline.high(), stones);
+                                     std::span<const Stone<Dim>> stones) {
+  const StoneGrid<Dim> grid(outline.low(), outline.high(), stones);
   std::vector<CommonPart> parts;
   std::vector<int> nearby;
   for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
@@ -149,7 +149,7 @@ std::vector<CommonPart> common_parts(const Cells<Dim>& cells, const OutlineOf<Di
 
 template <int Dim>
 std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart> parts,
-                             std::span<const Grain<Dim>> stones) {
+                             std::span<const Stone<Dim>> stones) {
   constexpr double kRounding = 1e-12;  // left by stones that do not touch the cell
   std::vector<Cover> covers(cells.cells.size());
   for (auto part = parts.begin(); part != parts.end();) {
@@ -159,10 +159,10 @@ std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart
     Cover& cover = covers[cell];
     for (; part != parts.end() && part->cell == cell; ++part) {
       covered += part->extent;
-      by_phase[stones[part->grain].phase] += part->extent;
+      by_phase[stones[part->stone].phase] += part->extent;
       if (part->extent <= most_of_one) continue;
       most_of_one = part->extent;
-      cover.grain = part->grain;
+      cover.stone = part->stone;
     }
     for (const auto& [phase, its] : by_phase)
       if (its > most) {
@@ -177,44 +177,44 @@ std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart
 
 template <int Dim>
 Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
-                     std::span<const Grain<Dim>> stones, const SpecimenParameters& parameters, int matrix) {
+                     std::span<const Stone<Dim>> stones, const SpecimenParameters& parameters, int matrix) {
   const std::size_t count = cells.cells.size();
   Superposed result{std::vector<int>(count, matrix), std::vector<int>(count, -1),
                     parameters.covered_fraction};
   if (parameters.superposition == Superposition::centroid) {
-    result.grain = stones_at_centroids(cells, outline, stones);
+    result.stone = stones_at_centroids(cells, outline, stones);
     for (std::size_t cell = 0; cell < count; ++cell)
-      if (result.grain[cell] >= 0) result.phase[cell] = stones[result.grain[cell]].phase;
+      if (result.stone[cell] >= 0) result.phase[cell] = stones[result.stone[cell]].phase;
     return result;
   }
   const std::vector<CommonPart> parts = common_parts(cells, outline, stones);
   const std::vector<Cover> covers = covers_of<Dim>(cells, parts, stones);
   if (parameters.superposition == Superposition::fit) fit<Dim>(cells, stones, parts, covers, result);
   for (std::size_t cell = 0; cell < count; ++cell) {
-    if (result.grain[cell] >= 0 || !(covers[cell].share > result.covered_fraction)) continue;
+    if (result.stone[cell] >= 0 || !(covers[cell].share > result.covered_fraction)) continue;
     result.phase[cell] = covers[cell].phase;
-    result.grain[cell] = covers[cell].grain;
+    result.stone[cell] = covers[cell].stone;
   }
   return result;
 }
 
-template std::vector<CommonPart> common_parts<2>(const Cells<2>&, const Region&, std::span<const Grain<2>>);
+template std::vector<CommonPart> common_parts<2>(const Cells<2>&, const Region&, std::span<const Stone<2>>);
 template std::vector<Cover> covers_of<2>(const Cells<2>&, std::span<const CommonPart>,
-                                         std::span<const Grain<2>>);
-template Superposed superpose<2>(const Cells<2>&, const Region&, std::span<const Grain<2>>,
+                                         std::span<const Stone<2>>);
+template Superposed superpose<2>(const Cells<2>&, const Region&, std::span<const Stone<2>>,
                                  const SpecimenParameters&, int);
-template Superposed superpose<3>(const Cells<3>&, const Prism&, std::span<const Grain<3>>,
+template Superposed superpose<3>(const Cells<3>&, const Prism&, std::span<const Stone<3>>,
                                  const SpecimenParameters&, int);
 
 void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
-               std::vector<int>& grain) {
+               std::vector<int>& stone) {
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < cells.cells.size(); ++c) {
     corners(cells, c, polygon);
     for (const Fibre& fibre : fibres)
       if (crosses(polygon, fibre)) {
         phase[c] = fibre.phase;
-        grain[c] = -1;
+        stone[c] = -1;
       }
   }
 }

@@ -12,32 +12,32 @@ struct Cover {
   /// Share of the cell, by all stones together, in [0, 1]; exact where these do not overlap.
   double share = 0.0;
   int phase = -1;  ///< phase of the stones that cover most of the cell; -1 where none does
-  int grain = -1;  ///< stone that covers most of the cell; -1 where none does
+  int stone = -1;  ///< stone that covers most of the cell; -1 where none does
 };
 
 /// What a cell and a stone have in common.
 struct CommonPart {
   int cell;
-  int grain;
+  int stone;
   double extent;  ///< m², in space m³
 };
 
 /// Returns the parts that cells have in common with stones, cell by cell.
 template <int Dim>
 std::vector<CommonPart> common_parts(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
-                                     std::span<const Grain<Dim>> stones);
+                                     std::span<const Stone<Dim>> stones);
 
 /// Returns the cover of each cell.
 /// \param parts  parts that the cells have in common with these stones
 template <int Dim>
 std::vector<Cover> covers_of(const Cells<Dim>& cells, std::span<const CommonPart> parts,
-                             std::span<const Grain<Dim>> stones);
+                             std::span<const Stone<Dim>> stones);
 
 /// Result of superposing stones on cells.
 struct Superposed {
   /// Phase of each cell: that of the stones which cover most of it, or the matrix.
   std::vector<int> phase = {};
-  std::vector<int> grain = {};    ///< stone of which each cell is, index into the stones; -1: of none
+  std::vector<int> stone = {};    ///< stone of which each cell is, index into the stones; -1: of none
   double covered_fraction = 0.0;  ///< share above which a cell is of the stones, as stated or as it fits
 };
 
@@ -47,10 +47,10 @@ struct Superposed {
 /// covers most and that no larger stone took.
 template <int Dim>
 Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
-                     std::span<const Grain<Dim>> stones, const SpecimenParameters& parameters, int matrix);
+                     std::span<const Stone<Dim>> stones, const SpecimenParameters& parameters, int matrix);
 
-/// Gives the cells that a fibre crosses its phase; they are of no grain then.
+/// Gives the cells that a fibre crosses its phase; they are of no stone then.
 void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
-               std::vector<int>& grain);
+               std::vector<int>& stone);
 
 }  // namespace pyroclast::specimen

@@ -23,7 +23,7 @@ struct NearestPoint {
   double distance;  ///< distance of the place from the surface, m: negative within the shape
 };
 
-/// Shape of a grain around its own origin, turned and scaled as it lies.
+/// Shape of a stone around its own origin, turned and scaled as it lies.
 template <int Dim>
 class Surface {
  public:

@@ -8,6 +8,7 @@
 
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
+#include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -60,21 +61,11 @@ class Uniter {
 
   /// Leaves out empty cells and vertices without a cell. Returns the former number of each cell.
   std::vector<int> tidy() {
-    std::vector<int> former, number(tessellation_.vertices.size(), -1);
-    Cells<2> tidied;
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
-      if (tessellation_.cells[c].empty()) continue;
-      former.push_back(static_cast<int>(c));
-      for (int& v : tessellation_.cells[c]) {
-        if (number[v] < 0) {
-          number[v] = static_cast<int>(tidied.vertices.size());
-          tidied.vertices.push_back(tessellation_.vertices[v]);
-        }
-        v = number[v];
-      }
-      tidied.cells.push_back(std::move(tessellation_.cells[c]));
-    }
-    tessellation_ = std::move(tidied);
+    std::vector<int> former;
+    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c)
+      if (!tessellation_.cells[c].empty()) former.push_back(static_cast<int>(c));
+    std::erase_if(tessellation_.cells, [](const Cell& cell) { return cell.empty(); });
+    drop_unused(tessellation_);
     return former;
   }
 

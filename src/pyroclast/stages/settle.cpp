@@ -10,7 +10,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Steps between two looks at settling, whose end needs no finer grain.
+/// Steps between two looks at settling, whose end needs no finer stone.
 constexpr std::int64_t kSettleStepsPerLook = 200;
 /// Steps in which the unbalanced ratio falls to a tenth: specimens of 100 to 3,000 blocks with a combined
 /// damping of 0.8 come to 1e-4 in 3,400 to 5,400 steps, without a trend.

@@ -1,4 +1,4 @@
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,33 +12,33 @@
 namespace pyroclast::specimen {
 namespace {
 
-const Outline* as_outline(const Grain<2>& grain) {
-  return dynamic_cast<const Outline*>(grain.shape.get());
+const Outline* as_outline(const Stone<2>& stone) {
+  return dynamic_cast<const Outline*>(stone.shape.get());
 }
 
-/// Calls f(from, to) for each side of a grain's outline, where it lies, while it returns false. Tells whether
+/// Calls f(from, to) for each side of a stone's outline, where it lies, while it returns false. Tells whether
 /// it returned true.
 template <class F>
-bool any_side(const Grain<2>& grain, F f) {
-  const Outline* const outline = as_outline(grain);
+bool any_side(const Stone<2>& stone, F f) {
+  const Outline* const outline = as_outline(stone);
   if (!outline) return false;
-  Vec<2> from = grain.centre + outline->corners().back();
+  Vec<2> from = stone.centre + outline->corners().back();
   for (const Vec<2>& corner : outline->corners()) {
-    const Vec<2> to = grain.centre + corner;
+    const Vec<2> to = stone.centre + corner;
     if (f(from, to)) return true;
     from = to;
   }
   return false;
 }
 
-/// Tells whether a segment lies deeper in a grain with an outline than `depth` (m) somewhere. Between two
+/// Tells whether a segment lies deeper in a stone with an outline than `depth` (m) somewhere. Between two
 /// places where it meets the outline, three places stand for all.
-bool runs_through(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double depth) {
+bool runs_through(const Stone<2>& stone, const Vec<2>& from, const Vec<2>& to, double depth) {
   constexpr double kSlack = 1e-9;  // share of a side by which the segment may miss the side
-  if (!(distance_from_segment(grain.centre, from, to) < reach(grain) - depth)) return false;
+  if (!(distance_from_segment(stone.centre, from, to) < reach(stone) - depth)) return false;
   const Vec<2> along = to - from;
   std::vector<double> shares{0.0, 1.0};
-  any_side(grain, [&](const Vec<2>& begin, const Vec<2>& end) {
+  any_side(stone, [&](const Vec<2>& begin, const Vec<2>& end) {
     const double sine = cross(along, end - begin);
     if (sine == 0.0) return false;
     const double share = cross(begin - from, end - begin) / sine, of_side = cross(begin - from, along) / sine;
@@ -48,7 +48,7 @@ bool runs_through(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, d
   std::ranges::sort(shares);
   for (std::size_t i = 1; i < shares.size(); ++i)
     for (const double part : {0.25, 0.5, 0.75})
-      if (distance(grain, from + std::lerp(shares[i - 1], shares[i], part) * along) < -depth) return true;
+      if (distance(stone, from + std::lerp(shares[i - 1], shares[i], part) * along) < -depth) return true;
   return false;
 }
 
@@ -57,9 +57,9 @@ struct OutlineSide {
   Vec<2> from, to;
 };
 
-/// Returns the sides of a grain that may reach another one, from the distances of their ends; none at all
-/// where a corner is closer to the other grain than `gap` (m).
-std::optional<std::vector<OutlineSide>> sides_towards(const Grain<2>& grain, const Grain<2>& other,
+/// Returns the sides of a stone that may reach another one, from the distances of their ends; none at all
+/// where a corner is closer to the other stone than `gap` (m).
+std::optional<std::vector<OutlineSide>> sides_towards(const Stone<2>& stone, const Stone<2>& other,
                                                       double gap) {
   const double around = reach(other);
   const auto away = [&](const Vec<2>& corner) {
@@ -69,7 +69,7 @@ std::optional<std::vector<OutlineSide>> sides_towards(const Grain<2>& grain, con
   };
   std::vector<OutlineSide> sides;
   std::optional<double> before;
-  const bool is_closer = any_side(grain, [&](const Vec<2>& from, const Vec<2>& to) {
+  const bool is_closer = any_side(stone, [&](const Vec<2>& from, const Vec<2>& to) {
     if (!before) before = away(from);
     const double after = away(to);
     if (*before + after <= norm(to - from)) sides.push_back({from, to});
@@ -80,9 +80,9 @@ std::optional<std::vector<OutlineSide>> sides_towards(const Grain<2>& grain, con
   return sides;
 }
 
-/// Tells whether two grains with outlines are closer to each other than `gap` (m). A grain within another
+/// Tells whether two stones with outlines are closer to each other than `gap` (m). A stone within another
 /// one, or on it, is closer.
-bool are_closer_outlines(const Grain<2>& a, const Grain<2>& b, double gap) {
+bool are_closer_outlines(const Stone<2>& a, const Stone<2>& b, double gap) {
   if (are_surely_closer(a, b, gap)) return true;
   const auto of_b = sides_towards(b, a, gap);
   if (!of_b) return true;
@@ -95,7 +95,7 @@ bool are_closer_outlines(const Grain<2>& a, const Grain<2>& b, double gap) {
         return cross_each_other(side.from, side.to, other.from, other.to);
       });
     });
-  const auto run_through = [gap](const std::vector<OutlineSide>& sides, const Grain<2>& other) {
+  const auto run_through = [gap](const std::vector<OutlineSide>& sides, const Stone<2>& other) {
     return std::ranges::any_of(
         sides, [&](const OutlineSide& side) { return runs_through(other, side.from, side.to, -gap); });
   };
@@ -138,27 +138,27 @@ Approach<2> approach_of_corners(std::span<const Vec<2>> a, FromA from_a, std::sp
   return least;
 }
 
-/// Returns the function of a place that returns the approach of a grain with an outline and the place.
-auto approach_from(const Grain<2>& grain) {
-  return [&grain](const Vec<2>& place) -> Approach<2> {
-    const auto nearest = grain.shape->nearest(place - grain.centre);
+/// Returns the function of a place that returns the approach of a stone with an outline and the place.
+auto approach_from(const Stone<2>& stone) {
+  return [&stone](const Vec<2>& place) -> Approach<2> {
+    const auto nearest = stone.shape->nearest(place - stone.centre);
     return {nearest.distance, nearest.point.normal};
   };
 }
 
-Approach<2> approach_of_outlines(const Grain<2>& a, const Grain<2>& b) {
+Approach<2> approach_of_outlines(const Stone<2>& a, const Stone<2>& b) {
   const std::vector<Vec<2>> of_a = corners_of(a), of_b = corners_of(b);
   const Approach<2> least = approach_of_corners(of_a, approach_from(a), of_b, approach_from(b));
   const bool overlap = are_closer_outlines(a, b, -kTouching * std::min(a.diameter, b.diameter));
-  // the deepest corner would push to and fro where two long grains cross
+  // the deepest corner would push to and fro where two long stones cross
   return overlap ? least_move(of_a, of_b) : least;
 }
 
-const Shell& shell_of(const Grain<3>& stone) {
+const Shell& shell_of(const Stone<3>& stone) {
   return dynamic_cast<const Shell&>(*stone.shape);
 }
 
-bool are_closer_shells(const Grain<3>& a, const Grain<3>& b, double gap) {
+bool are_closer_shells(const Stone<3>& a, const Stone<3>& b, double gap) {
   if (are_surely_closer(a, b, gap)) return true;
   const Vec<3> between = b.centre - a.centre;
   return shell_of(a).has_vertex_closer(shell_of(b), -between, gap) ||
@@ -168,7 +168,7 @@ bool are_closer_shells(const Grain<3>& a, const Grain<3>& b, double gap) {
 /// Depth of an overlap over the lesser diameter from which on the line of the centres tells the way apart.
 constexpr double kDeep = 0.25;
 
-Approach<3> approach_of_shells(const Grain<3>& a, const Grain<3>& b) {
+Approach<3> approach_of_shells(const Stone<3>& a, const Stone<3>& b) {
   const Vec<3> between = b.centre - a.centre;
   const auto of_b = shell_of(b).approach_of_vertices(shell_of(a), between);
   const auto of_a = shell_of(a).approach_of_vertices(shell_of(b), -between);
@@ -182,29 +182,29 @@ Approach<3> approach_of_shells(const Grain<3>& a, const Grain<3>& b) {
 
 }  // namespace
 
-Vec<2> place_within(const Grain<2>& grain) {
-  const Outline* const outline = as_outline(grain);
-  return outline ? grain.centre + outline->place_within() : grain.centre;
+Vec<2> place_within(const Stone<2>& stone) {
+  const Outline* const outline = as_outline(stone);
+  return outline ? stone.centre + outline->place_within() : stone.centre;
 }
 
-std::vector<Vec<2>> corners_of(const Grain<2>& grain) {
-  const Outline* const outline = as_outline(grain);
+std::vector<Vec<2>> corners_of(const Stone<2>& stone) {
+  const Outline* const outline = as_outline(stone);
   if (!outline) return {};
   std::vector<Vec<2>> corners = outline->corners();
-  for (Vec<2>& corner : corners) corner += grain.centre;
+  for (Vec<2>& corner : corners) corner += stone.centre;
   return corners;
 }
 
-std::vector<Vec<3>> corners_of(const Grain<3>& grain) {
-  const auto* const shell = dynamic_cast<const Shell*>(grain.shape.get());
+std::vector<Vec<3>> corners_of(const Stone<3>& stone) {
+  const auto* const shell = dynamic_cast<const Shell*>(stone.shape.get());
   if (!shell) return {};
   std::vector<Vec<3>> corners = shell->vertices();
-  for (Vec<3>& corner : corners) corner += grain.centre;
+  for (Vec<3>& corner : corners) corner += stone.centre;
   return corners;
 }
 
 template <int Dim>
-Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b) {
+Approach<Dim> approach(const Stone<Dim>& a, const Stone<Dim>& b) {
   const Vec<Dim> between = b.centre - a.centre;
   if (!a.shape && !b.shape) {
     const double apart = norm(between);
@@ -226,11 +226,11 @@ Approach<Dim> approach(const Grain<Dim>& a, const Grain<Dim>& b) {
   return {from_a.distance - 0.5 * b.diameter, from_a.point.normal};
 }
 
-template Approach<2> approach(const Grain<2>&, const Grain<2>&);
-template Approach<3> approach(const Grain<3>&, const Grain<3>&);
+template Approach<2> approach(const Stone<2>&, const Stone<2>&);
+template Approach<3> approach(const Stone<3>&, const Stone<3>&);
 
-Approach<2> approach(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to) {
-  const std::vector<Vec<2>> corners = corners_of(grain), ends{from, to};
+Approach<2> approach(const Stone<2>& stone, const Vec<2>& from, const Vec<2>& to) {
+  const std::vector<Vec<2>> corners = corners_of(stone), ends{from, to};
   const auto from_segment = [&](const Vec<2>& place) -> Approach<2> {
     const Vec<2> along = to - from;
     const double share = std::clamp(dot(place - from, along) / dot(along, along), 0.0, 1.0);
@@ -238,12 +238,12 @@ Approach<2> approach(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to
     const double distance = norm(away);
     return {distance, distance > 0.0 ? away * (1.0 / distance) : Vec<2>{}};
   };
-  const Approach<2> least = approach_of_corners(corners, approach_from(grain), ends, from_segment);
-  return runs_through(grain, from, to, 0.0) ? least_move(corners, ends) : least;
+  const Approach<2> least = approach_of_corners(corners, approach_from(stone), ends, from_segment);
+  return runs_through(stone, from, to, 0.0) ? least_move(corners, ends) : least;
 }
 
 template <int Dim>
-bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap) {
+bool are_closer(const Stone<Dim>& a, const Stone<Dim>& b, double gap) {
   const Vec<Dim> between = b.centre - a.centre;
   const double closest = reach(a) + gap + reach(b);
   if (!(dot(between, between) < closest * closest)) return false;
@@ -257,14 +257,14 @@ bool are_closer(const Grain<Dim>& a, const Grain<Dim>& b, double gap) {
   return approach(a, b).gap < gap;
 }
 
-template bool are_closer(const Grain<2>&, const Grain<2>&, double);
-template bool are_closer(const Grain<3>&, const Grain<3>&, double);
+template bool are_closer(const Stone<2>&, const Stone<2>&, double);
+template bool are_closer(const Stone<3>&, const Stone<3>&, double);
 
-bool are_closer(const Grain<2>& grain, const Vec<2>& from, const Vec<2>& to, double gap) {
-  if (!(distance_from_segment(grain.centre, from, to) < reach(grain) + gap)) return false;
-  if (!grain.shape) return true;
-  if (!(gap > 0.0)) return runs_through(grain, from, to, -gap);
-  return holds(grain, from) || any_side(grain, [&](const Vec<2>& begin, const Vec<2>& end) {
+bool are_closer(const Stone<2>& stone, const Vec<2>& from, const Vec<2>& to, double gap) {
+  if (!(distance_from_segment(stone.centre, from, to) < reach(stone) + gap)) return false;
+  if (!stone.shape) return true;
+  if (!(gap > 0.0)) return runs_through(stone, from, to, -gap);
+  return holds(stone, from) || any_side(stone, [&](const Vec<2>& begin, const Vec<2>& end) {
            return distance_of_segments(from, to, begin, end) < gap;
          });
 }

@@ -1,4 +1,4 @@
-#include "pyroclast/specimen/grain_fit.hpp"
+#include "pyroclast/specimen/stone_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "examples.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
-/// Radius of the circle of a grain's area over the block size.
-double radius_in_blocks(const GrainFit& fit, const Specimen<2>& specimen) {
+/// Radius of the circle of a stone's area over the block size.
+double radius_in_blocks(const StoneFit& fit, const Specimen<2>& specimen) {
   return std::sqrt(fit.extent / std::numbers::pi) / specimen.metrics.mean_size;
 }
 
@@ -26,14 +26,14 @@ SpecimenParameters following(std::uint64_t seed) {
   return p;
 }
 
-// Over all stones of cases/compression.toml. Small grains are one block; some 1 in 100 of them stand so close
+// Over all stones of cases/compression.toml. Small stones are one block; some 1 in 100 of them stand so close
 // to others that their area is off by more than 2 % (validation/grains.md).
-TEST(GrainFit, BlocksFollowTheSurfacesOfGrains) {
+TEST(StoneFit, BlocksFollowTheSurfacesOfStones) {
   int small = 0, off = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Specimen<2> specimen = make_specimen(following(seed));
     EXPECT_EQ(specimen.cells.cells.size(), 5000U);
-    for (const GrainFit& fit : fits_of(specimen)) {
+    for (const StoneFit& fit : fits_of(specimen)) {
       const double radius = radius_in_blocks(fit, specimen);
       if (radius >= 1.5) {
         EXPECT_NEAR(fit.interface / fit.size, 1.0, radius >= 3.0 ? 0.02 : 0.05);
@@ -49,11 +49,11 @@ TEST(GrainFit, BlocksFollowTheSurfacesOfGrains) {
 }
 
 // The staircase of superposed blocks is some 4 / pi times as long as the circle.
-TEST(GrainFit, SuperposedBlocksMakeTheInterfaceLonger) {
+TEST(StoneFit, SuperposedBlocksMakeTheInterfaceLonger) {
   SpecimenParameters p = paper_specimen(1);
   const Specimen<2> specimen = make_specimen(p);
   double interface = 0.0, perimeter = 0.0;
-  for (const GrainFit& fit : fits_of(specimen)) {
+  for (const StoneFit& fit : fits_of(specimen)) {
     if (radius_in_blocks(fit, specimen) < 3.0) continue;
     interface += fit.interface;
     perimeter += fit.size;
@@ -61,14 +61,14 @@ TEST(GrainFit, SuperposedBlocksMakeTheInterfaceLonger) {
   EXPECT_NEAR(interface / perimeter, 4.0 / std::numbers::pi, 0.05);
 }
 
-TEST(GrainFit, ShapesAreFollowedToo) {
-  for (const GrainShape kind : {GrainShape::ellipse, GrainShape::polygon, GrainShape::harmonics}) {
+TEST(StoneFit, ShapesAreFollowedToo) {
+  for (const StoneShape kind : {StoneShape::ellipse, StoneShape::polygon, StoneShape::harmonics}) {
     SpecimenParameters p = following(1);
     p.aggregates.shape = {
         .kind = kind, .elongation = {1.1, 1.6}, .corners = {5, 8}, .roughness = {0.02, 0.06}};
     const Specimen<2> specimen = make_specimen(p);
     double area = 0.0, of_blocks = 0.0, interface = 0.0, perimeter = 0.0;
-    for (const GrainFit& fit : fits_of(specimen)) {
+    for (const StoneFit& fit : fits_of(specimen)) {
       area += fit.extent;
       of_blocks += fit.extent_of_blocks;
       interface += fit.interface;
@@ -80,58 +80,58 @@ TEST(GrainFit, ShapesAreFollowedToo) {
   }
 }
 
-TEST(GrainFit, BlocksFollowGrainsBesideNotchesAndInRings) {
+TEST(StoneFit, BlocksFollowStonesBesideNotchesAndInRings) {
   SpecimenParameters p = following(1);
   p.aggregates.d_max = 16e-3;
   p.aggregates.sieves = {4.75e-3, 8e-3, 16e-3};
   p.blocks.count = 4000;
-  p.region = Region::rectangle(0.15, 0.3).with_notches(
+  p.outline = Region::rectangle(0.15, 0.3).with_notches(
       std::vector<Notch>{{.name = "notch_1", .mouth = {{0, 0.15}}, .tip = {{0.05, 0.15}}, .width = 0.0}});
   const Specimen<2> notched = make_specimen(p);
   EXPECT_NEAR(notched.fraction_superposed, notched.fraction_placed, 0.02);
-  p.region = Region::polygon(circle_corners({}, 0.2, 3e-3), {"rim"}, true)
-                 .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
+  p.outline = Region::polygon(circle_corners({}, 0.2, 3e-3), {"rim"}, true)
+                  .with_holes(std::vector<Hole>{{"bore", circle_corners({}, 0.08, 3e-3), true}});
   const Specimen<2> ring = make_specimen(p);
   EXPECT_NEAR(ring.fraction_superposed, ring.fraction_placed, 0.02);
 }
 
-/// Returns a specimen of three squares of 1 in a row, of which the middle one is of a grain, the others of
+/// Returns a specimen of three squares of 1 in a row, of which the middle one is of a stone, the others of
 /// none.
-Specimen<2> with_middle_square(const Grain<2>& grain) {
+Specimen<2> with_middle_square(const Stone<2>& stone) {
   Specimen<2> s;
   s.cells.vertices = {{{0, 0}}, {{1, 0}}, {{2, 0}}, {{3, 0}}, {{0, 1}}, {{1, 1}}, {{2, 1}}, {{3, 1}}};
   s.cells.cells = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}};
-  s.grain = {-1, 0, -1};
-  s.stones = {grain};
+  s.stone = {-1, 0, -1};
+  s.stones = {stone};
   return s;
 }
 
 // Promise: the interface is the edges towards other blocks, and the deviation the root of the mean square of
 // their distances from the outline, exact where these are straight.
-TEST(GrainFit, TellsTheDistanceOfEdgesFromTheOutline) {
+TEST(StoneFit, TellsTheDistanceOfEdgesFromTheOutline) {
   const auto box = [](double x0, double x1) {
-    return grain_of({{{x0, -1}}, {{x1, -1}}, {{x1, 2}}, {{x0, 2}}});
+    return stone_of({{{x0, -1}}, {{x1, -1}}, {{x1, 2}}, {{x0, 2}}});
   };
-  const GrainFit same = fits_of(with_middle_square(box(1.0, 2.0))).at(0);
+  const StoneFit same = fits_of(with_middle_square(box(1.0, 2.0))).at(0);
   EXPECT_DOUBLE_EQ(same.extent, 3.0);
   EXPECT_DOUBLE_EQ(same.size, 8.0);
   EXPECT_EQ(same.blocks, 1);
   EXPECT_DOUBLE_EQ(same.extent_of_blocks, 1.0);
   EXPECT_DOUBLE_EQ(same.interface, 2.0);
   EXPECT_NEAR(same.deviation, 0.0, 1e-12);
-  const GrainFit off = fits_of(with_middle_square(box(0.9, 2.3))).at(0);
+  const StoneFit off = fits_of(with_middle_square(box(0.9, 2.3))).at(0);
   EXPECT_NEAR(off.deviation, std::sqrt((0.1 * 0.1 + 0.3 * 0.3) / 2.0), 1e-12);
   // the sides lean by 0.1: along the left edge the distance goes from a to b, and its mean square is (a² + ab
   // + b²) / 3
-  const GrainFit leaning =
-      fits_of(with_middle_square(grain_of({{{0.7, -1}}, {{2, -1}}, {{2, 2}}, {{1.0, 2}}}))).at(0);
+  const StoneFit leaning =
+      fits_of(with_middle_square(stone_of({{{0.7, -1}}, {{2, -1}}, {{2, 2}}, {{1.0, 2}}}))).at(0);
   const double cosine = 1.0 / std::sqrt(1.01), a = 0.2 * cosine, b = 0.1 * cosine;
   EXPECT_NEAR(leaning.deviation, std::sqrt((a * a + a * b + b * b) / 3.0 / 2.0), 1e-12);
 }
 
 // Promise: from a circle the distance is that at three points of each edge, by Gauss's rule.
-TEST(GrainFit, TellsTheDistanceOfEdgesFromACircle) {
-  const GrainFit fit = fits_of(with_middle_square({{{1.5, 0.5}}, 1.2, 0, 0, nullptr})).at(0);
+TEST(StoneFit, TellsTheDistanceOfEdgesFromACircle) {
+  const StoneFit fit = fits_of(with_middle_square({{{1.5, 0.5}}, 1.2, 0, 0, nullptr})).at(0);
   EXPECT_DOUBLE_EQ(fit.extent, 0.36 * std::numbers::pi);
   EXPECT_DOUBLE_EQ(fit.size, 1.2 * std::numbers::pi);
   // points at 0 and sqrt(0.15) from the middle of an edge, which is 0.5 from the centre
@@ -139,13 +139,13 @@ TEST(GrainFit, TellsTheDistanceOfEdgesFromACircle) {
   EXPECT_NEAR(fit.deviation, std::sqrt((8 * in_middle * in_middle + 10 * beside * beside) / 18), 1e-12);
 }
 
-// Promise: edges between two grains count for both, edges on the surface of the body and within a grain for
-// none; a grain without a block has no interface, and without grains of blocks there are no fits.
-TEST(GrainFit, CountsEdgesBetweenGrainsForBoth) {
-  Specimen<2> s = with_middle_square(grain_of({{{1, -1}}, {{2, -1}}, {{2, 2}}, {{1, 2}}}));
+// Promise: edges between two stones count for both, edges on the surface of the body and within a stone for
+// none; a stone without a block has no interface, and without stones of blocks there are no fits.
+TEST(StoneFit, CountsEdgesBetweenStonesForBoth) {
+  Specimen<2> s = with_middle_square(stone_of({{{1, -1}}, {{2, -1}}, {{2, 2}}, {{1, 2}}}));
   s.stones.push_back({{{0.5, 0.5}}, 1.0, 0, 0, nullptr});
   s.stones.push_back({{{0.5, 0.5}}, 0.1, 0, 0, nullptr});
-  s.grain = {1, 0, 0};
+  s.stone = {1, 0, 0};
   const auto fits = fits_of(s);
   ASSERT_EQ(fits.size(), 3U);
   EXPECT_EQ(fits[0].blocks, 2);
@@ -157,7 +157,7 @@ TEST(GrainFit, CountsEdgesBetweenGrainsForBoth) {
   EXPECT_EQ(fits[2].blocks, 0);
   EXPECT_EQ(fits[2].interface, 0.0);
   EXPECT_EQ(fits[2].deviation, 0.0);
-  s.grain.clear();
+  s.stone.clear();
   EXPECT_TRUE(fits_of(s).empty());
 }
 
@@ -179,21 +179,21 @@ std::vector<Vec<2>> cut_ellipse(const Vec<2>& centre, double a, double b) {
 /// Returns a specimen of 120 mm x 80 mm with one stone, which blocks follow.
 Specimen<2> with_stone(std::vector<Vec<2>> points, int blocks) {
   SpecimenParameters p;
-  p.region = Region::rectangle(0.12, 0.08);
+  p.outline = Region::rectangle(0.12, 0.08);
   p.seed = 1;
   p.superposition = Superposition::follow;
   p.blocks.count = blocks;
   p.blocks.shortest_edge = 0.3;
   const auto [outline, centre] = outline_around(std::move(points));
-  p.aggregates.stones = std::vector<Stone<2>>{{centre, outline->width(), "aggregate", "", outline}};
-  p.aggregates.fraction = outline->extent() / p.region.extent();
+  p.aggregates.stones = std::vector<KnownStone<2>>{{centre, outline->width(), "aggregate", "", outline}};
+  p.aggregates.fraction = outline->extent() / p.extent();
   p.aggregates.d_min = p.aggregates.d_max = outline->width();
   return make_specimen(p);
 }
 
 // A saw and the edge of an image cut stones. A sliver of mortar between the stone and the outline would draw
 // away the blocks around it.
-TEST(GrainFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
+TEST(StoneFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
   struct Cut {
     Vec<2> centre;
     double a, b;
@@ -203,7 +203,7 @@ TEST(GrainFit, AStoneThatTheOutlineCutsEndsThereAndItsBlocksWithIt) {
         Cut{{{0.0, 0.04}}, 0.02, 0.3}, Cut{{{0.118, 0.08}}, 0.006, 0.006}}) {
     for (const int blocks : {150, 600}) {
       const Specimen<2> specimen = with_stone(cut_ellipse(centre, a, b), blocks);
-      const GrainFit fit = fits_of(specimen).front();
+      const StoneFit fit = fits_of(specimen).front();
       EXPECT_NEAR(fit.extent_of_blocks / fit.extent, 1.0, fit.blocks > 1 ? 0.01 : 0.05);
       double largest = 0.0;
       std::vector<Vec<2>> polygon;

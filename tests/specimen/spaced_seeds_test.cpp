@@ -1,5 +1,7 @@
 // Promise: seeds of a solid keep their distance, are numbered along Morton's curve, and have the radii of the
 // blocks there.
+#include "pyroclast/specimen/spaced_seeds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "messages.hpp"
-#include "pyroclast/specimen/spaced_seeds.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {

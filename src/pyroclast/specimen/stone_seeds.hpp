@@ -4,48 +4,48 @@
 #include <span>
 #include <vector>
 
-#include "pyroclast/specimen/grain_grid.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 
 namespace pyroclast::specimen {
 
-/// Way to follow a grain.
+/// Way to follow a stone.
 struct WayToFollow {
   double size = 1.0;            ///< factor by which it is followed larger
-  bool is_of_one_seed = false;  ///< true where a small grain must have one seed
+  bool is_of_one_seed = false;  ///< true where a small stone must have one seed
 };
 
-/// Seeds of a tessellation that make its facets follow the surfaces of grains.
+/// Seeds of a tessellation that make its facets follow the surfaces of stones.
 ///
 /// Seeds stand in pairs on both sides of a surface, so the facet between the two cells is a tangent. Each
-/// grain is first drawn smaller, by the factor by which the polygon of its tangents, or the polyhedron, is
-/// larger than the grain. A small grain is one cell. Where two grains are so near to each other that two rows
+/// stone is first drawn smaller, by the factor by which the polygon of its tangents, or the polyhedron, is
+/// larger than the stone. A small stone is one cell. Where two stones are so near to each other that two rows
 /// of seeds do not fit between them, they share one row in the middle of the gap. Where the outline of the
-/// body cuts a grain, the grain's cells end at the outline, and no seeds stand beyond its surface.
+/// body cuts a stone, the stone's cells end at the outline, and no seeds stand beyond its surface.
 ///
 /// All seeds near a surface have the same power there: r² = h² + constant, with the radius r of the seed and
 /// its distance h from the surface. So the facet between two of them is where the surface is, whatever h.
 template <int Dim>
-class GrainSeeds {
+class StoneSeeds {
  public:
   using Way = WayToFollow;
 
   /// Places the seeds.
-  /// \param grains   grains as they lie, without overlaps
-  /// \param ways     ways of each grain
+  /// \param stones   stones as they lie, without overlaps
+  /// \param ways     ways of each stone
   /// \param outline  seeds that the outline asks for: the others keep away from them; none in space
   /// \param sizes    mean distances of seeds: sizes of blocks
-  GrainSeeds(std::span<const Grain<Dim>> grains, std::span<const Way> ways, const OutlineOf<Dim>& region,
+  StoneSeeds(std::span<const Stone<Dim>> stones, std::span<const Way> ways, const OutlineOf<Dim>& region,
              const OutlineSeeds* outline, const BlockSizes& sizes);
 
   const std::vector<Vec<Dim>>& positions() const { return positions_; }
   const std::vector<double>& radii() const { return radii_; }  ///< Returns the Laguerre radii, m.
-  /// Returns the grain of each seed, index into the grains; -1: the seed stands between grains.
+  /// Returns the stone of each seed, index into the stones; -1: the seed stands between stones.
   const std::vector<int>& owners() const { return owners_; }
-  /// Tells whether a grain is so small that its cells become one.
-  bool is_one_cell(int grain) const { return grains_[grain].is_one_cell; }
-  /// Returns the grain in which a place lies, index into the grains; -1: it lies between them.
-  int grain_at(const Vec<Dim>& place) const;
+  /// Tells whether a stone is so small that its cells become one.
+  bool is_one_cell(int stone) const { return stones_[stone].is_one_cell; }
+  /// Returns the stone in which a place lies, index into the stones; -1: it lies between them.
+  int stone_at(const Vec<Dim>& place) const;
   /// Tells whether another seed may stand at a place: not so near to a surface that its cell would reach
   /// across.
   /// \param clear  least distance from surfaces, in spacings
@@ -55,7 +55,7 @@ class GrainSeeds {
   struct Foot {
     Vec<Dim> at, normal;
   };
-  /// Grain as its surface is followed.
+  /// Stone as its surface is followed.
   struct Followed {
     Vec<Dim> centre;
     std::shared_ptr<const Surface<Dim>> shape;  ///< drawn smaller
@@ -64,17 +64,17 @@ class GrainSeeds {
     /// Square of the radius of the one seed, m²; 0: each place of the surface has its own.
     double power = 0.0;
     double along = 0.0;               ///< distance from foot to foot where blocks are as large as there, m
-    double drawn = 1.0;               ///< size of the shape over that of the grain
+    double drawn = 1.0;               ///< size of the shape over that of the stone
     std::vector<Vec<Dim>> feet = {};  ///< places on the surface that have their seeds, m
   };
-  /// Seed between grains that a surface asks for.
+  /// Seed between stones that a surface asks for.
   struct Gap {
     double half;  ///< distance of the seed from the surface, m
-    int other;    ///< grain at the other side, for which the seed stands too; -1: none
+    int other;    ///< stone at the other side, for which the seed stands too; -1: none
   };
 
-  Followed followed(const Grain<Dim>& grain, const Way& way) const;
-  typename Surface<Dim>::Relative spacing_over(const Followed& grain) const;
+  Followed followed(const Stone<Dim>& stone, const Way& way) const;
+  typename Surface<Dim>::Relative spacing_over(const Followed& stone) const;
   void follow(int number);
   Gap gap_from(int number, const Foot& foot) const;
   Foot nearest(int number, const Vec<Dim>& place) const;
@@ -88,9 +88,9 @@ class GrainSeeds {
   const OutlineOf<Dim>& region_;
   const OutlineSeeds* outline_;
   BlockSizes sizes_;
-  GrainGrid<Dim> grid_;
-  GrainGrid<Dim> between_;  ///< seeds of no grain, without extent
-  std::vector<Followed> grains_;
+  StoneGrid<Dim> grid_;
+  StoneGrid<Dim> between_;  ///< seeds of no stone, without extent
+  std::vector<Followed> stones_;
   std::vector<Vec<Dim>> positions_;
   std::vector<double> radii_;
   std::vector<int> owners_;

@@ -1,4 +1,4 @@
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 
-namespace pyroclast::specimen::grain_test {
+namespace pyroclast::specimen::stone_test {
 namespace {
 
 using Points = std::vector<Vec<2>>;
@@ -27,14 +27,14 @@ constexpr int kPairs = 1000;
 constexpr int kSamples = 2000;
 
 /// Polygons come more often, for they alone cross without a corner in each other.
-constexpr std::array kKinds{GrainShape::circle,  GrainShape::ellipse, GrainShape::harmonics,
-                            GrainShape::polygon, GrainShape::polygon, GrainShape::polygon};
+constexpr std::array kKinds{StoneShape::circle,  StoneShape::ellipse, StoneShape::harmonics,
+                            StoneShape::polygon, StoneShape::polygon, StoneShape::polygon};
 
-GrainShape random_kind(Random& random) {
+StoneShape random_kind(Random& random) {
   return kKinds[static_cast<std::size_t>(random.uniform(0.0, kKinds.size()))];
 }
 
-Grain<2> random_grain(GrainShape kind, const Vec<2>& centre, Random& random) {
+Stone<2> random_stone(StoneShape kind, const Vec<2>& centre, Random& random) {
   const ShapeParameters shape{
       .kind = kind, .elongation = {1.0, 5.0}, .corners = {3, 6}, .roughness = {0.0, 0.1}};
   const double width = random.uniform(0.5, 1.0);
@@ -47,14 +47,14 @@ Vec<2> random_direction(Random& random) {
   return {{std::cos(angle), std::sin(angle)}};
 }
 
-/// Returns points on a grain's surface: the corners of its outline, or of a polygon of so many sides that its
+/// Returns points on a stone's surface: the corners of its outline, or of a polygon of so many sides that its
 /// arcs rise 1e-6 of the radius above them.
-Points line_of(const Grain<2>& grain) {
-  if (grain.shape) return corners_of(grain);
+Points line_of(const Stone<2>& stone) {
+  if (stone.shape) return corners_of(stone);
   Points line;
   for (int i = 0; i < kSamples; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kSamples;
-    line.push_back(grain.centre + 0.5 * grain.diameter * Vec<2>{{std::cos(angle), std::sin(angle)}});
+    line.push_back(stone.centre + 0.5 * stone.diameter * Vec<2>{{std::cos(angle), std::sin(angle)}});
   }
   return line;
 }
@@ -113,19 +113,19 @@ bool meet(const Points& line, const Points& polygon, bool is_closed = true, doub
   return found.Total() > 0;
 }
 
-// Promise: two grains overlap where Clipper finds a common part, and else are as far apart as 2,000 points of
+// Promise: two stones overlap where Clipper finds a common part, and else are as far apart as 2,000 points of
 // each say: these are too far by less than half a step of each line, and a circle's points by its rise.
-TEST(Grain, OverlapsAndDistancesAreThoseOfSides) {
+TEST(Stone, OverlapsAndDistancesAreThoseOfSides) {
   Random random(1);
   int overlaps = 0, without_corner = 0;
   for (int pair = 0; pair < kPairs; ++pair) {
-    const Grain<2> a = random_grain(random_kind(random), {}, random);
-    const Grain<2> b =
-        random_grain(random_kind(random), random.uniform(0.0, 2.2) * random_direction(random), random);
+    const Stone<2> a = random_stone(random_kind(random), {}, random);
+    const Stone<2> b =
+        random_stone(random_kind(random), random.uniform(0.0, 2.2) * random_direction(random), random);
     const Points of_a = line_of(a), of_b = line_of(b);
     const bool overlap = meet(of_a, of_b);
-    const auto holds_corner = [](const Grain<2>& grain, const Points& points) {
-      return std::ranges::any_of(points, [&](const Vec<2>& p) { return holds(grain, p); });
+    const auto holds_corner = [](const Stone<2>& stone, const Points& points) {
+      return std::ranges::any_of(points, [&](const Vec<2>& p) { return holds(stone, p); });
     };
     overlaps += overlap ? 1 : 0;
     without_corner += overlap && !holds_corner(a, of_b) && !holds_corner(b, of_a) ? 1 : 0;
@@ -164,7 +164,7 @@ Featured random_feature(int kind, Random& random) {
                                         {"bottom", "right", "top", "left"});
   if (kind < 2) {
     const Points hole = kind == 0 ? circle_corners({}, random.uniform(0.05, 0.5), 0.02)
-                                  : corners_of(random_grain(GrainShape::polygon, {}, random));
+                                  : corners_of(random_stone(StoneShape::polygon, {}, random));
     return {square.with_holes(std::array{Hole{"hole", hole, kind == 0}}), hole};
   }
   const Vec<2> mouth = at(random.uniform(-5, 5), -10), tip = at(0, random.uniform(-0.2, 0.2));
@@ -178,35 +178,35 @@ Featured random_feature(int kind, Random& random) {
   return result;
 }
 
-// Promise: the same of grains and holes, notches and slits of the body.
-TEST(Grain, LiesInABodyWhereItIsClearOfHolesNotchesAndSlits) {
+// Promise: the same of stones and holes, notches and slits of the body.
+TEST(Stone, LiesInABodyWhereItIsClearOfHolesNotchesAndSlits) {
   Random random(2);
   int overlaps = 0, held = 0;
   for (int pair = 0; pair < kPairs; ++pair) {
     const int kind = pair % 4;
     const Featured feature = random_feature(kind, random);
     const Room<2> room = room_of_blocks(feature.region);
-    const Grain<2> grain =
-        random_grain(random_kind(random), random.uniform(0.0, 1.5) * random_direction(random), random);
-    if (!grain.shape && kind == 3) continue;  // circles lie across a slit, as a saw cuts them
-    const Points line = line_of(grain);
+    const Stone<2> stone =
+        random_stone(random_kind(random), random.uniform(0.0, 1.5) * random_direction(random), random);
+    if (!stone.shape && kind == 3) continue;  // circles lie across a slit, as a saw cuts them
+    const Points line = line_of(stone);
     // an open line is the subject
     const bool overlap = meet(feature.line, line, feature.is_closed);
     overlaps += overlap ? 1 : 0;
     held += overlap &&
             std::ranges::all_of(line, [&](const Vec<2>& p) { return feature.region.distance(p) < 0.0; });
-    EXPECT_EQ(lies_within(grain, room, 0.0), !overlap) << pair;
-    EXPECT_EQ(lies_within(grain, room, -1e-9), !overlap) << pair;
+    EXPECT_EQ(lies_within(stone, room, 0.0), !overlap) << pair;
+    EXPECT_EQ(lies_within(stone, room, -1e-9), !overlap) << pair;
     if (overlap) {
-      EXPECT_FALSE(lies_within(grain, room, 1e-3)) << pair;
+      EXPECT_FALSE(lies_within(stone, room, 1e-3)) << pair;
       continue;
     }
     const Sampled points = sampled(line), of_feature = sampled(feature.line, feature.is_closed);
     const double told = distance_of_points(points, of_feature);
     const double bound = 0.5 * (points.step + of_feature.step);
-    EXPECT_FALSE(lies_within(grain, room, told + 1e-5)) << pair;
+    EXPECT_FALSE(lies_within(stone, room, told + 1e-5)) << pair;
     if (told > bound + 1e-5) {
-      EXPECT_TRUE(lies_within(grain, room, told - bound - 1e-5)) << pair;
+      EXPECT_TRUE(lies_within(stone, room, told - bound - 1e-5)) << pair;
     }
   }
   EXPECT_GT(overlaps, kPairs / 4);
@@ -219,25 +219,25 @@ Points moved(Points points, const Vec<2>& by) {
   return points;
 }
 
-/// Returns a grain that bends around its centroid, like a horseshoe.
+/// Returns a stone that bends around its centroid, like a horseshoe.
 Points horseshoe() {
   return {{{0, 0}}, {{6, 0}}, {{6, 6}}, {{5, 6}}, {{5, 1}}, {{1, 1}}, {{1, 6}}, {{0, 6}}};
 }
 
 // Promise: an outline that is given twice overlaps, wherever it begins, whichever way round it runs, and 1e-7
 // of its size away.
-TEST(Grain, AnOutlineThatIsGivenTwiceOverlaps) {
+TEST(Stone, AnOutlineThatIsGivenTwiceOverlaps) {
   Random random(3);
   std::vector<Points> all{horseshoe()};
-  for (const GrainShape kind : {GrainShape::ellipse, GrainShape::harmonics, GrainShape::polygon})
-    all.push_back(corners_of(random_grain(kind, {{3.0, 2.0}}, random)));
+  for (const StoneShape kind : {StoneShape::ellipse, StoneShape::harmonics, StoneShape::polygon})
+    all.push_back(corners_of(random_stone(kind, {{3.0, 2.0}}, random)));
   for (const Points& once : all) {
-    const Grain<2> first = grain_of(once);
+    const Stone<2> first = stone_of(once);
     std::vector<Points> again{once, once, once, moved(once, {{1e-7, 0.0}})};
     std::rotate(again[1].begin(), again[1].begin() + 2, again[1].end());
     std::ranges::reverse(again[2]);
     for (const Points& corners : again) {
-      const Grain<2> second = grain_of(corners);
+      const Stone<2> second = stone_of(corners);
       EXPECT_TRUE(are_closer(first, second, -kTouching * first.diameter));
       EXPECT_LT(approach(first, second).gap, -0.1 * first.diameter);
     }
@@ -245,12 +245,12 @@ TEST(Grain, AnOutlineThatIsGivenTwiceOverlaps) {
 }
 
 // Promise: outlines that cross at their corners alone overlap, and ones that touch do not.
-TEST(Grain, TouchingIsNoOverlapAndCrossingAtCornersIs) {
+TEST(Stone, TouchingIsNoOverlapAndCrossingAtCornersIs) {
   const auto box = [](double x0, double y0, double x1, double y1) {
     return Points{{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}};
   };
   const auto overlap = [](const Points& a, const Points& b) {
-    return are_closer(grain_of(a), grain_of(b), -kTouching);
+    return are_closer(stone_of(a), stone_of(b), -kTouching);
   };
   const Points lying{{{-3, -1}}, {{-1, -1}}, {{1, -1}}, {{3, -1}}, {{3, 1}}, {{1, 1}}, {{-1, 1}}, {{-3, 1}}};
   Points standing = lying;
@@ -268,14 +268,14 @@ TEST(Grain, TouchingIsNoOverlapAndCrossingAtCornersIs) {
 
 // Promise: where two convex outlines overlap without a corner in each other, the approach is the move that
 // parts them.
-TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
+TEST(Stone, AnApproachOfCrossingOutlinesPartsThem) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const auto scaled = [scale](Points points) {
       for (Vec<2>& point : points) point *= scale;
       return points;
     };
-    const Grain<2> bar = grain_of(scaled({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}}));
-    Grain<2> pole = grain_of(scaled({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}}));
+    const Stone<2> bar = stone_of(scaled({{{-3, -0.5}}, {{3, -0.5}}, {{3, 0.5}}, {{-3, 0.5}}}));
+    Stone<2> pole = stone_of(scaled({{{0, -2}}, {{1, -2}}, {{1, 3}}, {{0, 3}}}));
     const Approach<2> near = approach(bar, pole);
     EXPECT_DOUBLE_EQ(near.gap, -2.5 * scale);
     EXPECT_EQ(near.direction, (Vec<2>{{0, 1}}));
@@ -289,10 +289,10 @@ TEST(Grain, AnApproachOfCrossingOutlinesPartsThem) {
 
 // Promise: an approach is the way of the second one out of the first, whichever of both has an outline;
 // circles around one centre part along x.
-TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
-  const Grain<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr}, beside{{{0, 3}}, 1.0, 0, 0, nullptr};
-  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
-  const Grain<2> other = grain_of({{{2, 4}}, {{4, 4}}, {{4, 6}}, {{2, 6}}});
+TEST(Stone, AnApproachGoesFromTheFirstToTheSecond) {
+  const Stone<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr}, beside{{{0, 3}}, 1.0, 0, 0, nullptr};
+  const Stone<2> box = stone_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+  const Stone<2> other = stone_of({{{2, 4}}, {{4, 4}}, {{4, 6}}, {{2, 6}}});
   const auto expect = [](const Approach<2>& near, double gap, const Vec<2>& direction) {
     EXPECT_NEAR(near.gap, gap, 1e-12);
     EXPECT_NEAR(norm(near.direction - direction), 0.0, 1e-12);
@@ -304,15 +304,15 @@ TEST(Grain, AnApproachGoesFromTheFirstToTheSecond) {
   expect(approach(box, circle), 1.0, -x);
   expect(approach(box, other), 3.0, y);
   expect(approach(other, box), 3.0, -y);
-  expect(approach(circle, Grain<2>{{{0, 0}}, 1.0, 0, 0, nullptr}), -1.5, x);
-  const Grain<3> ball{{{1, 1, 1}}, 2.0, 0, 0, nullptr};
+  expect(approach(circle, Stone<2>{{{0, 0}}, 1.0, 0, 0, nullptr}), -1.5, x);
+  const Stone<3> ball{{{1, 1, 1}}, 2.0, 0, 0, nullptr};
   EXPECT_EQ(approach(ball, ball).gap, -2.0);
   EXPECT_EQ(approach(ball, ball).direction, (Vec<3>{{1, 0, 0}}));
 }
 
-// Promise: an approach of a grain and a segment is the way of the segment, from its nearest place.
-TEST(Grain, AnApproachOfASegmentIsFromItsNearestPlace) {
-  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+// Promise: an approach of a stone and a segment is the way of the segment, from its nearest place.
+TEST(Stone, AnApproachOfASegmentIsFromItsNearestPlace) {
+  const Stone<2> box = stone_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
   const auto gap = [&](const Vec<2>& from, const Vec<2>& to) { return approach(box, from, to); };
   EXPECT_NEAR(gap({{3, 3}}, {{3, 5}}).gap, 2.0, 1e-12);  // an end over a side
   EXPECT_NEAR(norm(gap({{3, 3}}, {{3, 5}}).direction - Vec<2>{{0, 1}}), 0.0, 1e-12);
@@ -326,9 +326,9 @@ TEST(Grain, AnApproachOfASegmentIsFromItsNearestPlace) {
 }
 
 // Promise: a place on the surface is held; a segment is closer than a gap up to the gap.
-TEST(Grain, HoldsItsSurface) {
-  const Grain<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr};
-  const Grain<2> box = grain_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
+TEST(Stone, HoldsItsSurface) {
+  const Stone<2> circle{{{0, 0}}, 2.0, 0, 0, nullptr};
+  const Stone<2> box = stone_of({{{2, -1}}, {{4, -1}}, {{4, 1}}, {{2, 1}}});
   for (const double inside : {0.0, 0.999, 1.0}) EXPECT_TRUE(holds(circle, {{inside, 0}})) << inside;
   EXPECT_FALSE(holds(circle, {{1.001, 0}}));
   for (const double inside : {2.0, 2.001, 3.0, 4.0}) EXPECT_TRUE(holds(box, {{inside, 0}})) << inside;
@@ -337,9 +337,9 @@ TEST(Grain, HoldsItsSurface) {
   EXPECT_DOUBLE_EQ(distance(circle, {{0, 0.25}}), -0.75);
   EXPECT_DOUBLE_EQ(distance(box, {{3, 2}}), 1.0);
   EXPECT_EQ(place_within(circle), (Vec<2>{{0, 0}}));
-  for (const Grain<2>& grain : {circle, box}) {
-    const double right = grain.shape ? 4.0 : 1.0;
-    const auto is_closer = [&](double x, double gap) { return are_closer(grain, {{x, -3}}, {{x, 3}}, gap); };
+  for (const Stone<2>& stone : {circle, box}) {
+    const double right = stone.shape ? 4.0 : 1.0;
+    const auto is_closer = [&](double x, double gap) { return are_closer(stone, {{x, -3}}, {{x, 3}}, gap); };
     EXPECT_TRUE(is_closer(right + 0.5, 0.51));
     EXPECT_FALSE(is_closer(right + 0.5, 0.49));
     EXPECT_TRUE(is_closer(right - 0.1, 0.0));
@@ -351,21 +351,21 @@ TEST(Grain, HoldsItsSurface) {
   EXPECT_TRUE(are_closer(box, {{2.9, 0}}, {{3.1, 0}}, 0.1));
 }
 
-void expect_apart(const std::vector<Grain<2>>& grains, const Room<2>& room, double gap) {
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    EXPECT_TRUE(lies_within(grains[i], room, gap * (1.0 - 1e-9)));
+void expect_apart(const std::vector<Stone<2>>& stones, const Room<2>& room, double gap) {
+  for (std::size_t i = 0; i < stones.size(); ++i) {
+    EXPECT_TRUE(lies_within(stones[i], room, gap * (1.0 - 1e-9)));
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_FALSE(are_closer(grains[i], grains[j], gap * (1.0 - 1e-9)));
-      if (norm(grains[i].centre - grains[j].centre) < reach(grains[i]) + reach(grains[j])) {
-        EXPECT_FALSE(meet(line_of(grains[i]), line_of(grains[j]), true, 1e15));
+      EXPECT_FALSE(are_closer(stones[i], stones[j], gap * (1.0 - 1e-9)));
+      if (norm(stones[i].centre - stones[j].centre) < reach(stones[i]) + reach(stones[j])) {
+        EXPECT_FALSE(meet(line_of(stones[i]), line_of(stones[j]), true, 1e15));
       }
     }
   }
 }
 
-// Promise: grains of any form keep the gap when they are placed and when they grow, in bodies with holes,
+// Promise: stones of any form keep the gap when they are placed and when they grow, in bodies with holes,
 // notches and slits too.
-TEST(Grain, PlacedAndGrownGrainsOfAnyFormKeepTheGap) {
+TEST(Stone, PlacedAndGrownStonesOfAnyFormKeepTheGap) {
   const Region plate = Region::rectangle(0.12, 0.12);
   std::vector<Hole> holes;
   for (const double x : {0.03, 0.09})
@@ -382,7 +382,7 @@ TEST(Grain, PlacedAndGrownGrainsOfAnyFormKeepTheGap) {
   p.sieves = {p.d_min, p.d_max};
   p.minimum_gap = 0.2e-3;
   for (const bool is_pierced : {false, true})
-    for (const GrainShape kind : {GrainShape::ellipse, GrainShape::polygon, GrainShape::harmonics})
+    for (const StoneShape kind : {StoneShape::ellipse, StoneShape::polygon, StoneShape::harmonics})
       for (const bool grow : {false, true}) {
         p.shape = {.kind = kind,
                    .elongation = {1.0, grow ? 1.8 : 3.0},
@@ -393,29 +393,29 @@ TEST(Grain, PlacedAndGrownGrainsOfAnyFormKeepTheGap) {
         const Region& region = is_pierced ? pierced : plate;
         Random random(4);
         const Room<2> room = room_of_blocks(region);
-        expect_apart(place(draw_grains<2>(p, region.extent(), random), room, p, {}, random), room,
+        expect_apart(place(draw_stones<2>(p, region.extent(), random), room, p, {}, random), room,
                      p.minimum_gap);
       }
 }
 
-// Promise: no fibre runs through a hole or a grain.
-TEST(Grain, FibresRunThroughNoHoleAndNoGrain) {
+// Promise: no fibre runs through a hole or a stone.
+TEST(Stone, FibresRunThroughNoHoleAndNoStone) {
   const Region region = Region::rectangle(0.1, 0.1).with_holes(
       std::array{Hole{"hole", circle_corners({{0.05, 0.05}}, 0.03, 2e-3), true}});
-  const std::vector<Grain<2>> grains{
-      grain_of({{{0.02, 0.02}}, {{0.0205, 0.02}}, {{0.0205, 0.08}}, {{0.02, 0.08}}})};
+  const std::vector<Stone<2>> stones{
+      stone_of({{{0.02, 0.02}}, {{0.0205, 0.02}}, {{0.0205, 0.08}}, {{0.02, 0.08}}})};
   const FibreParameters p{
       .phase = "steel", .count = 100, .length = 0.05, .minimum_gap = 1e-3, .attempts = 100'000};
   Random random(5);
-  for (const Fibre& fibre : place_fibres(p, region, grains, random)) {
+  for (const Fibre& fibre : place_fibres(p, region, stones, random)) {
     for (const Piece& piece : region.pieces())
       EXPECT_GE(distance_of_segments(fibre.from, fibre.to, piece.from, piece.to), p.minimum_gap);
     for (std::size_t i = 0; i < 4; ++i) {
-      const Points corners = corners_of(grains[0]);
+      const Points corners = corners_of(stones[0]);
       EXPECT_GE(distance_of_segments(fibre.from, fibre.to, corners[i], corners[(i + 1) % 4]), p.minimum_gap);
     }
   }
 }
 
 }  // namespace
-}  // namespace pyroclast::specimen::grain_test
+}  // namespace pyroclast::specimen::stone_test

@@ -6,10 +6,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
-#include "pyroclast/specimen/regularisation_space.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/specimen.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -142,10 +143,10 @@ TEST(Regularisation, IsTheSameForAnyNumberOfThreads) {
   p.blocks.largest_bend = 0.3;
   p.aggregates.phase = p.matrix;
   const Prism body = cylinder(0.1, 0.2);
-  const Specimen<3> alone = make_specimen<3>(p, body);
+  const Specimen<3> alone = made_in(p, body);
   EXPECT_GT(alone.metrics.vertices_merged, 0);
   Team team(3);
-  const Specimen<3> shared = make_specimen<3>(p, body, &team);
+  const Specimen<3> shared = made_in(p, body, &team);
   EXPECT_TRUE(shared.cells.vertices == alone.cells.vertices);
   EXPECT_TRUE(shared.cells.cells == alone.cells.cells);
 }

@@ -1,16 +1,15 @@
-#include "pyroclast/specimen/specimen.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -35,7 +34,7 @@ SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
 // the body; blocks take their volume.
 TEST(SpecimenInSpace, HasItsAggregatesByVolume) {
   const Prism body = cylinder(0.1, 0.2);
-  const Specimen<3> s = make_specimen<3>(concrete(3000), body);
+  const Specimen<3> s = made_in(concrete(3000), body);
   EXPECT_NEAR(s.fraction_placed, 0.25, 0.001);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 1.0 / 3000);
   ASSERT_EQ(s.classes.size(), 3U);
@@ -65,28 +64,28 @@ TEST(SpecimenInSpace, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
   const auto centres = [](const Specimen<3>& s) {
     std::vector<Vec<3>> all;
-    for (const Grain<3>& ball : s.stones) all.push_back(ball.centre);
+    for (const Stone<3>& ball : s.stones) all.push_back(ball.centre);
     return all;
   };
-  const Specimen<3> one = make_specimen<3>(concrete(300), body), same = make_specimen<3>(concrete(300), body);
+  const Specimen<3> one = made_in(concrete(300), body), same = made_in(concrete(300), body);
   EXPECT_TRUE(one.cells.vertices == same.cells.vertices);
   EXPECT_EQ(one.phase, same.phase);
-  EXPECT_TRUE(centres(make_specimen<3>(concrete(500), body)) == centres(one));
-  EXPECT_FALSE(centres(make_specimen<3>(concrete(300, 2), body)) == centres(one));
+  EXPECT_TRUE(centres(made_in(concrete(500), body)) == centres(one));
+  EXPECT_FALSE(centres(made_in(concrete(300, 2), body)) == centres(one));
 }
 
 // Promise: by the rule of fit each stone has a block, also where blocks are as large as stones.
 TEST(SpecimenInSpace, EachStoneHasABlockAndCoarseBlocksAreTold) {
   const Prism body = cuboid(0.1, 0.1, 0.1);
   auto p = concrete(500);  // blocks of 12.6 mm
-  const Specimen<3> fit = make_specimen<3>(p, body);
+  const Specimen<3> fit = made_in(p, body);
   for (const SizeClass& c : fit.classes) EXPECT_EQ(c.without_a_block, 0);
   const auto told = warnings(fit);
   ASSERT_EQ(told.size(), 1U);
   expect_in("smaller than 3 blocks of 12.6 mm", told[0]);
   p.superposition = Superposition::area;
   p.covered_fraction = 0.7;
-  const Specimen<3> by_area = make_specimen<3>(p, body);
+  const Specimen<3> by_area = made_in(p, body);
   int without = 0;
   for (const SizeClass& c : by_area.classes) without += c.without_a_block;
   EXPECT_GT(without, 0);
@@ -96,7 +95,7 @@ TEST(SpecimenInSpace, EachStoneHasABlockAndCoarseBlocksAreTold) {
 TEST(SpecimenInSpace, WhatASolidCannotHaveIsRefused) {
   auto p = concrete(100);
   p.inclusions = {FibreParameters{.phase = "steel", .count = 1, .length = 0.03}};
-  expect_in("fibres", message([&] { make_specimen<3>(p, cuboid(0.1, 0.1, 0.1)); }));
+  expect_in("fibres", message([&] { made_in(p, cuboid(0.1, 0.1, 0.1)); }));
 }
 
 std::vector<Bearing> two_platens() {
@@ -106,7 +105,7 @@ std::vector<Bearing> two_platens() {
 // Promise: platens lie on the whole of both ends, with contacts of the ends' area, and fill their thickness.
 TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
   for (const Prism& body : {cylinder(0.1, 0.2), cuboid(0.1, 0.2, 0.08)}) {
-    const Specimen<3> s = make_specimen<3>(concrete(400), body);
+    const Specimen<3> s = made_in(concrete(400), body);
     const ModelOf<3> model = make_model(s, 1.0, {}, two_platens());
     const double end = body.section().is_rectangle() ? 0.1 * 0.08 : body.section().extent();
     const auto volumes = model.zone_volumes();

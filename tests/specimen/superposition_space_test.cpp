@@ -1,5 +1,3 @@
-#include "pyroclast/specimen/superposition.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
+#include "pyroclast/specimen/stone.hpp"
+#include "pyroclast/specimen/superposition.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -87,7 +87,7 @@ struct Cubes {
     }
     return laguerre_cells(seeds, body).cells;
   }
-  Superposed superposed(const std::vector<Grain<3>>& balls, Superposition rule,
+  Superposed superposed(const std::vector<Stone<3>>& balls, Superposition rule,
                         double covered_fraction = 0.5) const {
     SpecimenParameters p;
     p.superposition = rule;
@@ -96,29 +96,29 @@ struct Cubes {
   }
 };
 
-Grain<3> ball(const Vec<3>& centre, double diameter) {
+Stone<3> ball(const Vec<3>& centre, double diameter) {
   return {centre, diameter, 0, 0, nullptr};
 }
 
-/// Grains of the eight cells, of which the others have none.
+/// Stones of the eight cells, of which the others have none.
 std::vector<int> only(const std::vector<std::pair<int, int>>& cells) {
-  std::vector<int> grain(8, -1);
-  for (const auto& [cell, of] : cells) grain[static_cast<std::size_t>(cell)] = of;
-  return grain;
+  std::vector<int> stone(8, -1);
+  for (const auto& [cell, of] : cells) stone[static_cast<std::size_t>(cell)] = of;
+  return stone;
 }
 
 TEST(Superpose, WithoutBallsAllIsMatrix) {
   const auto none = Cubes().superposed({}, Superposition::fit, 0.7);
-  EXPECT_EQ(none.grain, only({}));
+  EXPECT_EQ(none.stone, only({}));
   EXPECT_EQ(none.covered_fraction, std::nextafter(1.0, 0.0)) << "nothing fits better than no cell";
 }
 
 // Promise: by the rule of centroids a cell is of the first ball that holds its centroid.
 TEST(Superpose, ByCentroidsACellIsOfTheFirstBallAroundIts) {
-  const std::vector<Grain<3>> balls{ball({{0.5, 0.5, 0.9}}, 0.81), ball({{0.5, 0.5, 0.9}}, 1.4),
+  const std::vector<Stone<3>> balls{ball({{0.5, 0.5, 0.9}}, 0.81), ball({{0.5, 0.5, 0.9}}, 1.4),
                                     ball({{1.5, 1.5, 1.1}}, 0.79), ball({{1.5, 1.5, 1.2}}, 0.62)};
   const auto superposed = Cubes().superposed(balls, Superposition::centroid, 0.7);
-  EXPECT_EQ(superposed.grain, only({{0, 0}, {1, 1}, {7, 3}}));
+  EXPECT_EQ(superposed.stone, only({{0, 0}, {1, 1}, {7, 3}}));
   EXPECT_EQ(superposed.covered_fraction, 0.7);
 }
 
@@ -126,35 +126,35 @@ TEST(Superpose, ByCentroidsACellIsOfTheFirstBallAroundIts) {
 // all of them together, and is of the one that covers most.
 TEST(Superpose, ByVolumesACellIsOfTheBallThatCoversMost) {
   const Cubes cubes;
-  const auto by_volume = [&](const std::vector<Grain<3>>& balls, double fraction) {
+  const auto by_volume = [&](const std::vector<Stone<3>>& balls, double fraction) {
     return cubes.superposed(balls, Superposition::area, fraction);
   };
-  const std::vector<Grain<3>> whole{ball({{0.5, 0.5, 0.5}}, 1.0)};  // pi / 6 = 0.5236
-  EXPECT_EQ(by_volume(whole, 0.523).grain, only({{0, 0}}));
-  EXPECT_EQ(by_volume(whole, 0.524).grain, only({}));
+  const std::vector<Stone<3>> whole{ball({{0.5, 0.5, 0.5}}, 1.0)};  // pi / 6 = 0.5236
+  EXPECT_EQ(by_volume(whole, 0.523).stone, only({{0, 0}}));
+  EXPECT_EQ(by_volume(whole, 0.524).stone, only({}));
   EXPECT_EQ(by_volume(whole, 0.524).covered_fraction, 0.524);
   // halves of two balls, and an eighth of a third: 0.0654 + 0.1131 + 0.0335 = 0.212
-  const std::vector<Grain<3>> three{ball({{0.5, 0.5, 0.0}}, 0.63), ball({{0.0, 0.5, 0.5}}, 0.756),
+  const std::vector<Stone<3>> three{ball({{0.5, 0.5, 0.0}}, 0.63), ball({{0.0, 0.5, 0.5}}, 0.756),
                                     ball({{1.0, 1.0, 1.0}}, 0.8)};
-  EXPECT_EQ(by_volume(three, 0.211).grain, only({{0, 1}}));
-  EXPECT_EQ(by_volume(three, 0.213).grain, only({}));
+  EXPECT_EQ(by_volume(three, 0.211).stone, only({{0, 1}}));
+  EXPECT_EQ(by_volume(three, 0.213).stone, only({}));
   // balls that overlap cover no more than all of a cell, which is of the first of balls alike
-  const std::vector<Grain<3>> over(3, ball({{0.5, 0.5, 0.5}}, 1.0));
-  EXPECT_EQ(by_volume(over, 1.0).grain, only({}));
-  EXPECT_EQ(by_volume(over, 0.999).grain, only({{0, 0}}));
+  const std::vector<Stone<3>> over(3, ball({{0.5, 0.5, 0.5}}, 1.0));
+  EXPECT_EQ(by_volume(over, 1.0).stone, only({}));
+  EXPECT_EQ(by_volume(over, 0.999).stone, only({{0, 0}}));
 }
 
 // Promise: by the rule of fit a ball takes the cell of which it covers most, where that brings the volumes
 // nearer to each other: so from half of a cell on.
 TEST(Superpose, ByFitABallTakesACellFromHalfOfItsVolumeOn) {
   const Cubes cubes;
-  const auto by_fit = [&](const std::vector<Grain<3>>& balls) {
+  const auto by_fit = [&](const std::vector<Stone<3>>& balls) {
     return cubes.superposed(balls, Superposition::fit);
   };
   const double half = std::cbrt(0.5 * 6.0 / std::numbers::pi);
-  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).grain, only({{0, 0}}));
-  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 0.99 * half)}).grain, only({}));
-  EXPECT_EQ(by_fit({ball({{1.1, 0.5, 0.5}}, 1.01 * half)}).grain, only({{4, 0}}));
+  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).stone, only({{0, 0}}));
+  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 0.99 * half)}).stone, only({}));
+  EXPECT_EQ(by_fit({ball({{1.1, 0.5, 0.5}}, 1.01 * half)}).stone, only({{4, 0}}));
   const double covered = by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).covered_fraction;
   EXPECT_LT(covered, 1.0);
   EXPECT_GT(covered, 1.0 - 1e-15);
@@ -163,14 +163,14 @@ TEST(Superpose, ByFitABallTakesACellFromHalfOfItsVolumeOn) {
 // Promise: larger balls choose first, whatever their order; who finds its cell taken takes the next, or none.
 TEST(Superpose, ByFitLargerBallsChooseFirst) {
   const Cubes cubes;
-  const auto by_fit = [&](const std::vector<Grain<3>>& balls) {
-    return cubes.superposed(balls, Superposition::fit).grain;
+  const auto by_fit = [&](const std::vector<Stone<3>>& balls) {
+    return cubes.superposed(balls, Superposition::fit).stone;
   };
-  const Grain<3> small = ball({{0.8, 0.5, 0.5}}, 1.1), large = ball({{0.5, 0.5, 0.5}}, 1.2);
+  const Stone<3> small = ball({{0.8, 0.5, 0.5}}, 1.1), large = ball({{0.5, 0.5, 0.5}}, 1.2);
   EXPECT_EQ(by_fit({small, large}), only({{0, 1}, {4, 0}}));
   EXPECT_EQ(by_fit({large, small}), only({{0, 0}, {4, 1}}));
   // the second has no other cell, so that the cell that is covered most of the others follows
-  const Grain<3> within = ball({{0.5, 0.5, 0.5}}, 0.9);
+  const Stone<3> within = ball({{0.5, 0.5, 0.5}}, 0.9);
   EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.0), within}), only({{0, 0}}));
   EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.2), within, within}), only({{0, 0}, {4, 0}}));
 }
@@ -181,23 +181,23 @@ TEST(Superpose, ByFitTheMostCoveredCellsFollow) {
   const Cubes cubes;
   // an eighth of a ball of 4.19 m³ in each cell: four cells come nearest
   const auto even = cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0)}, Superposition::fit);
-  EXPECT_EQ(std::ranges::count(even.grain, 0), 4);
+  EXPECT_EQ(std::ranges::count(even.stone, 0), 4);
   EXPECT_NEAR(even.covered_fraction, std::numbers::pi / 6.0, 1e-9);
   // moved towards x: the four cells there have more
-  const std::vector<Grain<3>> beside{ball({{1.05, 1.0, 1.0}}, 2.0)};
+  const std::vector<Stone<3>> beside{ball({{1.05, 1.0, 1.0}}, 2.0)};
   const auto moved = cubes.superposed(beside, Superposition::fit);
-  EXPECT_EQ(moved.grain, only({{4, 0}, {5, 0}, {6, 0}, {7, 0}}));
-  EXPECT_EQ(cubes.superposed(beside, Superposition::area, moved.covered_fraction).grain, moved.grain);
+  EXPECT_EQ(moved.stone, only({{4, 0}, {5, 0}, {6, 0}, {7, 0}}));
+  EXPECT_EQ(cubes.superposed(beside, Superposition::area, moved.covered_fraction).stone, moved.stone);
   // towards one corner, with 5.58 m³: six cells, but for the one across and the first beside it
   const auto to_corner = cubes.superposed({ball({{1.1, 1.1, 1.1}}, 2.2)}, Superposition::fit);
-  EXPECT_EQ(std::ranges::count(to_corner.grain, 0), 6);
-  EXPECT_EQ(to_corner.grain[0], -1);
-  EXPECT_EQ(to_corner.grain[7], 0);
+  EXPECT_EQ(std::ranges::count(to_corner.stone, 0), 6);
+  EXPECT_EQ(to_corner.stone[0], -1);
+  EXPECT_EQ(to_corner.stone[7], 0);
   // with another ball beside, each cell is of the one that covers most of it
   const auto two =
       cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0), ball({{0.5, 0.5, 0.5}}, 1.3)}, Superposition::fit);
-  EXPECT_EQ(two.grain[0], 1);
-  EXPECT_EQ(std::ranges::count(two.grain, 0), 4);
+  EXPECT_EQ(two.stone[0], 1);
+  EXPECT_EQ(std::ranges::count(two.stone, 0), 4);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Promise: seeds stand in pairs on both sides of a grain's surface, and all have the same power there, so
+// Promise: seeds stand in pairs on both sides of a stone's surface, and all have the same power there, so
 // that the edge between two of them is a tangent. Lengths are in spacings.
-#include "pyroclast/specimen/grain_seeds.hpp"
+#include "pyroclast/specimen/stone_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "examples.hpp"
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -19,44 +19,44 @@ constexpr double kRounding = 1e-9;
 /// Distance of a seed from the surface, and power of the surface.
 constexpr double kOffset = 0.4, kPower = 0.25 - kOffset * kOffset;
 
-/// Seeds around grains in a square of 20, unless a test says another body.
+/// Seeds around stones in a square of 20, unless a test says another body.
 struct Made {
-  explicit Made(std::vector<Grain<2>> all, const BlockSizes& block_sizes = BlockSizes(1.0),
+  explicit Made(std::vector<Stone<2>> all, const BlockSizes& block_sizes = BlockSizes(1.0),
                 std::vector<WayToFollow> ways = {}, Region body = Region::rectangle(20.0, 20.0))
-      : grains(std::move(all)),
+      : stones(std::move(all)),
         sizes(block_sizes),
         region(std::move(body)),
         outline(region, sizes),
-        seeds(grains, ways.empty() ? std::vector<WayToFollow>(grains.size()) : ways, region, &outline,
+        seeds(stones, ways.empty() ? std::vector<WayToFollow>(stones.size()) : ways, region, &outline,
               sizes) {}
 
-  /// Seeds of a grain; -1: those between grains.
-  std::vector<std::size_t> of(int grain) const {
+  /// Seeds of a stone; -1: those between stones.
+  std::vector<std::size_t> of(int stone) const {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < seeds.owners().size(); ++i)
-      if (seeds.owners()[i] == grain) found.push_back(i);
+      if (seeds.owners()[i] == stone) found.push_back(i);
     return found;
   }
   double from(const Vec<2>& centre, std::size_t seed) const { return norm(seeds.positions()[seed] - centre); }
   double radius(std::size_t seed) const { return seeds.radii()[seed]; }
 
-  std::vector<Grain<2>> grains;
+  std::vector<Stone<2>> stones;
   BlockSizes sizes;
   Region region;
   OutlineSeeds outline;
-  GrainSeeds<2> seeds;
+  StoneSeeds<2> seeds;
 };
 
 const Vec<2> kMiddle{{10.0, 10.0}};
 
-Grain<2> circle(double radius, const Vec<2>& centre = kMiddle) {
+Stone<2> circle(double radius, const Vec<2>& centre = kMiddle) {
   return {centre, 2.0 * radius, 0, 0, nullptr};
 }
 
 /// A rectangle around the middle.
-Grain<2> rectangle(double width, double height) {
+Stone<2> rectangle(double width, double height) {
   const double a = 0.5 * width, b = 0.5 * height;
-  return grain_of({{{10 - a, 10 - b}}, {{10 + a, 10 - b}}, {{10 + a, 10 + b}}, {{10 - a, 10 + b}}});
+  return stone_of({{{10 - a, 10 - b}}, {{10 + a, 10 - b}}, {{10 + a, 10 + b}}, {{10 - a, 10 + b}}});
 }
 
 /// Returns the radius of the circle whose tangents at so many even points enclose the area of a circle.
@@ -70,7 +70,7 @@ std::size_t count_around(double radius, double apart = 0.9) {
   return static_cast<std::size_t>(std::lround(2.0 * std::numbers::pi * radius / apart));
 }
 
-TEST(GrainSeeds, OfALargeGrainStandInPairsAcrossItsSurface) {
+TEST(StoneSeeds, OfALargeStoneStandInPairsAcrossItsSurface) {
   const Made made({circle(4.0)});
   EXPECT_FALSE(made.seeds.is_one_cell(0));
   const auto within = made.of(0), around = made.of(-1);
@@ -88,21 +88,21 @@ TEST(GrainSeeds, OfALargeGrainStandInPairsAcrossItsSurface) {
   }
 }
 
-// Promise: a grain is followed as much larger as its way says.
-TEST(GrainSeeds, AGrainIsFollowedLargerByItsWay) {
+// Promise: a stone is followed as much larger as its way says.
+TEST(StoneSeeds, AStoneIsFollowedLargerByItsWay) {
   const Made made({circle(4.0)}, BlockSizes(1.0), {{.size = 1.1}});
   EXPECT_NEAR(made.from(kMiddle, made.of(-1)[0]), 1.1 * drawn(4.0, count_around(4.0)) + kOffset, kRounding);
 }
 
-// Promise: the tangents of a small grain enclose at most a quarter more than 1 times its size, whatever they
+// Promise: the tangents of a small stone enclose at most a quarter more than 1 times its size, whatever they
 // are.
-TEST(GrainSeeds, ATriangleIsDrawnSmallerByAQuarterAtMost) {
-  const Grain<2> triangle = grain_of({{{9, 9.5}}, {{11, 9.5}}, {{10, 11}}});
+TEST(StoneSeeds, ATriangleIsDrawnSmallerByAQuarterAtMost) {
+  const Stone<2> triangle = stone_of({{{9, 9.5}}, {{11, 9.5}}, {{10, 11}}});
   const Made made({triangle});
-  EXPECT_GE(made.seeds.grain_at(triangle.centre + Vec<2>{{0.0, 0.79}}), 0);  // the top stands 1 above
+  EXPECT_GE(made.seeds.stone_at(triangle.centre + Vec<2>{{0.0, 0.79}}), 0);  // the top stands 1 above
 }
 
-TEST(GrainSeeds, ASmallGrainIsOneCellWithTangentsAroundIt) {
+TEST(StoneSeeds, ASmallStoneIsOneCellWithTangentsAroundIt) {
   for (const double radius : {0.3, 1.0, 1.45}) {
     const Made made({circle(radius)});
     EXPECT_TRUE(made.seeds.is_one_cell(0));
@@ -123,10 +123,10 @@ TEST(GrainSeeds, ASmallGrainIsOneCellWithTangentsAroundIt) {
   EXPECT_FALSE(Made({circle(1.55)}).seeds.is_one_cell(0));
 }
 
-// Promise: a grain in which a free seed would seldom find a place has one in its middle, by its inner radius.
-TEST(GrainSeeds, AGrainOfMiddleSizeHasASeedInItsMiddle) {
-  const auto in_middle = [](const Grain<2>& grain) {
-    const Made made({grain});
+// Promise: a stone in which a free seed would seldom find a place has one in its middle, by its inner radius.
+TEST(StoneSeeds, AStoneOfMiddleSizeHasASeedInItsMiddle) {
+  const auto in_middle = [](const Stone<2>& stone) {
+    const Made made({stone});
     const auto own = made.of(0);
     return std::ranges::any_of(own, [&](std::size_t i) {
       return made.from(kMiddle, i) < kRounding && std::abs(made.radius(i) - 0.5) < kRounding;
@@ -142,7 +142,7 @@ TEST(GrainSeeds, AGrainOfMiddleSizeHasASeedInItsMiddle) {
 
 // Promise: the four sides of a small square have a tangent each, in pairs of seeds as they are, with one seed
 // where it must be one.
-TEST(GrainSeeds, ASmallSquareHasATangentForEachSide) {
+TEST(StoneSeeds, ASmallSquareHasATangentForEachSide) {
   const double half = 0.5;
   const Made pairs({rectangle(2 * half, 2 * half)});
   const double within = std::min(kOffset, 0.5 * half);
@@ -165,12 +165,12 @@ TEST(GrainSeeds, ASmallSquareHasATangentForEachSide) {
     EXPECT_NEAR(one.radius(i), std::sqrt(power - half * half + kOffset * kOffset), kRounding);
   }
   EXPECT_TRUE(Made({rectangle(8.0, 1.0)}, BlockSizes(1.0), {{.is_of_one_seed = true}}).of(0).size() > 1)
-      << "a large grain has many";
+      << "a large stone has many";
 }
 
 // Promise: the sides of a large rectangle have their seeds beside them, however many: tangents in a line
 // enclose it.
-TEST(GrainSeeds, StraightSidesAreTheirTangents) {
+TEST(StoneSeeds, StraightSidesAreTheirTangents) {
   const Made made({rectangle(8.0, 5.0)});
   ASSERT_GT(made.of(-1).size(), 20U);
   for (const std::size_t i : made.of(-1)) {
@@ -182,14 +182,14 @@ TEST(GrainSeeds, StraightSidesAreTheirTangents) {
 }
 
 // Promise: an octagon is as round as a circle and has one seed, a hexagon is not.
-TEST(GrainSeeds, ARoundGrainOfCornersHasOneSeed) {
+TEST(StoneSeeds, ARoundStoneOfCornersHasOneSeed) {
   const auto count = [](int corners) {
     std::vector<Vec<2>> all;
     for (int i = 0; i < corners; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / corners;
       all.push_back(kMiddle + Vec<2>{{std::cos(angle), std::sin(angle)}});
     }
-    return Made({grain_of(all)}).of(0).size();
+    return Made({stone_of(all)}).of(0).size();
   };
   EXPECT_EQ(count(8), 1U);  // 1 / cos(pi / 8) = 1.08
   EXPECT_GE(count(6), 6U);  // 1 / cos(pi / 6) = 1.155
@@ -214,9 +214,9 @@ struct Pair {
   Made made;
 };
 
-// Promise: seeds between grains stand as far from one surface as from the other where the gap has room for
+// Promise: seeds between stones stand as far from one surface as from the other where the gap has room for
 // one row alone, and all seeds have the power of the nearest surface.
-TEST(GrainSeeds, ANarrowGapHasOneRowInItsMiddle) {
+TEST(StoneSeeds, ANarrowGapHasOneRowInItsMiddle) {
   for (const double gap : {0.5, 1.3}) {
     const Pair pair(gap);
     int shared = 0;
@@ -228,21 +228,21 @@ TEST(GrainSeeds, ANarrowGapHasOneRowInItsMiddle) {
         ++shared;
       else
         EXPECT_NEAR(nearest, kOffset, kRounding);
-      // the seeds across the gap, in both grains
+      // the seeds across the gap, in both stones
       if (std::abs(a - b) > kRounding) continue;
-      for (const int grain : {0, 1}) {
-        const auto own = pair.made.of(grain);
+      for (const int stone : {0, 1}) {
+        const auto own = pair.made.of(stone);
         EXPECT_TRUE(std::ranges::any_of(own, [&](std::size_t j) {
           return norm(pair.made.seeds.positions()[j] - pair.made.seeds.positions()[i]) <
                  nearest + kOffset + 0.1;
-        })) << grain;
+        })) << stone;
       }
     }
     EXPECT_GE(shared, 1) << gap;
   }
 }
 
-TEST(GrainSeeds, AWideGapHasTwoRows) {
+TEST(StoneSeeds, AWideGapHasTwoRows) {
   const Pair pair(1.5);
   for (const std::size_t i : pair.made.of(-1)) {
     const auto [a, b] = pair.away(i);
@@ -250,8 +250,8 @@ TEST(GrainSeeds, AWideGapHasTwoRows) {
   }
 }
 
-// Promise: seeds outside of grains keep 0.45 from each other, and none stands in a grain.
-TEST(GrainSeeds, SeedsBetweenGrainsKeepTheirDistance) {
+// Promise: seeds outside of stones keep 0.45 from each other, and none stands in a stone.
+TEST(StoneSeeds, SeedsBetweenStonesKeepTheirDistance) {
   double nearest = std::numeric_limits<double>::infinity(), sum = 0.0;
   std::size_t count = 0;
   for (int turn = 0; turn < 30; ++turn) {
@@ -260,12 +260,12 @@ TEST(GrainSeeds, SeedsBetweenGrainsKeepTheirDistance) {
     const Made made({circle(1.8), circle(1.0, kMiddle + 3.2 * beside), circle(0.8, kMiddle + 3.0 * across),
                      circle(0.5, kMiddle + 1.9 * (beside + across))});
     for (std::size_t i = 0; i < made.seeds.radii().size(); ++i)
-      sum += made.radius(i) * norm(made.seeds.positions()[i] - made.grains[1].centre);
+      sum += made.radius(i) * norm(made.seeds.positions()[i] - made.stones[1].centre);
     count += made.seeds.radii().size();
     const auto between = made.of(-1);
     for (std::size_t i = 0; i < between.size(); ++i) {
       const Vec<2>& place = made.seeds.positions()[between[i]];
-      EXPECT_EQ(made.seeds.grain_at(place), -1);
+      EXPECT_EQ(made.seeds.stone_at(place), -1);
       for (std::size_t j = 0; j < i; ++j)
         nearest = std::min(nearest, norm(place - made.seeds.positions()[between[j]]));
     }
@@ -277,9 +277,9 @@ TEST(GrainSeeds, SeedsBetweenGrainsKeepTheirDistance) {
   EXPECT_NEAR(sum, 2106.443354836, 1e-8);
 }
 
-// Promise: beside a side of the body the seeds stand midway between the side and the grain; where the side
-// cuts the grain, its own seeds end there and none stands beyond.
-TEST(GrainSeeds, BesideASideSeedsStandMidway) {
+// Promise: beside a side of the body the seeds stand midway between the side and the stone; where the side
+// cuts the stone, its own seeds end there and none stands beyond.
+TEST(StoneSeeds, BesideASideSeedsStandMidway) {
   const std::size_t count = count_around(4.0);
   const double surface = drawn(4.0, count);
   const Made made({circle(4.0, {{surface + 0.5, 10.0}})});
@@ -295,8 +295,8 @@ TEST(GrainSeeds, BesideASideSeedsStandMidway) {
   EXPECT_EQ(made.of(0).size(), count);
 }
 
-TEST(GrainSeeds, AGrainThatASideCutsEndsThere) {
-  const Made made({grain_of({{{0, 7}}, {{4, 7}}, {{4, 13}}, {{0, 13}}})});
+TEST(StoneSeeds, AStoneThatASideCutsEndsThere) {
+  const Made made({stone_of({{{0, 7}}, {{4, 7}}, {{4, 13}}, {{0, 13}}})});
   for (std::size_t i = 0; i < made.seeds.owners().size(); ++i) {
     const Vec<2>& place = made.seeds.positions()[i];
     EXPECT_GT(place[0], 0.0);
@@ -313,7 +313,7 @@ TEST(GrainSeeds, AGrainThatASideCutsEndsThere) {
 
 // Promise: where blocks become larger along a surface, each seed has the offset and the radius of the blocks
 // there.
-TEST(GrainSeeds, FollowTheSizesOfBlocksAlongASurface) {
+TEST(StoneSeeds, FollowTheSizesOfBlocksAlongASurface) {
   const BlockSizes sizes(1.0, 1.5, {{.pieces = {{{{0, 0}}, {{0, 20}}}}, .size = 0.6, .distance = 5.0}});
   const Made made({circle(5.0)}, sizes);
   double least = 2.0, most = 0.0, surface = 0.0;
@@ -340,8 +340,8 @@ TEST(GrainSeeds, FollowTheSizesOfBlocksAlongASurface) {
   EXPECT_NEAR(static_cast<double>(made.of(0).size()), steps / 0.9, 1.0);
 }
 
-// Promise: another seed keeps clear of both sides of a surface, and out of a grain of one cell.
-TEST(GrainSeeds, LeaveRoomAwayFromSurfaces) {
+// Promise: another seed keeps clear of both sides of a surface, and out of a stone of one cell.
+TEST(StoneSeeds, LeaveRoomAwayFromSurfaces) {
   const Made made({circle(4.0), circle(1.0, {{3.0, 3.0}})});
   const double surface = drawn(4.0, count_around(4.0));
   const auto at = [&](double from_middle) { return kMiddle + Vec<2>{{0.0, from_middle}}; };
@@ -351,9 +351,9 @@ TEST(GrainSeeds, LeaveRoomAwayFromSurfaces) {
   }
   EXPECT_TRUE(made.seeds.leave_room_at(at(0.0), 0.3));
   EXPECT_FALSE(made.seeds.leave_room_at({{3.0, 3.0}}, 0.3));
-  EXPECT_EQ(made.seeds.grain_at({{3.0, 3.0}}), 1);
-  EXPECT_EQ(made.seeds.grain_at(at(surface - 0.01)), 0);
-  EXPECT_EQ(made.seeds.grain_at(at(surface + 0.01)), -1);
+  EXPECT_EQ(made.seeds.stone_at({{3.0, 3.0}}), 1);
+  EXPECT_EQ(made.seeds.stone_at(at(surface - 0.01)), 0);
+  EXPECT_EQ(made.seeds.stone_at(at(surface + 0.01)), -1);
   const Made fine({circle(4.0)}, BlockSizes(0.5));
   EXPECT_FALSE(fine.seeds.leave_room_at(at(drawn(4.0, count_around(4.0, 0.45)) + 0.14), 0.3));
   EXPECT_TRUE(fine.seeds.leave_room_at(at(drawn(4.0, count_around(4.0, 0.45)) + 0.16), 0.3));

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "pyroclast/base/sort_unique.hpp"
-#include "pyroclast/specimen/grain.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 
 /// Round stones in a box, found by place: each is listed in every bin that its bounding box touches.
 template <int Dim>
-class GrainGrid {
+class StoneGrid {
  public:
   /// Makes a grid over a box.
   /// \param bin  edge of its bins, about, m
-  GrainGrid(const Vec<Dim>& low, const Vec<Dim>& high, double bin) : low_(low), bin_(bin) {
+  StoneGrid(const Vec<Dim>& low, const Vec<Dim>& high, double bin) : low_(low), bin_(bin) {
     std::size_t bins = 1;
     for (int d = 0; d < Dim; ++d) {
       count_[d] = std::max(1, static_cast<int>(std::ceil((high[d] - low[d]) / bin)));
@@ -26,12 +26,12 @@ class GrainGrid {
     bins_.resize(bins);
   }
   /// Makes a grid over a box for stones, and inserts them. Its bins are twice as wide as the smallest.
-  GrainGrid(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const Grain<Dim>> stones)
-      : GrainGrid(low, high, bin_for(low, high, stones)) {
-    for (const Grain<Dim>& stone : stones) insert(stone);
+  StoneGrid(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const Stone<Dim>> stones)
+      : StoneGrid(low, high, bin_for(low, high, stones)) {
+    for (const Stone<Dim>& stone : stones) insert(stone);
   }
 
-  void insert(const Grain<Dim>& stone) {
+  void insert(const Stone<Dim>& stone) {
     const int number = static_cast<int>(stones_.size());
     stones_.push_back(stone);
     for_each_bin(bins_, reach(stone, 0.0), [&](std::vector<int>& bin) {
@@ -41,7 +41,7 @@ class GrainGrid {
   }
 
   /// Tells whether a stone comes closer than `gap` to this one (m).
-  bool overlaps(const Grain<Dim>& stone, double gap) const {
+  bool overlaps(const Stone<Dim>& stone, double gap) const {
     const auto are_all_away = [&](auto is_closer) {
       return for_each_bin(bins_, reach(stone, gap), [&](const std::vector<int>& bin) {
         return std::ranges::none_of(bin, [&](int number) { return is_closer(stone, stones_[number], gap); });
@@ -61,18 +61,18 @@ class GrainGrid {
     sort_unique(found);
   }
 
-  const std::vector<Grain<Dim>>& stones() const { return stones_; }
+  const std::vector<Stone<Dim>>& stones() const { return stones_; }
 
  private:
   struct Reach {
     Vec<Dim> lower, upper;
   };
-  static double bin_for(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const Grain<Dim>> stones) {
+  static double bin_for(const Vec<Dim>& low, const Vec<Dim>& high, std::span<const Stone<Dim>> stones) {
     double bin = norm(high - low);
-    for (const Grain<Dim>& stone : stones) bin = std::min(bin, 2.0 * stone.diameter);
+    for (const Stone<Dim>& stone : stones) bin = std::min(bin, 2.0 * stone.diameter);
     return bin;
   }
-  static Reach reach(const Grain<Dim>& stone, double gap) {
+  static Reach reach(const Stone<Dim>& stone, double gap) {
     Vec<Dim> radius;
     radius.c.fill(specimen::reach(stone) + gap);
     return {stone.centre - radius, stone.centre + radius};
@@ -107,7 +107,7 @@ class GrainGrid {
   double bin_;
   std::array<int, Dim> count_;
   std::vector<std::vector<int>> bins_;
-  std::vector<Grain<Dim>> stones_;
+  std::vector<Stone<Dim>> stones_;
 };
 
 }  // namespace pyroclast::specimen

@@ -1,13 +1,13 @@
-#include "pyroclast/specimen/grain_seeds.hpp"
+#include "pyroclast/specimen/stone_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "pyroclast/specimen/grain.hpp"
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -15,31 +15,31 @@ namespace {
 // Lengths are in spacings.
 constexpr double kFromSurface = 0.4;   ///< distance of a seed from the surface
 constexpr double kAlongSurface = 0.9;  ///< distance from seed to seed along the surface
-/// Half of the gap below which two grains share a row of seeds: wider ones have room for two.
+/// Half of the gap below which two stones share a row of seeds: wider ones have room for two.
 constexpr double kNarrow = 0.7;
-/// Radius below which the cells of a grain become one; in space it has one seed.
+/// Radius below which the cells of a stone become one; in space it has one seed.
 template <int Dim>
 constexpr double kOneCell = Dim == 2 ? 1.5 : 1.1;
-/// Least number of tangents around a grain of one cell.
+/// Least number of tangents around a stone of one cell.
 constexpr int kFewestTangents = 7;
-/// The same where a grain has corners, and its sides one tangent each: two in a line would make a flat
+/// The same where a stone has corners, and its sides one tangent each: two in a line would make a flat
 /// corner.
 constexpr int kFewestSides = 4;
 /// Largest distance of tangents around a stone of one cell in space, over its radius: some 16 tangents. Where
 /// it has sides, of one of them alone: each side has a tangent, unless larger ones are near.
 constexpr double kOfOneTangent = 0.95, kOfOneSide = 1.2;
-/// Radius of the ball around a small grain over that within it up to which the grain has one seed.
+/// Radius of the ball around a small stone over that within it up to which the stone has one seed.
 constexpr double kRound = 1.15;
-/// Least distance between two seeds outside of grains.
+/// Least distance between two seeds outside of stones.
 constexpr double kApartBetween = 0.45;
-/// Radii within a grain between which it has a seed in the middle: a free seed would seldom find the place.
+/// Radii within a stone between which it has a seed in the middle: a free seed would seldom find the place.
 template <int Dim>
 constexpr double kFewestAround = Dim == 2 ? 1.3 : 0.0;
 constexpr double kMiddle = 2.0;
 /// Halvings of the gap in the search for its middle.
 template <int Dim>
 constexpr int kHalvingsOfGap = Dim == 2 ? 40 : 20;
-/// Distance of a grain's surface from the outline of the body up to which the outline cuts the grain.
+/// Distance of a stone's surface from the outline of the body up to which the outline cuts the stone.
 constexpr double kCut = 1e-3;
 /// Power of a point of the surface, in squared spacings: with it a seed at the offset has a radius of 0.5.
 constexpr double kPower = 0.25 - kFromSurface * kFromSurface;
@@ -88,32 +88,32 @@ double distance_before_cuts(const Prism& body, const Vec<3>& place) {
 }  // namespace
 
 template <int Dim>
-GrainSeeds<Dim>::GrainSeeds(std::span<const Grain<Dim>> grains, std::span<const Way> ways,
+StoneSeeds<Dim>::StoneSeeds(std::span<const Stone<Dim>> stones, std::span<const Way> ways,
                             const OutlineOf<Dim>& region, const OutlineSeeds* outline,
                             const BlockSizes& sizes)
     : region_(region),
       outline_(outline),
       sizes_(sizes),
-      grid_(region.low(), region.high(), grains),
+      grid_(region.low(), region.high(), stones),
       between_(region.low(), region.high(), sizes.mean()) {
-  for (std::size_t i = 0; i < grains.size(); ++i) grains_.push_back(followed(grains[i], ways[i]));
-  std::vector<int> order(grains_.size());
+  for (std::size_t i = 0; i < stones.size(); ++i) stones_.push_back(followed(stones[i], ways[i]));
+  std::vector<int> order(stones_.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, std::greater<>(), [&](int i) { return grains_[i].shape->extent(); });
+  std::ranges::stable_sort(order, std::greater<>(), [&](int i) { return stones_[i].shape->extent(); });
   for (const int number : order) follow(number);
 }
 
 template <int Dim>
-typename GrainSeeds<Dim>::Followed GrainSeeds<Dim>::followed(const Grain<Dim>& grain, const Way& way) const {
-  std::shared_ptr<const Surface<Dim>> shape = grain.shape;
-  if (!shape) shape = std::make_shared<Ball<Dim>>(0.5 * grain.diameter);
-  const double radius = radius_of<Dim>(shape->extent()), spacing = sizes_.at(grain.centre);
-  Followed result{grain.centre, shape, radius < kOneCell<Dim> * spacing, spacing};
+typename StoneSeeds<Dim>::Followed StoneSeeds<Dim>::followed(const Stone<Dim>& stone, const Way& way) const {
+  std::shared_ptr<const Surface<Dim>> shape = stone.shape;
+  if (!shape) shape = std::make_shared<Ball<Dim>>(0.5 * stone.diameter);
+  const double radius = radius_of<Dim>(shape->extent()), spacing = sizes_.at(stone.centre);
+  Followed result{stone.centre, shape, radius < kOneCell<Dim> * spacing, spacing};
   if (!result.is_one_cell)
     result.along = kAlongSurface * spacing;
   else if (shape->corner_count() > 0)
     result.along = Dim == 2 ? shape->size() / kFewestSides : kOfOneSide * radius;
-  else  // seeds outside of the grain are as far from each other as those along a large one
+  else  // seeds outside of the stone are as far from each other as those along a large one
     result.along = std::min(kAlongSurface * spacing * radius / (radius + kFromSurface * spacing),
                             Dim == 2 ? shape->size() / kFewestTangents : kOfOneTangent * radius);
   const double larger = larger_by_tangents(*shape, result.along, spacing_over(result));
@@ -125,44 +125,44 @@ typename GrainSeeds<Dim>::Followed GrainSeeds<Dim>::followed(const Grain<Dim>& g
   return result;
 }
 
-/// Returns how the distance of seeds along a grain changes; empty where it does not. A grain of one cell has
+/// Returns how the distance of seeds along a stone changes; empty where it does not. A stone of one cell has
 /// tangents that are alike.
 template <int Dim>
-typename Surface<Dim>::Relative GrainSeeds<Dim>::spacing_over(const Followed& grain) const {
-  if (sizes_.is_even() || grain.is_one_cell) return {};
-  return [this, centre = grain.centre, spacing = grain.spacing](const Vec<Dim>& place) {
+typename Surface<Dim>::Relative StoneSeeds<Dim>::spacing_over(const Followed& stone) const {
+  if (sizes_.is_even() || stone.is_one_cell) return {};
+  return [this, centre = stone.centre, spacing = stone.spacing](const Vec<Dim>& place) {
     return sizes_.at(centre + place) / spacing;
   };
 }
 
 template <int Dim>
-void GrainSeeds<Dim>::follow(int number) {
-  Followed& grain = grains_[number];
-  const double inner = grain.shape->inner_radius() / grain.spacing;
-  if (!grain.is_one_cell && inner > kFewestAround<Dim> && inner < kMiddle)
-    add(grain.centre, 0.25 * grain.spacing * grain.spacing, number);
-  if (grain.power > 0.0) add(grain.centre, grain.power, number);
+void StoneSeeds<Dim>::follow(int number) {
+  Followed& stone = stones_[number];
+  const double inner = stone.shape->inner_radius() / stone.spacing;
+  if (!stone.is_one_cell && inner > kFewestAround<Dim> && inner < kMiddle)
+    add(stone.centre, 0.25 * stone.spacing * stone.spacing, number);
+  if (stone.power > 0.0) add(stone.centre, stone.power, number);
   std::vector<Vec<Dim>> taken;
-  for (const Vec<Dim>& foot : grain.feet) taken.push_back(foot - grain.centre);
-  for (const auto& [at, normal] : grain.shape->points(grain.along, taken, spacing_over(grain))) {
-    const Foot foot{grain.centre + at, normal};
-    grain.feet.push_back(foot.at);
-    if (distance_before_cuts(region_, grain.centre + at * (1.0 / grain.drawn)) > -kCut * grain.spacing) {
+  for (const Vec<Dim>& foot : stone.feet) taken.push_back(foot - stone.centre);
+  for (const auto& [at, normal] : stone.shape->points(stone.along, taken, spacing_over(stone))) {
+    const Foot foot{stone.centre + at, normal};
+    stone.feet.push_back(foot.at);
+    if (distance_before_cuts(region_, stone.centre + at * (1.0 / stone.drawn)) > -kCut * stone.spacing) {
       add_within(number, foot);
       continue;
     }
     const auto [half, other] = gap_from(number, foot);
-    if (grain.power > 0.0) {
+    if (stone.power > 0.0) {
       // the edge to the one seed is the tangent, wherever on its normal the other seed stands
       const double support = dot(at, normal);
-      add_between(grain.centre + (support + half) * normal, grain.power - support * support + half * half);
+      add_between(stone.centre + (support + half) * normal, stone.power - support * support + half * half);
     } else {
       const double spacing = sizes_.at(foot.at);
       add_within(number, foot);
       add_between(foot.at + half * normal, half * half + kPower * spacing * spacing);
     }
     if (other < 0) continue;
-    Followed& beside = grains_[other];
+    Followed& beside = stones_[other];
     const Foot across = nearest(other, foot.at + half * normal);
     const double along = beside.is_one_cell ? beside.along : kAlongSurface * sizes_.at(across.at);
     const bool is_free = std::ranges::none_of(
@@ -174,7 +174,7 @@ void GrainSeeds<Dim>::follow(int number) {
 }
 
 template <int Dim>
-typename GrainSeeds<Dim>::Gap GrainSeeds<Dim>::gap_from(int number, const Foot& foot) const {
+typename StoneSeeds<Dim>::Gap StoneSeeds<Dim>::gap_from(int number, const Foot& foot) const {
   const double spacing = sizes_.at(foot.at), most = kNarrow * spacing;
   Gap gap{most, -1};
   // the place on the normal that is as far from another surface as from the foot
@@ -198,24 +198,24 @@ typename GrainSeeds<Dim>::Gap GrainSeeds<Dim>::gap_from(int number, const Foot& 
 }
 
 template <int Dim>
-typename GrainSeeds<Dim>::Foot GrainSeeds<Dim>::nearest(int number, const Vec<Dim>& place) const {
-  const auto found = grains_[number].shape->nearest(place - grains_[number].centre);
-  return {grains_[number].centre + found.point.at, found.point.normal};
+typename StoneSeeds<Dim>::Foot StoneSeeds<Dim>::nearest(int number, const Vec<Dim>& place) const {
+  const auto found = stones_[number].shape->nearest(place - stones_[number].centre);
+  return {stones_[number].centre + found.point.at, found.point.normal};
 }
 
 template <int Dim>
-double GrainSeeds<Dim>::distance(int number, const Vec<Dim>& place) const {
-  return grains_[number].shape->nearest(place - grains_[number].centre).distance;
+double StoneSeeds<Dim>::distance(int number, const Vec<Dim>& place) const {
+  return stones_[number].shape->nearest(place - stones_[number].centre).distance;
 }
 
-/// Tells whether a place is farther from a grain than a distance (m), as the ball around the grain tells.
+/// Tells whether a place is farther from a stone than a distance (m), as the ball around the stone tells.
 template <int Dim>
-bool GrainSeeds<Dim>::is_surely_farther(int number, const Vec<Dim>& place, double distance) const {
-  return norm(place - grains_[number].centre) - grains_[number].shape->bounding_radius() > distance;
+bool StoneSeeds<Dim>::is_surely_farther(int number, const Vec<Dim>& place, double distance) const {
+  return norm(place - stones_[number].centre) - stones_[number].shape->bounding_radius() > distance;
 }
 
 template <int Dim>
-std::vector<int> GrainSeeds<Dim>::near(const Vec<Dim>& place, double distance) const {
+std::vector<int> StoneSeeds<Dim>::near(const Vec<Dim>& place, double distance) const {
   std::vector<int> numbers;
   Vec<Dim> half;
   half.c.fill(distance);
@@ -224,7 +224,7 @@ std::vector<int> GrainSeeds<Dim>::near(const Vec<Dim>& place, double distance) c
 }
 
 template <int Dim>
-bool GrainSeeds<Dim>::add(const Vec<Dim>& place, double square, int owner) {
+bool StoneSeeds<Dim>::add(const Vec<Dim>& place, double square, int owner) {
   if constexpr (Dim == 2)
     if (!region_.is_rectangle() && !outline_->leave_room_at(place)) return false;
   if (region_.distance(place) >= 0.0) return false;
@@ -235,40 +235,40 @@ bool GrainSeeds<Dim>::add(const Vec<Dim>& place, double square, int owner) {
 }
 
 template <int Dim>
-void GrainSeeds<Dim>::add_within(int number, const Foot& foot) {
-  if (grains_[number].power > 0.0) return;
+void StoneSeeds<Dim>::add_within(int number, const Foot& foot) {
+  if (stones_[number].power > 0.0) return;
   const double spacing = sizes_.at(foot.at);
-  const double within = std::min(kFromSurface * spacing, 0.5 * grains_[number].shape->inner_radius());
+  const double within = std::min(kFromSurface * spacing, 0.5 * stones_[number].shape->inner_radius());
   add(foot.at - within * foot.normal, within * within + kPower * spacing * spacing, number);
 }
 
 template <int Dim>
-void GrainSeeds<Dim>::add_between(const Vec<Dim>& place, double square) {
-  if (grain_at(place) >= 0) return;
+void StoneSeeds<Dim>::add_between(const Vec<Dim>& place, double square) {
+  if (stone_at(place) >= 0) return;
   const double apart = kApartBetween * sizes_.at(place);
   if (between_.overlaps({place, 0.0}, apart)) return;
   if (add(place, square, -1)) between_.insert({place, 0.0});
 }
 
 template <int Dim>
-int GrainSeeds<Dim>::grain_at(const Vec<Dim>& place) const {
+int StoneSeeds<Dim>::stone_at(const Vec<Dim>& place) const {
   for (const int number : near(place, 0.0))
     if (!is_surely_farther(number, place, 0.0) && distance(number, place) < 0.0) return number;
   return -1;
 }
 
 template <int Dim>
-bool GrainSeeds<Dim>::leave_room_at(const Vec<Dim>& place, double clear) const {
+bool StoneSeeds<Dim>::leave_room_at(const Vec<Dim>& place, double clear) const {
   const double away = clear * sizes_.at(place);
   for (const int number : near(place, away)) {
     if (is_surely_farther(number, place, away)) continue;
     const double outside = distance(number, place);
-    if (std::abs(outside) < away || (outside < 0.0 && grains_[number].is_one_cell)) return false;
+    if (std::abs(outside) < away || (outside < 0.0 && stones_[number].is_one_cell)) return false;
   }
   return true;
 }
 
-template class GrainSeeds<2>;
-template class GrainSeeds<3>;
+template class StoneSeeds<2>;
+template class StoneSeeds<3>;
 
 }  // namespace pyroclast::specimen

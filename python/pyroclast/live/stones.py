@@ -1,4 +1,4 @@
-"""Outlines of grains that are known, from a signed distance or an image of labels, as a table that decks read."""
+"""Outlines of stones that are known, from a signed distance or an image of labels, as a table that decks read."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _FEWEST_POINTS = 6
 
 
 @dataclass(frozen=True)
-class Grain:
-    """Grain in the plane by the points of its outline."""
+class FlatStone:
+    """Stone in the plane by the points of its outline."""
 
     outline: NDArray[np.float64]
     """Points of the outline, (n, 2), m; the last joins the first."""
@@ -43,21 +43,21 @@ class Grain:
         return float(np.linalg.norm(np.roll(self.outline, -1, axis=0) - self.outline, axis=1).sum())
 
 
-def grains_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low: Sequence[str | Quantity],
-                       high: Sequence[str | Quantity], spacing: str | Quantity, phase: int = 0) -> list[Grain]:
-    """Makes grains where a signed distance is negative: a line around each, its holes filled.
+def stones_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low: Sequence[str | Quantity],
+                       high: Sequence[str | Quantity], spacing: str | Quantity, phase: int = 0) -> list[FlatStone]:
+    """Makes stones where a signed distance is negative: a line around each, its holes filled.
 
-    distance: takes places (n, 2) in m and returns n distances, negative within a grain, in any unit. It is asked once,
-    here: what a deck reads is the table of `write_grains`.
+    distance: takes places (n, 2) in m and returns n distances, negative within a stone, in any unit. It is asked once,
+    here: what a deck reads is the table of `write_stones`.
     low, high: corners of the box in which it is asked, with their units (["0 mm", "0 mm"])
     spacing: distance of the places, with its unit: a tenth of a block size or less
     Raises Error where the function returns other shapes or values, is negative nowhere, is a mask of two values, or is
-    negative on the edge of the box, as where a grain reaches out or the distance is positive in grains. Warns of grains
+    negative on the edge of the box, as where a stone reaches out or the distance is positive in stones. Warns of stones
     that are too small for the spacing; they are left out.
     """
     if not callable(distance):
         raise Error(f"the distance is of the type {type(distance).__name__}, not a function of places; an image of "
-                    "labels, or a mask, belongs to grains_of_labels")
+                    "labels, or a mask, belongs to stones_of_labels")
     corners = [[length(f"{name}[{i}]", value, "0 mm", is_size=False) for i, value in enumerate(corner)]
                for name, corner in (("low", low), ("high", high))]
     step = length("spacing", spacing, "0.2 mm")
@@ -72,7 +72,7 @@ def grains_of_distance(distance: Callable[[NDArray[np.float64]], ArrayLike], low
     if values.shape != (len(places),):
         raise Error(f"the distance returned an array of {values.shape} for {len(places)} places; it must be "
                     f"({len(places)},)")
-    return _grains_below(x, y, _distances(values, places).reshape(len(y), len(x)), phase)
+    return _stones_below(x, y, _distances(values, places).reshape(len(y), len(x)), phase)
 
 
 def _distances(values: NDArray[Any], places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -85,18 +85,18 @@ def _distances(values: NDArray[Any], places: NDArray[np.float64]) -> NDArray[np.
     few = np.unique(values)
     if len(few) <= 2:
         raise Error(f"the distance has the value{'s' if len(few) > 1 else ''} {' and '.join(map(str, few.tolist()))} "
-                    "alone, as a mask has; a distance tells how far the surface is. Hand a mask to grains_of_labels, "
+                    "alone, as a mask has; a distance tells how far the surface is. Hand a mask to stones_of_labels, "
                     "as an image of labels, or make a distance of it by edt = scipy.ndimage.distance_transform_edt: "
                     "edt(~mask) - edt(mask)")
     if not few[0] < 0:
-        raise Error(f"the distance is negative nowhere, the least is {few[0]:.6g}: there is no grain. It must be "
-                    "negative within grains")
+        raise Error(f"the distance is negative nowhere, the least is {few[0]:.6g}: there is no stone. It must be "
+                    "negative within stones")
     return values.astype(float)
 
 
-def _grains_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArray[np.float64],
-                  phase: int) -> list[Grain]:
-    """Returns the grains where values on a grid are negative. Raises Error where they are on its edge."""
+def _stones_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArray[np.float64],
+                  phase: int) -> list[FlatStone]:
+    """Returns the stones where values on a grid are negative. Raises Error where they are on its edge."""
     on_edge = np.ones(values.shape, bool)
     on_edge[1:-1, 1:-1] = False
     out = np.argwhere(on_edge & (values < 0.0))
@@ -104,27 +104,27 @@ def _grains_below(x: NDArray[np.float64], y: NDArray[np.float64], values: NDArra
         row, column = out[0]
         turned = "" if np.any(values[on_edge] >= 0.0) else " all along"
         raise Error(f"the distance is negative on the edge of the box{turned}, at ({x[column]:.6g}, {y[row]:.6g}) m. "
-                    "Either a grain reaches out of the box: make the box larger. Or the distance is positive within "
-                    "grains: give its negative, lambda places: -distance(places)")
+                    "Either a stone reaches out of the box: make the box larger. Or the distance is positive within "
+                    "stones: give its negative, lambda places: -distance(places)")
     found = _outlines_below(x, y, values)
-    grains = [Grain(outline, phase) for outline in found if len(outline) >= _FEWEST_POINTS]
-    if len(grains) < len(found):
+    stones = [FlatStone(outline, phase) for outline in found if len(outline) >= _FEWEST_POINTS]
+    if len(stones) < len(found):
         places = [outline.mean(axis=0) for outline in found if len(outline) < _FEWEST_POINTS]
-        warnings.warn(f"{len(places)} grain{' is' if len(places) == 1 else 's are'} too small for the spacing and left "
+        warnings.warn(f"{len(places)} stone{' is' if len(places) == 1 else 's are'} too small for the spacing and left "
                       f"out, the first near ({places[0][0]:.6g}, {places[0][1]:.6g}) m: take a smaller spacing",
                       stacklevel=3)
-    return grains
+    return stones
 
 
-def grains_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, matrix: int = 0,
-                     phases: Mapping[Any, int | None] | None = None) -> list[Grain]:
-    """Makes grains of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own
+def stones_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, matrix: int = 0,
+                     phases: Mapping[Any, int | None] | None = None) -> list[FlatStone]:
+    """Makes stones of an image of labels: each connected part of a label is one, smoothed over a pixel, with its own
     area.
 
-    A hole in a grain, as a pore is in a stone of a scan, is filled: grains are whole. Smoothing cuts a neck of one
-    pixel, as segmentation leaves between stones that nearly touch: both sides become grains, and each gets the nearer
-    half of the neck's pixels. A grain that reaches the edge of the image ends there, on a straight line. Grains of two
-    labels that touch, as of a watershed, share the line between them; where other grains surround a small one, its area
+    A hole in a stone, as a pore is in a stone of a scan, is filled: stones are whole. Smoothing cuts a neck of one
+    pixel, as segmentation leaves between stones that nearly touch: both sides become stones, and each gets the nearer
+    half of the neck's pixels. A stone that reaches the edge of the image ends there, on a straight line. Stones of two
+    labels that touch, as of a watershed, share the line between them; where other stones surround a small one, its area
     may be some percent less than that of its pixels.
 
     image: (rows, columns) of labels, whole numbers, as an array or a file; row 0 is at the top
@@ -133,46 +133,46 @@ def grains_of_labels(image: ArrayLike | str | Path, pixel: str | Quantity, *, ma
     phases: the number of each other label's phase. A key may be several labels, as a range, a tuple or a frozenset, or
     `...` for all that have no key: `{...: 0}` makes all stones of a watershed one phase. None as a number: the label
     counts as matrix. Without `phases` the labels are phases 0, 1, ... in ascending order.
-    Raises Error where there is no grain, labels are no whole numbers or have no phase, a hole of a grain holds another
-    label than the matrix, or a label fills all of the image. Warns of parts that are too small to be grains, under some
+    Raises Error where there is no stone, labels are no whole numbers or have no phase, a hole of a stone holds another
+    label than the matrix, or a label fills all of the image. Warns of parts that are too small to be stones, under some
     three pixels across; they are left out.
     """
     side = length("pixel", pixel, "50 um")
     pixels, source = pixels_of(image)
     if pixels.dtype.kind == "U":
-        raise Error(f"{source}the labels are texts, such as {str(pixels[0, 0])!r}; labels of grains must be whole "
+        raise Error(f"{source}the labels are texts, such as {str(pixels[0, 0])!r}; labels of stones must be whole "
                     "numbers")
     parts = [part for stone in _stones_of(pixels, matrix, phases, source) for part in _parts_of(stone, pixels)]
     kept = [part for part in parts if not part.is_small]
     if not kept:
-        raise Error(f"{source}no part of a label is large enough to be a grain: three pixels or more across")
+        raise Error(f"{source}no part of a label is large enough to be a stone: three pixels or more across")
     if len(kept) < len(parts):
         small = [part for part in parts if part.is_small]
         row, column = small[0].first
-        warnings.warn(f"{source}{len(small)} part{' is' if len(small) == 1 else 's are'} too small to be grains and "
+        warnings.warn(f"{source}{len(small)} part{' is' if len(small) == 1 else 's are'} too small to be stones and "
                       f"left out, the first at row {row}, column {column}: {sum(part.pixels for part in small):.0f} "
-                      "pixels together. A grain is three pixels or more across", stacklevel=2)
-    shapes = np.zeros(pixels.shape, np.int64)  # number of the grain of each pixel, from 1
+                      "pixels together. A stone is three pixels or more across", stacklevel=2)
+    shapes = np.zeros(pixels.shape, np.int64)  # number of the stone of each pixel, from 1
     for number, part in enumerate(kept, 1):
         shapes[part.box][part.mask] = number
-    return [_grain_of_shape(shapes, number, part, side) for number, part in enumerate(kept, 1)]
+    return [_stone_of_shape(shapes, number, part, side) for number, part in enumerate(kept, 1)]
 
 
-def write_grains(file: str | Path, grains: Sequence[Grain]) -> None:
-    """Writes grains as the table that `[aggregates.outlines] csv` of a deck reads."""
+def write_stones(file: str | Path, stones: Sequence[FlatStone]) -> None:
+    """Writes stones as the table that `[aggregates.outlines] csv` of a deck reads."""
     lines = ["grain,x_m,y_m,phase"]
-    for number, grain in enumerate(grains):
-        lines += [f"{number},{x:.9g},{y:.9g},{grain.phase}" for x, y in grain.outline]
+    for number, stone in enumerate(stones):
+        lines += [f"{number},{x:.9g},{y:.9g},{stone.phase}" for x, y in stone.outline]
     write_text(Path(file), "\n".join(lines) + "\n")
 
 
 @dataclass(frozen=True)
 class _Part:
-    """Part of an image that becomes a grain."""
+    """Part of an image that becomes a stone."""
 
     mask: NDArray[np.bool_]  # of its box
     box: tuple[slice, slice]  # rows and columns of the image
-    pixels: float  # area of its grain
+    pixels: float  # area of its stone
     phase: int
     label: int
     source: str
@@ -199,7 +199,7 @@ def _stones_of(pixels: NDArray[Any], matrix: int, phases: Mapping[Any, int | Non
     phases = {matrix: None, **phases}
     of_label = [phases[key] for key in keys_of(labels, place, phases, source)]
     if all(phase is None for phase in of_label):
-        raise Error(f"{source}all pixels are of the matrix: there are no grains. The image has "
+        raise Error(f"{source}all pixels are of the matrix: there are no stones. The image has "
                     f"{counted(labels, place)}")
     is_free = np.array([phase is None for phase in of_label])[place]
     stones = []
@@ -226,8 +226,8 @@ def _require_free(part: _Part, enclosed: NDArray[np.bool_], pixels: NDArray[Any]
     others = np.argwhere(enclosed & ~part.free & (pixels[part.box] != part.label))
     if len(others):
         row, column = others[0] + (part.box[0].start, part.box[1].start)
-        raise Error(f"{part.source}a grain of label {part.label} encloses the label {pixels[row, column]} at row "
-                    f"{row}, column {column}; a grain can have no other inside")
+        raise Error(f"{part.source}a stone of label {part.label} encloses the label {pixels[row, column]} at row "
+                    f"{row}, column {column}; a stone can have no other inside")
 
 
 def _parts_of(stone: _Part, pixels: NDArray[Any]) -> list[_Part]:
@@ -276,8 +276,8 @@ def _smoothed(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
     return smoothed
 
 
-def _grain_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: float) -> Grain:
-    """Returns the grain of a part: its outline moves evenly until its area is that of its pixels. Beside another grain
+def _stone_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: float) -> FlatStone:
+    """Returns the stone of a part: its outline moves evenly until its area is that of its pixels. Beside another stone
     it stays on the line in the middle between both, which both have.
     """
     from scipy import optimize
@@ -286,11 +286,11 @@ def _grain_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: f
     first = [own.start - margin for own in part.box]
     near = shapes[np.ix_(*(np.clip(np.arange(begin, own.stop + margin), 0, size - 1)
                            for begin, own, size in zip(first, part.box, shapes.shape)))]
-    fields = np.full((2, *near.shape), -np.inf)  # distance from the surface, and from the middle to other grains
+    fields = np.full((2, *near.shape), -np.inf)  # distance from the surface, and from the middle to other stones
     fields[0] = _smoothed(near == number)
     if others := set(np.unique(near).tolist()) - {0, number}:
         fields[1] = 0.5 * (fields[0] - np.min([_smoothed(near == other) for other in others], axis=0))
-        # smoothing rounds corners where three grains meet: no matrix comes about there
+        # smoothing rounds corners where three stones meet: no matrix comes about there
         fields[0] = np.minimum(fields[0], _smoothed(near > 0) + _GAP)
     fields, row = _within_image(fields, 1, first[0], shapes.shape[0])
     fields, column = _within_image(fields, 2, first[1], shapes.shape[1])
@@ -303,9 +303,9 @@ def _grain_of_shape(shapes: NDArray[np.int64], number: int, part: _Part, side: f
     def excess(moved: float) -> float:
         return _signed_area(outline(moved)) - part.pixels
 
-    # a grain among others has no room for more than its pixels
+    # a stone among others has no room for more than its pixels
     moved = optimize.brentq(excess, -most, most, xtol=1e-6) if excess(-most) < 0.0 < excess(most) else 0.0
-    return Grain(side * outline(moved), part.phase)
+    return FlatStone(side * outline(moved), part.phase)
 
 
 def _within_image(fields: NDArray[np.float64], axis: int, first: int,

@@ -1,4 +1,4 @@
-"""Grains of any form do not overlap and keep off holes, notches and slits; empty cells of a file are told."""
+"""Stones of any form do not overlap and keep off holes, notches and slits; empty cells of a file are told."""
 
 import csv
 import json
@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 from in_a_folder import InAFolder
 
-HEAD = """title = "Grains"
+HEAD = """title = "Stones"
 [specimen]
 width = "120 mm"
 height = "{height} mm"
@@ -92,9 +92,9 @@ class ProgramTest(InAFolder):
         return super().pyroclast(*words, code=code, **options)
 
 
-class Grains(ProgramTest):
+class Stones(ProgramTest):
     def draw(self, shape, fraction=0.3, sizes=(6, 10), body="", seed=1):
-        """What the program says of a specimen of drawn grains."""
+        """What the program says of a specimen of drawn stones."""
         (self.folder / "deck.toml").write_text(
             f'{HEAD.format(height=120)}seed = {seed}\n{body}[aggregates]\nfraction = {fraction}\n'
             f'd_min = "{sizes[0]} mm"\nd_max = "{sizes[1]} mm"\nfuller_exponent = 0.5\nminimum_gap = "0.2 mm"\n'
@@ -103,14 +103,14 @@ class Grains(ProgramTest):
         return self.pyroclast("specimen", "deck.toml", "--out", "out", "--overwrite", "--no-figures")
 
     def drawn(self, *mix, **options):
-        """Outlines of the grains of a specimen, each (n, 2), mm."""
+        """Outlines of the stones of a specimen, each (n, 2), mm."""
         done = self.draw(*mix, **options)
         self.assertEqual(done.returncode, 0, done.stderr)
-        grains = {}
+        stones = {}
         with open(self.folder / "out/specimen/outlines.csv", newline="") as file:
             for row in csv.DictReader(file):
-                grains.setdefault(row["grain"], []).append([1e3 * float(row["x_m"]), 1e3 * float(row["y_m"])])
-        return [np.array(grain) for grain in grains.values()]
+                stones.setdefault(row["grain"], []).append([1e3 * float(row["x_m"]), 1e3 * float(row["y_m"])])
+        return [np.array(stone) for stone in stones.values()]
 
     def check_given(self, outlines, body="", height=80):
         """The program's word on outlines that are given, mm."""
@@ -132,38 +132,38 @@ class Grains(ProgramTest):
                 ("[4, 4]", "[3, 4]", 0.3), ("[3, 3]", "[1, 1.5]", 0.3), ("[4, 4]", "[1, 1.5]", 0.45),
                 ("[3, 4]", "[2, 2.5]", 0.3), ("[5, 8]", "[3, 4]", 0.3)):
             with self.subTest(corners=corners, elongation=elongation):
-                grains = self.drawn(f'kind = "polygon"\ncorners = {corners}\nelongation = {elongation}', fraction)
-                self.assertGreater(len(grains), 15)
-                for i, grain in enumerate(grains):
-                    for other in grains[:i]:
-                        if np.linalg.norm(grain[0] - other[0]) > 80.0:  # more than both are long
+                stones = self.drawn(f'kind = "polygon"\ncorners = {corners}\nelongation = {elongation}', fraction)
+                self.assertGreater(len(stones), 15)
+                for i, stone in enumerate(stones):
+                    for other in stones[:i]:
+                        if np.linalg.norm(stone[0] - other[0]) > 80.0:  # more than both are long
                             continue
-                        self.assertFalse(run_through_each_other(grain, other))
-                        apart = min(distance_from(point, line) for points, line in ((grain, other), (other, grain))
+                        self.assertFalse(run_through_each_other(stone, other))
+                        apart = min(distance_from(point, line) for points, line in ((stone, other), (other, stone))
                                     for point in points)
                         self.assertGreater(apart, 0.2 - 1e-6)  # nine digits of a file in m
 
-    def test_no_grain_lies_over_a_hole(self):
+    def test_no_stone_lies_over_a_hole(self):
         polygon = 'kind = "polygon"\ncorners = [4, 4]\nelongation = [1, 1.5]'
         for shape, seed in ((polygon, 1), (polygon, 3), (polygon, 5),
                             ('kind = "harmonics"\nelongation = [1, 1.5]\nroughness = [0.02, 0.06]', 2)):
             with self.subTest(shape, seed=seed):
-                grains = self.drawn(shape, 0.4, (8, 26), PIERCED, seed)
-                for grain in grains:
+                stones = self.drawn(shape, 0.4, (8, 26), PIERCED, seed)
+                for stone in stones:
                     for hole in HOLES:
-                        self.assertFalse(holds(grain, hole))
+                        self.assertFalse(holds(stone, hole))
                         # 12 sides at least stand for a circle of the same area: within 2.4 % of the radius
-                        self.assertGreater(distance_from(hole, grain), RADIUS * 0.97 + 0.2)
+                        self.assertGreater(distance_from(hole, stone), RADIUS * 0.97 + 0.2)
 
     def test_a_mix_that_only_fits_over_holes_is_refused_at_its_place(self):
         done = self.draw('kind = "ellipse"\nelongation = [1, 1.5]', 0.4, (16, 30), PIERCED)
         self.assertNotEqual(done.returncode, 0)
         self.assertRegex(done.stderr, r"deck\.toml:\d+: aggregates: the aggregates do not fit: .* found no place")
 
-    def test_no_grain_lies_over_a_notch_or_a_slit(self):
+    def test_no_stone_lies_over_a_notch_or_a_slit(self):
         for width in ("3 mm", "0 mm"):
-            for grain in self.drawn('kind = "ellipse"\nelongation = [1, 2]', 0.35, (8, 30), NOTCH.format(width)):
-                self.assertFalse(run_through_each_other(grain, np.array([[60.0, -1.0], [60.0, 40.0]])))
+            for stone in self.drawn('kind = "ellipse"\nelongation = [1, 2]', 0.35, (8, 30), NOTCH.format(width)):
+                self.assertFalse(run_through_each_other(stone, np.array([[60.0, -1.0], [60.0, 40.0]])))
 
     def test_an_outline_that_is_given_twice_is_refused_at_its_line(self):
         once = circle()
@@ -188,7 +188,7 @@ class Grains(ProgramTest):
         once = circle()
         for again in (once, np.roll(once, -7, axis=0)):
             self.assert_refused([(0, once), (0, again)], "grains.csv:2: ", "runs around more than once")
-        self.assert_refused([(0, once), (0, once + [1e-6, 0.0])], "grains.csv:2: ", "an outline of a grain")
+        self.assert_refused([(0, once), (0, once + [1e-6, 0.0])], "grains.csv:2: ", "an outline of a stone")
         self.assert_refused([(0, once), (0, once[::-1])], "grains.csv:42: ", "repeats the one before")
 
     def test_an_outline_on_a_hole_notch_or_slit_is_refused(self):

@@ -1,4 +1,4 @@
-"""Grains whose outlines are known: from a distance and an image to a table, a deck, and a specimen."""
+"""Stones whose outlines are known: from a distance and an image to a table, a deck, and a specimen."""
 
 import csv
 import json
@@ -12,7 +12,7 @@ import numpy as np
 
 import pyroclast
 from pyroclast import m, mm
-from pyroclast import grains
+from pyroclast import stones
 
 MM = ("0 mm", "0 mm", "100 mm", "100 mm")  # corners of a box
 CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
@@ -36,71 +36,71 @@ class Outlines(unittest.TestCase):
         def two_circles(places):
             return np.minimum(np.hypot(*(places - [0.02, 0.03]).T) - 0.01, np.hypot(*(places - [0.02, 0.005]).T) - 0.004)
 
-        small, large = sorted(grains.grains_of_distance(two_circles, MM[:2], ("50 mm", "60 mm"), "0.2 mm"), key=lambda g: g.area)
-        for grain, radius in ((small, 0.004), (large, 0.01)):
-            self.assertAlmostEqual(grain.area / (np.pi * radius**2), 1.0, delta=2e-3)
-            self.assertAlmostEqual(grain.perimeter / (2.0 * np.pi * radius), 1.0, delta=2e-3)
+        small, large = sorted(stones.stones_of_distance(two_circles, MM[:2], ("50 mm", "60 mm"), "0.2 mm"), key=lambda g: g.area)
+        for stone, radius in ((small, 0.004), (large, 0.01)):
+            self.assertAlmostEqual(stone.area / (np.pi * radius**2), 1.0, delta=2e-3)
+            self.assertAlmostEqual(stone.perimeter / (2.0 * np.pi * radius), 1.0, delta=2e-3)
 
     def test_image(self):
         angle = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)
-        exact = grains.Grain(harmonic_stone(angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
-        stone, = grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm")
+        exact = stones.FlatStone(harmonic_stone(angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
+        stone, = stones.stones_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm")
         self.assertAlmostEqual(stone.area / exact.area, 1.0, delta=0.01)
         self.assertAlmostEqual(stone.perimeter / exact.perimeter, 1.0, delta=0.01)
         apart = np.linalg.norm(stone.outline[:, None] - (exact.outline + [0.02, 0.025]), axis=2).min(axis=1)
         self.assertLess(apart.max(), 0.3e-3)  # a pixel
 
     def test_holes_are_filled(self):
-        annulus, = grains.grains_of_distance(
+        annulus, = stones.stones_of_distance(
             lambda p: np.abs(np.linalg.norm(p - 0.05, axis=1) - 0.02) - 0.01, MM[:2], MM[2:], "0.5 mm")
         self.assertAlmostEqual(annulus.area / (np.pi * 0.03**2), 1.0, delta=2e-3)
-        stone, = grains.grains_of_labels(image_of_annulus(0), "1 mm")
+        stone, = stones.stones_of_labels(image_of_annulus(0), "1 mm")
         self.assertAlmostEqual(stone.area / (np.pi * 0.03**2), 1.0, delta=0.01)
 
     def test_refused(self):
         for message, call in (
-                ("a grain of label 1 encloses the label 2 at row 35, column 50",
-                 lambda: grains.grains_of_labels(image_of_annulus(2), "1 mm")),
+                ("a stone of label 1 encloses the label 2 at row 35, column 50",
+                 lambda: stones.stones_of_labels(image_of_annulus(2), "1 mm")),
                 ("reaches out of the box", lambda: in_box(lambda p: p[:, 0] - 0.05)),
                 ("returned an array of", lambda: in_box(lambda p: p)),
                 ("must be finite", lambda: in_box(lambda p: p[:, 0] * np.nan)),
-                ("no grid", lambda: grains.grains_of_distance(lambda p: p[:, 0], MM[:2], ("0 mm", "9 mm"), "1 mm")),
-                ("all pixels are of the matrix", lambda: grains.grains_of_labels(np.zeros((5, 5), int), "1 mm")),
-                ("greater than 0", lambda: grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0 mm"))):
+                ("no grid", lambda: stones.stones_of_distance(lambda p: p[:, 0], MM[:2], ("0 mm", "9 mm"), "1 mm")),
+                ("all pixels are of the matrix", lambda: stones.stones_of_labels(np.zeros((5, 5), int), "1 mm")),
+                ("greater than 0", lambda: stones.stones_of_labels(image_of_harmonic_stone(0.3e-3), "0 mm"))):
             with self.subTest(message), self.assertRaisesRegex(pyroclast.Error, message):
                 call()
 
-    def test_a_mask_is_no_distance_and_a_distance_is_negative_in_grains(self):
+    def test_a_mask_is_no_distance_and_a_distance_is_negative_in_stones(self):
         def inside(places):
             return 0.02 - np.linalg.norm(places - 0.05, axis=1)
 
         self.assertEqual(len(in_box(lambda p: -inside(p))), 1)
-        for told, distance in (("reaches out of the box.*positive within grains.*its negative", inside),
+        for told, distance in (("reaches out of the box.*positive within stones.*its negative", inside),
                                ("False and True alone, as a mask has.*distance_transform_edt", lambda p: inside(p) > 0.0),
                                ("0.0 and 1.0 alone", lambda p: (inside(p) > 0.0).astype(float)),
                                ("-1.0 and 1.0 alone", lambda p: np.where(inside(p) > 0.0, -1.0, 1.0)),
                                ("negative nowhere", lambda p: np.clip(100.0 * inside(p), 0.0, 1.0)),
                                ("negative nowhere", lambda p: np.abs(inside(p)) + 1e-6),
-                               ("ndarray, not a function of places.*grains_of_labels", np.zeros((9, 9), bool))):
+                               ("ndarray, not a function of places.*stones_of_labels", np.zeros((9, 9), bool))):
             with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
                 in_box(distance)
 
     def test_lengths_have_units(self):
         image = image_of_harmonic_stone(0.3e-3)
-        areas = [grains.grains_of_labels(image, pixel)[0].area for pixel in ("0.3 mm", 0.3 * mm, "300 um", 3e-4 * m)]
+        areas = [stones.stones_of_labels(image, pixel)[0].area for pixel in ("0.3 mm", 0.3 * mm, "300 um", 3e-4 * m)]
         self.assertAlmostEqual(max(areas) / min(areas), 1.0)
 
         def circle(places):
             return np.linalg.norm(places - 0.05, axis=1) - 0.01
 
-        same = [grains.grains_of_distance(circle, *box)[0].area for box in (
+        same = [stones.stones_of_distance(circle, *box)[0].area for box in (
             (MM[:2], MM[2:], "1 mm"), (np.zeros(2) * mm, [0.1 * m, "10 cm"], 1 * mm), ([0 * mm, "0 m"], MM[2:], 0.001 * m))]
         self.assertAlmostEqual(max(same) / min(same), 1.0)
-        for told, call in (('pixel: a unit of length is needed.*got 1.0; .*"1.0 m"', lambda: grains.grains_of_labels(image, 1.0)),
-                           ("pixel: .*dimension|pixel: .*length", lambda: grains.grains_of_labels(image, "1 s")),
-                           (r"low\[0\]: a unit", lambda: grains.grains_of_distance(circle, (0, 0), MM[2:], "1 mm")),
-                           (r"high\[1\]: a unit", lambda: grains.grains_of_distance(circle, MM[:2], ("1 m", 1), "1 mm")),
-                           ("spacing: a unit", lambda: grains.grains_of_distance(circle, MM[:2], MM[2:], 1e-3))):
+        for told, call in (('pixel: a unit of length is needed.*got 1.0; .*"1.0 m"', lambda: stones.stones_of_labels(image, 1.0)),
+                           ("pixel: .*dimension|pixel: .*length", lambda: stones.stones_of_labels(image, "1 s")),
+                           (r"low\[0\]: a unit", lambda: stones.stones_of_distance(circle, (0, 0), MM[2:], "1 mm")),
+                           (r"high\[1\]: a unit", lambda: stones.stones_of_distance(circle, MM[:2], ("1 m", 1), "1 mm")),
+                           ("spacing: a unit", lambda: stones.stones_of_distance(circle, MM[:2], MM[2:], 1e-3))):
             with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
                 call()
 
@@ -109,9 +109,9 @@ class Labels(unittest.TestCase):
     """Stones of an image that are not one smooth part within it."""
 
     def areas(self, image, **more):
-        """Areas of the grains in pixels, whose sum is the number of pixels of stones."""
-        found = grains.grains_of_labels(image, "1 mm", **more)
-        areas = np.array([1e6 * grain.area for grain in found])
+        """Areas of the stones in pixels, whose sum is the number of pixels of stones."""
+        found = stones.stones_of_labels(image, "1 mm", **more)
+        areas = np.array([1e6 * stone.area for stone in found])
         self.assertAlmostEqual(areas.sum() / np.count_nonzero(image), 1.0, delta=1e-5)
         return found, areas
 
@@ -120,7 +120,7 @@ class Labels(unittest.TestCase):
         image[40, 30:90] = 1
         found, areas = self.areas(image)
         np.testing.assert_allclose(areas, 1245, rtol=0.01)
-        np.testing.assert_allclose(sorted(1e3 * middle_of(grain)[0] for grain in found), [30.5, 90.5], atol=0.5)
+        np.testing.assert_allclose(sorted(1e3 * middle_of(stone)[0] for stone in found), [30.5, 90.5], atol=0.5)
         image[41, 30:90] = 1
         whole, = self.areas(image)[0]
         self.assertAlmostEqual(np.ptp(whole.outline[:, 0]), 0.099, delta=2e-3)
@@ -140,17 +140,17 @@ class Labels(unittest.TestCase):
     def test_a_mouth_of_one_pixel_closes_and_may_hold_no_other_stone(self):
         image = discs((40, 60, 30)) - discs((40, 60, 20))
         image[40, 75:] = 0
-        stone, = grains.grains_of_labels(image, "1 mm")
+        stone, = stones.stones_of_labels(image, "1 mm")
         self.assertAlmostEqual(stone.area / (1e-6 * discs((40, 60, 30)).sum()), 1.0, delta=0.01)
         image[35:45, 55:65] = 2
-        with self.assertRaisesRegex(pyroclast.Error, "a grain of label 1 encloses the label 2 at row 35, column 55"):
-            grains.grains_of_labels(image, "1 mm")
+        with self.assertRaisesRegex(pyroclast.Error, "a stone of label 1 encloses the label 2 at row 35, column 55"):
+            stones.stones_of_labels(image, "1 mm")
 
     def test_parts_that_are_too_small_are_told(self):
         image = discs((40, 60, 15))
         image[5, 7] = image[70, 10] = image[70, 11] = 1
         with self.assertWarnsRegex(UserWarning, "2 parts are too small.*row 5, column 7: 3 pixels together"):
-            self.assertEqual(len(grains.grains_of_labels(image, "1 mm")), 1)
+            self.assertEqual(len(stones.stones_of_labels(image, "1 mm")), 1)
 
     def test_a_stone_that_the_edge_cuts_ends_there(self):
         for name, image, low, high in (
@@ -167,8 +167,8 @@ class Labels(unittest.TestCase):
     def test_what_fills_the_image_is_the_matrix(self):
         for image in (np.ones((9, 9), int), 1 - discs((40, 60, 20))):
             with self.assertRaisesRegex(pyroclast.Error, "as a matrix does; if it is the matrix, say matrix=1"):
-                grains.grains_of_labels(image, "1 mm")
-        self.assertEqual(len(grains.grains_of_labels(1 - discs((40, 60, 20)), "1 mm", matrix=1)), 1)
+                stones.stones_of_labels(image, "1 mm")
+        self.assertEqual(len(stones.stones_of_labels(1 - discs((40, 60, 20)), "1 mm", matrix=1)), 1)
 
     def test_labels_are_whole_numbers(self):
         image = discs((40, 60, 20))
@@ -176,30 +176,30 @@ class Labels(unittest.TestCase):
                              (image / 255.0, "must be whole numbers.*1245 of 9600"),
                              (np.where(image, "stone", "mortar"), "the labels are texts, such as 'mortar'")):
             with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
-                grains.grains_of_labels(pixels, "1 mm")
-        self.assertEqual(len(grains.grains_of_labels(image.astype(bool), "1 mm")), 1)
+                stones.stones_of_labels(pixels, "1 mm")
+        self.assertEqual(len(stones.stones_of_labels(image.astype(bool), "1 mm")), 1)
 
     def test_stones_of_a_watershed_share_their_lines_and_a_phase(self):
         image = watershed()
         found, areas = self.areas(image, phases={...: 0})
         np.testing.assert_allclose(areas, np.bincount(image.ravel())[1:], rtol=0.01)
-        self.assertEqual({grain.phase for grain in found}, {0})
-        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm", phases={(1, 2): 1, range(3, 5): 0})],
+        self.assertEqual({stone.phase for stone in found}, {0})
+        self.assertEqual([stone.phase for stone in stones.stones_of_labels(image, "1 mm", phases={(1, 2): 1, range(3, 5): 0})],
                          [1, 1, 0, 0])
-        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm", phases={3: None, ...: 2})], [2, 2, 2])
-        self.assertEqual([grain.phase for grain in grains.grains_of_labels(image, "1 mm")], [0, 1, 2, 3])
+        self.assertEqual([stone.phase for stone in stones.stones_of_labels(image, "1 mm", phases={3: None, ...: 2})], [2, 2, 2])
+        self.assertEqual([stone.phase for stone in stones.stones_of_labels(image, "1 mm")], [0, 1, 2, 3])
         for phases, told in (({1: 0}, "the label 2, for which there is no phase"), ({...: "stone"}, "the phase 'stone'; it must"),
                              ({1: -1, ...: 0}, "the phase -1"), ({range(1, 3): 0, ...: 0, 2: 1}, "names the label 2 twice")):
             with self.subTest(told), self.assertRaisesRegex(pyroclast.Error, told):
-                grains.grains_of_labels(image, "1 mm", phases=phases)
+                stones.stones_of_labels(image, "1 mm", phases=phases)
 
 
 def in_box(distance):
-    return grains.grains_of_distance(distance, MM[:2], MM[2:], "1 mm")
+    return stones.stones_of_distance(distance, MM[:2], MM[2:], "1 mm")
 
 
-def middle_of(grain):
-    return 0.5 * (grain.outline.min(axis=0) + grain.outline.max(axis=0))
+def middle_of(stone):
+    return 0.5 * (stone.outline.min(axis=0) + stone.outline.max(axis=0))
 
 
 def discs(*places):
@@ -228,7 +228,7 @@ def image_of_annulus(inside):
 
 
 class ByDeck(unittest.TestCase):
-    """Decks take grains, and a run gives back what a deck takes."""
+    """Decks take stones, and a run gives back what a deck takes."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -251,7 +251,7 @@ class ByDeck(unittest.TestCase):
         return done.returncode, done.stdout + done.stderr, self.folder / out / "specimen"
 
     def test_a_stone_of_an_image_is_followed(self):
-        grains.write_grains(self.folder / "grains.csv", grains.grains_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm"))
+        stones.write_stones(self.folder / "grains.csv", stones.stones_of_labels(image_of_harmonic_stone(0.3e-3), "0.3 mm"))
         code, told, tables = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "grains.csv"\n'))
         self.assertEqual(code, 0, told)
         facts = json.loads((tables / "specimen.json").read_text())
@@ -269,7 +269,7 @@ class ByDeck(unittest.TestCase):
         touching[20:40, 5:25] = np.where(np.arange(20) < 10, 1, 2)
         for name, image in (("cut", cut), ("touching", touching)):
             with self.subTest(name):
-                grains.write_grains(self.folder / "grains.csv", grains.grains_of_labels(image, "5 mm", phases={...: 0}))
+                stones.write_stones(self.folder / "grains.csv", stones.stones_of_labels(image, "5 mm", phases={...: 0}))
                 code, told, tables = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "grains.csv"\n'), name)
                 self.assertEqual(code, 0, told)
                 with open(tables / "grain_fit.csv", newline="") as file:
@@ -341,7 +341,7 @@ class ByDeck(unittest.TestCase):
         (self.folder / "bad.csv").write_text("grain,x_m,y_m\n0,0.01,0.01\n0,0.02,0.01\n0,0.02,0.02\n1,0.03,0.03\n1,0.04,0.03\n")
         code, told, _ = self.specimen(self.deck('[aggregates]\n[aggregates.outlines]\ncsv = "bad.csv"\n'))
         self.assertNotEqual(code, 0)
-        self.assertRegex(told, r"bad\.csv:5: an outline of a grain has 2 corners")
+        self.assertRegex(told, r"bad\.csv:5: an outline of a stone has 2 corners")
         shape = ('[aggregates]\nfraction = 0.3\nd_min = "6 mm"\nd_max = "20 mm"\nfuller_exponent = 0.5\nminimum_gap = "0.5 mm"\n'
                  '[aggregates.grain_shape]\nkind = "{}"\nelongation = {}\n')
         for kind, elongation, message in (("elipse", "[1, 2]", "ellipse"), ("ellipse", "[2, 1]", "least and the largest"),

@@ -5,6 +5,7 @@
 
 #include "pyroclast/specimen/prism.hpp"
 #include "pyroclast/specimen/spaced_seeds.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 
 /// Bodies that the tests of solids share.
 namespace pyroclast::specimen {
@@ -24,6 +25,11 @@ inline Prism cylinder(double diameter, double height, int sides = 31) {
 inline std::vector<Prism> bodies() {
   const auto triangle = Region::polygon({{{0.0, 0.0}}, {{0.1, 0.0}}, {{0.03, 0.08}}}, {"a", "b", "c"});
   return {cuboid(0.1, 0.2, 0.05), cylinder(0.1, 0.2), Prism(triangle, Prism::Axis::z, 0.06)};
+}
+
+inline Specimen<3> made_in(SpecimenParameters p, const Prism& body, Team* team = nullptr) {
+  p.outline = body;
+  return make_specimen<3>(p, team);
 }
 
 }  // namespace pyroclast::specimen

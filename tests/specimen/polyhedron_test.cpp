@@ -1,3 +1,5 @@
+#include "pyroclast/specimen/polyhedron.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,10 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "messages.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
-#include "pyroclast/specimen/polyhedron.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
