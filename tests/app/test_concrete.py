@@ -176,7 +176,7 @@ class Concrete(InAFolder):
         larger = 1.0 - (0.58 + (least - 8.0) / 8.0 * 0.30)
         self.assertAlmostEqual(deck["aggregates"]["fraction"], 1800.0 / 2650.0 * larger, delta=2e-3)
         self.assertIn(f"stones from {least:g} mm on, 3 blocks; smaller ones belong to the mortar", done.stdout)
-        contacts, known = (d["contacts"] for d in (deck, tomllib.loads((CASES / "starter_3d.toml").read_text())))
+        contacts, known = (d["contacts"] for d in (deck, tomllib.loads((CASES / "hot_strength_3d.toml").read_text())))
         for key in ("phi", "phi_res", "beta"):
             self.assertEqual(contacts["mortar_mortar"][key], known["mortar_mortar"][key])
         self.assertEqual(contacts["aggregate_mortar"], known["aggregate_mortar"])

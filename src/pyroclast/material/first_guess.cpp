@@ -27,11 +27,11 @@ constexpr FirstGuess kPlane{
     .block_size = 3e-3,
     .of_block_size = 0.0};
 
-/// cases/starter_3d.toml, whose contacts were recalibrated by hand for space. E over its estimate, f_c, and
-/// how f_c goes with the size of blocks: 2,000 and 10,000 blocks of docs/validation/solid_strengths.md. The
-/// other exponents are those of the plane: a guess.
+/// cases/hot_strength_3d.toml, whose contacts were recalibrated by hand for space. E over its estimate, f_c,
+/// and how f_c goes with the size of blocks: 2,000 and 10,000 blocks of docs/validation/solid_strengths.md.
+/// The other exponents are those of the plane: a guess.
 constexpr FirstGuess kSpace{
-    .source = "those of cases/starter_3d.toml",
+    .source = "those of cases/hot_strength_3d.toml",
     .contacts = {2.5e6, 60.0, 100e6, 6e6, 0.06e6, 380.0, 8.0 * kDegree, 8.0 * kDegree},
     .mortar_modulus = 29.4e9,
     .strength = 34.3e6,
