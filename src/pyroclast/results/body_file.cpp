@@ -43,8 +43,8 @@ struct BodyTrailer {
 };
 
 /// Tables of a deck that shape its body.
-constexpr const char* kTablesOfBody[] = {"specimen",      "aggregates", "inclusions", "blocks",
-                                         "superposition", "sets",       "bearings",   "platens"};
+constexpr const char* kTablesOfBody[] = {"specimen", "aggregates", "inclusions", "blocks", "superposition",
+                                         "sets",     "bearings",   "bodies",     "platens"};
 /// Keys of bearings that do not.
 constexpr const char* kOfContact[] = {"contact", "friction", "K_n", "K_s"};
 

@@ -94,6 +94,7 @@ struct FoundData {
   std::vector<double> longest;     ///< longest facet of each block, m
   std::vector<double> most_depth;  ///< depth from which on ends do not count, by block, m
   std::vector<int> interfaces;     ///< interface of each pair of materials, row by row
+  std::vector<int> of_body;        ///< interface of each block that is a loose body; else -1
   std::vector<int> first_contact;  ///< first contact of each interface; -1 where it has none
   std::vector<std::vector<int>> contacts_of_block;
   GridpointContacts at_gridpoint;

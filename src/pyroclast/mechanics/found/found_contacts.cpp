@@ -13,6 +13,7 @@
 #include "pyroclast/laws/common.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/reader.hpp"
+#include "pyroclast/model/loose_bodies.hpp"
 #include "pyroclast/model/outline.hpp"
 
 namespace pyroclast {
@@ -151,6 +152,7 @@ void FoundContacts::make(Body<2>& body) {
   for (int i = 0; i < std::ssize(serves); ++i)
     if (const int set = FoundContacts(body).set_of_interface(i); set >= 0)
       serves[i] = lets_go(body.properties.contacts[set]);
+  found.of_body = interfaces_of_loose_bodies(model);
   const std::string& name = found.parameters.like;
   const int like = name.empty() ? 0 : place_in(model.interface_names, name);
   if (like >= std::ssize(serves))
@@ -217,7 +219,11 @@ std::uint32_t FoundContacts::ends_that_count(const FoundPair& pair) const {
   return (holds_together(at[0], at[2]) ? 0U : 1U) | (holds_together(at[1], at[3]) ? 0U : 2U);
 }
 
+/// Returns the interface of a pair: that of a loose body, of two the one that the deck names later; else that
+/// of the two materials.
 int FoundContacts::interface_of(const Key& key) const {
+  const auto of_body = [&](int facet) { return found_.of_body[found_.facets[facet].block]; };
+  if (const int interface = std::max(of_body(key[0]), of_body(key[1])); interface >= 0) return interface;
   const auto material = [&](int facet) { return body_.model.block_material[found_.facets[facet].block]; };
   return found_
       .interfaces[material(key[0]) * static_cast<int>(body_.model.material_names.size()) + material(key[1])];
@@ -309,12 +315,16 @@ void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
   for (int i = 0; i < std::ssize(of_interface); ++i)
     if (const int set = set_of_interface(i); set >= 0)
       of_interface[i] = std::max(of_interface[i], stiffness_of_set(set));
+  double of_bodies = 0.0;
+  for (const int interface : found_.of_body)
+    if (interface >= 0) of_bodies = std::max(of_bodies, of_interface[interface]);
   // Damping takes a share of the step. It is that of a block, whose gridpoints are lighter.
   const double share = kGridpointDamping * found_.parameters.damping,
                grown = share + std::sqrt(1.0 + share * share);
   const int materials = static_cast<int>(model.material_names.size());
   for (const BlockFacet& facet : found_.facets) {
-    double needed = 0.0;
+    // any block may meet any body
+    double needed = of_bodies;
     for (int other = 0; other < materials; ++other)
       needed = std::max(
           needed, of_interface[found_.interfaces[model.block_material[facet.block] * materials + other]]);
