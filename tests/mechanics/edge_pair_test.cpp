@@ -14,7 +14,7 @@ namespace pyroclast {
 namespace {
 
 constexpr double kNormalStiffness = 3.0, kShearStiffness = 2.0, kThickness = 0.8, kNotCounted = 0.02;
-constexpr double kUnloadedA = 1.1, kUnloadedB = 0.9;
+constexpr double kUnloadedA = 1.1, kUnloadedB = 0.9, kMostDepth = 0.9;
 
 using Corners = std::array<Vec<2>, 4>;
 
@@ -22,7 +22,7 @@ EdgePair<double> pair_of(const Corners& x) {
   return edge_pair<double>({x[0], x[1]}, {x[2], x[3]}, kUnloadedA, kUnloadedB);
 }
 EndAreas<double> areas_of(const EdgePair<double>& p) {
-  return {p, kThickness, kNotCounted, p.gap};
+  return {p, kThickness, kNotCounted, kMostDepth, p.gap};
 }
 
 /// Energy of the normal springs of both ends.
@@ -89,9 +89,10 @@ int for_random_pairs(F f) {
                      {{1.0 + within(0.9), within(0.4)}}}};
     const auto p = pair_of(x);
     if (!p.face || p.overlap < 0.05) continue;
-    bool at_kink = std::abs(x[2][0]) < 1e-3;
+    const double counted = p.overlap - kNotCounted, width = std::min(counted, kMostDepth / 3.0);
+    bool at_kink = std::abs(x[2][0]) < 1e-3 || std::abs(counted - kMostDepth / 3.0) < 1e-3;
     for (int k = 0; k < 2; ++k) {
-      const double depth = -p.gap[k] / (p.overlap - kNotCounted);
+      const double depth = -p.gap[k] / width;
       at_kink = at_kink || std::abs(p.gap[k]) < 1e-3 || std::abs(depth - 1.0) < 1e-2 ||
                 std::abs(depth - 3.0) < 1e-2 || std::abs(p.at_a[k] - k) + std::abs(p.at_b[k] - k) < 1e-3;
     }
@@ -146,6 +147,7 @@ TEST(EdgePairVerification, EveryPartOfTheForcesIsNeeded) {
        [](auto&, auto& areas) {
          for (auto& end : areas.ends) end.slope = 0.0;
        }},
+      {"largest depth", [](auto&, auto& areas) { areas.is_long = false; }},
       {"overlap of the beginning", [](auto&, auto& areas) { areas.counted += kNotCounted; }},
       {"ratio of areas", [](auto&, auto& areas) { areas.half_thickness /= kThickness; }},
       {"turning of the mean edge", [&](auto& p, auto&) { p.mean_length = infinite; }},
@@ -168,7 +170,7 @@ TEST(EdgePair, CoincidingEdgesAreAFaceWithTwoPoints) {
   const Corners x{{{{0.0, 0.0}}, {{2.0, 0.0}}, {{0.0, -0.01}}, {{2.0, -0.02}}}};
   const auto p = edge_pair<double>({x[0], x[1]}, {x[2], x[3]}, 2.0, 2.0);
   EXPECT_TRUE(p.face);
-  const EndAreas<double> areas(p, 1.0, 0.0, p.gap);
+  const EndAreas<double> areas(p, 1.0, 0.0, 1e3, p.gap);
   for (int k = 0; k < 2; ++k) {
     EXPECT_NEAR(areas.area[k], 1.0, 1e-4);
     EXPECT_NEAR(p.slide[k], 0.0, 1e-4);

@@ -235,6 +235,8 @@ struct ConcreteMaterials {
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< composition, where `follow_composition` was called
   std::optional<double> stress_free;       ///< temperature of `set_stress_free`, where it was called, °C
+  /// True where blocks may meet others: found contacts ask for properties at no special place.
+  bool has_found_contacts = false;
 
   bool creeps() const { return any_creeps(block_materials); }
   bool asks_for_hottest() const;  ///< Tells whether any property depends on the highest temperature so far.

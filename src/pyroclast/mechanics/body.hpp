@@ -82,6 +82,7 @@ struct Books {
   /// them.
   double begun_property_change = 0.0, begun_mass_scaling = 0.0;
   double creep_work = 0.0;  ///< work of creep
+  double start = 0.0;       ///< kinetic energy of the velocities at the start
 };
 
 /// Body in lanes: layout and state of a model's blocks, with the model's chunks. A body is data alone.

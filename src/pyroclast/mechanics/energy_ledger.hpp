@@ -52,7 +52,8 @@ struct EnergyLedger {
 /// Entries in the order of the history's columns; the columns of `dissipated` stand before the other losses.
 inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
     {"loading", "energy_loading_J", LedgerSide::put_in, "loading",
-     "work of prescribed motion and applied forces", [](const EnergyLedger& e) { return e.loading; }},
+     "work of prescribed motion and applied forces, and energy of velocities at the start",
+     [](const EnergyLedger& e) { return e.loading; }},
     {"gravity", "energy_gravity_J", LedgerSide::put_in, "gravity", "work of the weight",
      [](const EnergyLedger& e) { return e.gravity; }},
     {"property_change", "energy_property_change_J", LedgerSide::put_in, "change of properties",

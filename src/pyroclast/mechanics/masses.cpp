@@ -95,7 +95,7 @@ void Masses<Dim>::set_step_over_mass() {
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
     step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
   if constexpr (Dim == 2)
-    if (body_.found) FoundContacts(body_).follow_properties();  // damping follows the masses
+    if (body_.found) FoundContacts(body_).follow_masses();
 }
 
 template <int Dim>

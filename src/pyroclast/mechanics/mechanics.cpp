@@ -100,6 +100,18 @@ void Mechanics<Dim>::change_properties(Change change) {
 }
 
 template <int Dim>
+void Mechanics<Dim>::begin_moving(const std::vector<Vec<Dim>>& velocities) {
+  Body<Dim>& body = *body_;
+  const auto energy = [&](int g) { return 0.5 * body.mass[g] * dot(velocities[g], velocities[g]); };
+  for (int g = 0; g < std::ssize(velocities); ++g) {
+    const int slot = body.layout.gridpoint_slot[g];
+    set_vector<Dim>(body.state.velocity, slot, velocities[g]);
+    body.arrays.bundle_sums[body.layout.bundle_of_pack[slot / kLanes]].kinetic += energy(g);
+  }
+  body.books.start = chunked_sum(body.layout.chunks.gridpoints, energy);
+}
+
+template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
   if (steps <= 0) return;
   Body<Dim>& body = *body_;
@@ -143,6 +155,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("begun_property_change", body.books.begun_property_change);
   visitor.visit("begun_mass_scaling", body.books.begun_mass_scaling);
   visitor.visit("creep_work", body.books.creep_work);
+  visitor.visit("start", body.books.start);
   // the stiffness is that of the contact frames at the last change of properties; they have turned since
   visitor.visit_by_chunk("stiffness", body.stiffness, body.layout.chunks.gridpoints, state::at_least(0));
   body.visit_arrays(visitor);

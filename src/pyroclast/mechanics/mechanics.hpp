@@ -49,6 +49,9 @@ class Mechanics {
   /// Notes the step for contacts that have cracked since the last call.
   void note_cracks() { pyroclast::note_cracks(*body_); }
 
+  /// Gives the gridpoints their velocities, m/s, before the first step. The ledger counts their energy as
+  /// loading.
+  void begin_moving(const std::vector<Vec<Dim>>& velocities);
   /// Takes a number of steps.
   void advance(int steps);
 

@@ -82,6 +82,7 @@ class Motion {
   virtual const MotionReader& read() const = 0;
   virtual const MotionTotals& totals() const = 0;
 
+  virtual void begin_moving(const std::vector<Vec<3>>& velocities) = 0;
   virtual void advance(int steps) = 0;
   virtual std::int64_t steps() const = 0;
   virtual double time_step() const = 0;
@@ -123,6 +124,11 @@ class MotionOf final : public Motion {
   MotionConstraints& constraints() override { return constraints_; }
   const MotionReader& read() const override { return reader_; }
   const MotionTotals& totals() const override { return totals_; }
+  void begin_moving(const std::vector<Vec<3>>& velocities) override {
+    std::vector<Vec<Dim>> in_space;
+    for (const Vec<3>& velocity : velocities) in_space.push_back(resized<Dim>(velocity));
+    mechanics_.begin_moving(in_space);
+  }
   void advance(int steps) override { mechanics_.advance(steps); }
   std::int64_t steps() const override { return mechanics_.steps(); }
   double time_step() const override { return mechanics_.time_step(); }

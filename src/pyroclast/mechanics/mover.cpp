@@ -13,10 +13,9 @@ namespace {
 /// Strides between two looks at what travels: messages go on only within calls.
 constexpr std::size_t kStridesPerLook = 64;
 
-/// Share of a thread in found contacts: rows, and of its own bundles the gridpoints on which rows act and the
-/// packs whose way is watched.
+/// Share of a thread in found contacts: rows, and of its own bundles the packs whose way is watched.
 struct ShareOfFound {
-  IndexRange rows, loaded, watched;
+  IndexRange rows, watched;
 };
 
 template <int Dim>
@@ -29,14 +28,11 @@ ShareOfFound share_of_found(const State<Dim>& s, const IndexRange& bundles, int 
   const auto pack = [&](int bundle) {
     return bundle < static_cast<int>(s.layout.bundles.size()) ? s.layout.bundles[bundle].first_pack : packs;
   };
-  const auto range = [&](const auto& list, auto place) {
-    const auto before = [&](int end) {
-      return static_cast<int>(std::ranges::lower_bound(list, end, {}, place) - list.begin());
-    };
-    return IndexRange{before(pack(bundles.first)), before(pack(bundles.last))};
+  const auto before = [&](int end) {
+    const auto& watched = s.found->watched;
+    return static_cast<int>(std::ranges::lower_bound(watched, end, {}, &WatchedPack::pack) - watched.begin());
   };
-  share.loaded = range(s.found->loaded, [](const LoadedGridpoint& g) { return g.slot / kLanes; });
-  share.watched = range(s.found->watched, [](int watched) { return watched; });
+  share.watched = {before(pack(bundles.first)), before(pack(bundles.last))};
   return share;
 }
 
@@ -59,11 +55,10 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
   };
   if constexpr (Dim == 2)
     if (body.found) body.found->seen.moves = pass != Pass::measure;
-  const auto must_search = [&] {
+  const auto way_of_found = [&] {
     double longest = 0.0;
     for (const Worker& worker : workers_) longest = larger(longest, worker.way_of_found);
-    if constexpr (Dim == 2) return FoundContacts(body).must_search(longest);
-    return false;
+    return longest;
   };
   halo_.spoil(body.arrays);
   // A call ends before its last step where other work took the cores, and fewer threads go on; and where
@@ -82,6 +77,12 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = body.state;
+      FoundRows rows;  // those of this thread: the way changes from step to step
+      if constexpr (Dim == 2)
+        if (s.found) {
+          rows = *s.found;
+          s.found = &rows;
+        }
       const Share& share = worker.share;
       const ShareOfFound found =
           share_of_found(s, share.bundles, body.layout.gridpoint_packs, thread, threads);
@@ -91,7 +92,6 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
         for (const auto& faces : share.crossing) update_faces(s, faces.first, faces.last, measure);
         passes.place_corner_forces(s, share.corner_parts.first, share.corner_parts.last, pass);
         body.team->barrier();
-        if (s.found) passes.sum_found(s, found.loaded.first, found.loaded.last);
         for (const auto& stride : share.leading) sweep_through(s, worker, stride);
         if (ties_join_parts) {
           body.team->barrier();
@@ -110,7 +110,10 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
         if (s.found) worker.way_of_found = passes.way_of_found(s, found.watched.first, found.watched.last);
         // ranks take as many steps as the others
         ends = body.team->barrier() && !moves_with_others;
-        if (s.found) ends = ends || must_search();
+        if (s.found) {
+          rows.way = way_of_found();
+          ends = ends || !(rows.way <= 1.0);
+        }
       }
       if (thread == 0) moved = taken;
     });

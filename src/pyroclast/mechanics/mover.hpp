@@ -29,7 +29,7 @@ class Mover {
   struct Worker {
     Share share;
     FlatArray<double> scratch;
-    double way_of_found = 0.0;  ///< see StepPasses, m²
+    double way_of_found = 0.0;  ///< see StepPasses
   };
 
   Body<Dim>* body_;

@@ -275,7 +275,6 @@ struct StepPasses {
   void (*sum_stiffness)(State<Dim>&, double* scratch);
   // Found contacts, see FoundContactForces; null in 3D.
   void (*update_found)(State<Dim>&, int first, int last) = nullptr;
-  void (*sum_found)(State<Dim>&, int first, int last) = nullptr;
   double (*way_of_found)(const State<Dim>&, int first, int last) = nullptr;
 };
 

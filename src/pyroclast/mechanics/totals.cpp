@@ -146,7 +146,7 @@ EnergyLedger Totals<Dim>::energies() const {
   e.kinetic = sums.kinetic;
   e.local_damping = sums.local_damping;
   e.viscous_damping = sums.viscous_damping;
-  e.loading = sums.loading;
+  e.loading = sums.loading + body_.books.start;
   e.contacts = chunked_sum(body_.layout.chunks.face_packs,
                            [&](int pack) { return body_.state.face_sums[pack].stored; });
   if (body_.found) e.contacts += stored_by(*body_.found);

@@ -34,8 +34,8 @@ constexpr std::string_view kHdf5Begin = "\x89HDF\r\n\x1a\n";
 constexpr ClosingTable::Mark kBodyEnd{'p', 'y', 'r', 'o', 'b', 'o', 'd', 'y'};
 
 /// Tables of a deck that shape its body.
-constexpr const char* kTablesOfBody[] = {"specimen",      "aggregates", "inclusions", "blocks",
-                                         "superposition", "sets",       "bearings",   "platens"};
+constexpr const char* kTablesOfBody[] = {"specimen", "aggregates", "inclusions", "blocks", "superposition",
+                                         "sets",     "bearings",   "bodies",     "platens"};
 /// Keys of bearings that do not.
 constexpr const char* kOfContact[] = {"contact", "friction", "K_n", "K_s"};
 

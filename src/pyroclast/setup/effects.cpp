@@ -112,6 +112,8 @@ std::vector<std::string> unused_sets(const Setup& setup) {
   std::vector<std::string> used;
   for (const auto& stage : setup.stages)
     for (const std::string& set : stage->sets()) used.push_back(set);
+  if (setup.moving)
+    for (const StartVelocity& start : setup.moving->velocities) used.push_back(start.set);
   for (const RecordParameters& record : setup.records) used.insert(used.end(), {record.set, record.other});
   for (const HeatBoundaryCondition& boundary : setup.heat.boundaries) used.push_back(boundary.faces.part);
   if (setup.heat.moisture)

@@ -15,6 +15,7 @@
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/setup/effects.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
+#include "pyroclast/setup/read_bodies.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
 #include "pyroclast/setup/read_moisture.hpp"
@@ -102,9 +103,10 @@ void read_found(const Section& contacts, const ContactParameters& parameters, Fo
   found.damping =
       s.number("damping", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.3), 0.0,
                "share of critical damping while blocks press each other; never pulls");
-  found.like = s.text("like", found.like,
-                      "interface, broken, between blocks whose materials no interface joins, or several; "
-                      "without this key that of the matrix with itself");
+  if (s.has("like"))
+    found.like = s.text("like",
+                        "interface, broken, between blocks whose materials no interface joins, or several; "
+                        "without this key that of the matrix with itself");
   if (s.ok() && std::ranges::find(parameters.interfaces, found.like, &InterfaceParameters::name) ==
                     parameters.interfaces.end())
     s.error("like", fmt::format("must be an interface of [contacts]; got \"{}\"", found.like));
@@ -398,11 +400,38 @@ std::string cure_of_short_curve(const HeatConditions& heat, const Interval& need
       needed.lower, given.upper);
 }
 
-std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
+/// Returns the materials of bearings and of bodies of their own, each once, in the order of the model.
+std::vector<std::string> materials_of(const MovingBody& moving) {
   std::vector<std::string> names;
-  for (const Bearing& bearing : bearings)
-    if (std::ranges::find(names, bearing.material) == names.end()) names.push_back(bearing.material);
+  const auto add = [&](const std::string& material) {
+    if (std::ranges::find(names, material) == names.end()) names.push_back(material);
+  };
+  for (const Bearing& bearing : moving.bearings) add(bearing.material);
+  for (const LooseBody& body : moving.bodies) add(body.material);
   return names;
+}
+
+/// Records an error for each body of its own whose name or material belongs to something else, and where
+/// contacts are not found.
+void check_bodies(const std::vector<ReadBody>& bodies, const std::vector<std::string>& phases,
+                  const MovingBody& moving) {
+  for (const ReadBody& read : bodies) {
+    const Section& section = read.section;
+    const LooseBody& body = read.body;
+    if (!section.ok()) continue;
+    if (std::ranges::find(phases, body.material) != phases.end())
+      section.error("material", fmt::format("\"{}\" is a phase of the specimen; a body needs a material of "
+                                            "its own",
+                                            body.material));
+    const auto has_name = [&](const auto& other) { return other.name == body.name; };
+    if (std::ranges::any_of(moving.contacts.interfaces, has_name) ||
+        std::ranges::any_of(moving.contacts.bearings, has_name) ||
+        std::ranges::find(phases, body.name) != phases.end())
+      section.error("name",
+                    fmt::format("\"{}\" is the name of an interface, a bearing or a phase", body.name));
+    if (!moving.mechanics.found.is_on)
+      section.error("name", "a body meets others only with [mechanics] contacts = \"found\"");
+  }
 }
 
 double read_thickness(const Section& s, const DeckSpace& space) {
@@ -416,7 +445,8 @@ double read_thickness(const Section& s, const DeckSpace& space) {
 
 /// Reads the materials and all that moves, where a stage moves the body.
 void read_moving(const Section& root, const DeckSpace& space, const std::vector<ReadBearing>& bearings,
-                 CurveReader& curves, const LawFinder& find_law, Setup& setup) {
+                 const std::vector<ReadBody>& bodies, CurveReader& curves, const LawFinder& find_law,
+                 Setup& setup) {
   const MaterialRules rules = read_material_rules(root);
   setup.expansion_reading = rules.expansion_reading;
   const auto phases = specimen::phases(setup.specimen);
@@ -431,24 +461,27 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
           "side", fmt::format("a platen or another bearing lies on \"{}\" already", read.bearing.side));
     moving.bearings.push_back(read.bearing);
   }
+  for (const ReadBody& read : bodies) moving.bodies.push_back(read.body);
+  moving.velocities = read_velocities(root, space);
   moving.on_cooling = rules.on_cooling;
   const ReadConcrete concrete = read_concrete(root, phases, rules, curves);
   moving.strain_of_concrete = concrete.of_phases;
-  setup.block_materials =
-      read_block_materials(root, phases, materials_of(moving.bearings), rules, concrete, curves);
+  setup.block_materials = read_block_materials(root, phases, materials_of(moving), rules, concrete, curves);
   moving.contacts = read_contacts(root, phases, specimen::phases_of_stones(setup.specimen),
                                   setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) moving.contacts.bearings.push_back(read.interface);
   setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);
   read_found(root.section("contacts"), moving.contacts, moving.mechanics.found);
+  check_bodies(bodies, phases, moving);
+  for (const ReadBody& read : bodies) moving.contacts.bearings.push_back(read.interface);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 
 /// Reads the materials where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
   setup.block_materials = read_conducting_materials(root, specimen::phases(setup.specimen), curves);
-  root.know({"platens", "bearings", "contacts", "mechanics", "concrete"});
+  root.know({"platens", "bearings", "bodies", "velocities", "contacts", "mechanics", "concrete"});
 }
 
 }  // namespace
@@ -488,7 +521,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   if (root.ok()) check_sides(root, setup);
   if (read.any_moves)
     read_moving(
-        root, space, bearings, curves,
+        root, space, bearings, read_bodies(root, space, setup.specimen.block_size()), curves,
         [&](const std::string& name, bool named) -> const LawTable& {
           try {
             return find_law(name, folder, laws, laws.deck_names || (named && laws.changes_name));

@@ -82,9 +82,9 @@ BodyProperties by_block_size(const Model& model, std::vector<ZoneProperties> zon
     validate(scaled, model.interface_names[joint.interface]);
     p.contacts.add(scaled);
   }
-  for (const ContactProperties& of_mean : interfaces) {
+  for (std::size_t i = 0; materials.has_found_contacts && i < interfaces.size(); ++i) {
     p.of_interface.push_back(p.contacts.size());
-    p.contacts.add(of_mean);
+    p.contacts.add(interfaces[i]);
   }
   return p;
 }
@@ -216,6 +216,7 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
     p.contacts.validate(c, model.interface_names[interface]);
   }
   p.of_interface.clear();
+  if (!materials.has_found_contacts) return p;
   const double mean = field.mean();
   for (const ContactMaterial& contact : materials.contacts) {
     p.of_interface.push_back(p.contacts.size());

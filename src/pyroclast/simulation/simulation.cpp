@@ -88,6 +88,7 @@ ConcreteMaterials make_materials(const std::vector<BlockMaterial>& block_materia
                                  const SpecimenNumbers& specimen) {
   auto materials = make_concrete(block_materials, moving.contacts, specimen.mean_size, specimen.block_size);
   materials.on_cooling = moving.on_cooling;
+  materials.has_found_contacts = moving.mechanics.found.is_on;
   if (follows_composition(block_materials, moving))
     follow_composition(materials, moving.contacts, moving.strain_of_concrete, specimen.fraction,
                        specimen.mean_size, specimen.dimension);
@@ -140,12 +141,27 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
           const int interface = model_->joint(contact).interface;
           refuse_slit(notch, model_->interface_names[interface], materials_.contacts[interface].law->name);
         }
+  begin_moving(moving->velocities);
   show_cracks_to_heat();
   supports_ = std::make_unique<Supports>(*model_);
   for (const PlaneOfSymmetry& plane : model_->symmetry) drive(plane.set(), plane.component, 0.0);
   loads_ = std::make_unique<Loads>(*motion_, body_size());
   for (const RecordParameters& record : records) records_.emplace_back(*model_, true, record);
   if (body.between_platens) press_ = std::make_unique<Press>(*motion_, *body.between_platens);
+}
+
+/// Gives sets their velocities at the start; where a gridpoint is in several, the last one counts.
+void Simulation::begin_moving(const std::vector<StartVelocity>& velocities) {
+  if (velocities.empty()) return;
+  std::vector<Vec<3>> of_gridpoints(static_cast<std::size_t>(model_->gridpoint_count()));
+  for (const StartVelocity& start : velocities) {
+    const auto set = model_->sets.find(start.set);
+    if (set == model_->sets.end())
+      throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", start.deck_place, start.set,
+                              names_of(model_->sets)));
+    for (const int g : set->second) of_gridpoints[g] = start.velocity;
+  }
+  motion_->begin_moving(of_gridpoints);
 }
 
 std::vector<std::string> Simulation::warnings_of_specimen() const {

@@ -96,6 +96,7 @@ class Simulation {
   const char* coupling_of_heat() const;
   /// Hands the present gap of each contact to the heat solver, where cracks hinder heat. Called before heat
   /// flows, at each exchange of temperatures.
+  void begin_moving(const std::vector<StartVelocity>& velocities);
   void show_cracks_to_heat();
 
   /// Tells whether the body moves.

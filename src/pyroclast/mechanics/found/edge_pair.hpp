@@ -77,16 +77,18 @@ EdgePair<Real> edge_pair(const std::array<Vec<2, Real>, 2>& a, const std::array<
 
 /// Share of an end's half of the overlap that counts, and its slope by `depth`. All of it counts while the
 /// edges are less deep in each other than their overlap is long, nothing where they are thrice as deep: edges
-/// that pass a corner do not begin to press at once.
+/// that pass a corner do not begin to press at once. Where the overlap is long a third of the largest depth
+/// stands in its place: the far sides of two blocks that touch face each other too.
 template <class Real>
 struct CountedShare {
-  Real depth;  ///< depth over the overlap
+  Real depth;  ///< depth over the overlap, or over a third of the largest depth
   Real share, slope;
+  static constexpr double kMost = 3.0;  ///< depth from which on nothing counts
 
   explicit CountedShare(const Real& of) : depth(of) {
-    const Real y = smaller(larger((depth - Real(1.0)) * Real(0.5), Real(0.0)), Real(1.0));
+    const Real y = smaller(larger((depth - Real(1.0)) * Real(1.0 / (kMost - 1.0)), Real(0.0)), Real(1.0));
     share = Real(1.0) - y * y * (Real(3.0) - Real(2.0) * y);
-    slope = Real(3.0) * y * (y - Real(1.0));
+    slope = Real(6.0 / (kMost - 1.0)) * y * (y - Real(1.0));
   }
 };
 
@@ -101,26 +103,31 @@ struct EndTractions {
 /// square of the cosine, and times the share that counts.
 template <class Real>
 struct EndAreas {
-  Real half_thickness;                     ///< half of the thickness, times the ratio of the pair, m
-  Real counted;                            ///< overlap less that of the pair's beginning, m
-  std::array<CountedShare<Real>, 2> ends;  ///< share of each end
-  std::array<Real, 2> area;                ///< m²
+  Real half_thickness;                      ///< half of the thickness, times the ratio of the pair, m
+  Real counted;                             ///< overlap less that of the pair's beginning, m
+  Real width;                               ///< length by which depths are divided, m
+  decltype(Real(0.0) < Real(0.0)) is_long;  ///< true where the overlap is longer than that
+  std::array<CountedShare<Real>, 2> ends;   ///< share of each end
+  std::array<Real, 2> area;                 ///< m²
 
   /// \param thickness    thickness of the body times the ratio of the pair's areas to these, m
   /// \param not_counted  overlap that does not count, because the edges lay in each other when the pair
   ///                     began, m
+  /// \param most_depth   depth from which on an end does not count, m
   /// \param gap          gap of each end from which its depth is taken, m
-  EndAreas(const EdgePair<Real>& p, const Real& thickness, const Real& not_counted,
+  EndAreas(const EdgePair<Real>& p, const Real& thickness, const Real& not_counted, const Real& most_depth,
            const std::array<Real, 2>& gap)
       : half_thickness(thickness * Real(0.5)),
         counted(p.overlap - not_counted),
+        width(smaller(counted, most_depth * Real(1.0 / CountedShare<Real>::kMost))),
+        is_long(width < counted),
         ends{CountedShare<Real>(depth_over(gap[0])), CountedShare<Real>(depth_over(gap[1]))} {
     const Real whole = half_thickness * p.cosine * p.cosine * counted;
     for (int k = 0; k < 2; ++k) area[k] = whole * ends[k].share;
   }
 
  private:
-  Real depth_over(const Real& gap) const { return (Real(0.0) - gap) / counted; }
+  Real depth_over(const Real& gap) const { return (Real(0.0) - gap) / width; }
 };
 
 /// Forces on the corners of a pair: on a[0], a[1], b[0], b[1], N.
@@ -141,7 +148,8 @@ CornerForces<Real> corner_forces(const EdgePair<Real>& p, const EndAreas<Real>& 
     const CountedShare<Real>& counts = areas.ends[k];
     const Real of_whole = of_cosines * p.cosine * tractions.stored[k];
     const Real by_depth = of_whole * counts.slope;
-    const Real normal = tractions.normal[k] * areas.area[k] - by_depth;
+    const Real normal = tractions.normal[k] * areas.area[k] -
+                        select(areas.is_long, by_depth * (areas.counted / areas.width), by_depth);
     const Real shear = tractions.shear[k] * areas.area[k] * p.slide_factor[k] - normal * p.gap_slope[k];
     const Vec<2, Real> force = p.normal * normal + p.tangent * shear;
     f[0] += force * (Real(1.0) - p.at_a[k]);
@@ -149,7 +157,7 @@ CornerForces<Real> corner_forces(const EdgePair<Real>& p, const EndAreas<Real>& 
     f[2] -= force * (Real(1.0) - p.at_b[k]);
     f[3] -= force * p.at_b[k];
     turning += p.gap[k] * shear;
-    by_overlap += of_whole * counts.share - by_depth * counts.depth;
+    by_overlap += of_whole * counts.share - select(areas.is_long, zero, by_depth * counts.depth);
     by_cosine += Real(2.0) * of_cosines * areas.counted * tractions.stored[k] * counts.share;
   }
   // the overlap ends at corners and turns with the mean edge

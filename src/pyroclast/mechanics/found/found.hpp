@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "pyroclast/laws/law.hpp"
 #include "pyroclast/mechanics/found/parameters.hpp"
 #include "pyroclast/mechanics/found/rows.hpp"
 
@@ -16,8 +18,9 @@
 ///     far     pairs near enough for the next searches; near: near enough to press before the next search
 ///
 /// A pair that does not press is as if it had never been: it has the numbers of a new one, but for the energy
-/// that it lost. So results do not depend on the time of a search, nor on the pairs that it finds beside
-/// those that press.
+/// that it lost. A handed-over pair that does not press *rests*: its numbers stay until its gap falls below
+/// that at which it bore nothing. So results do not depend on the time of a search, nor on the pairs that it
+/// finds beside those that press.
 namespace pyroclast {
 
 /// Edge on the outline of a block, counter-clockwise.
@@ -33,9 +36,10 @@ struct BlockFacet {
 struct PairEnd {
   double area = 0.0;    ///< m², of the last step; 0 where the end does not press
   double held = 0.0;    ///< elastic part of the tangential jump, m
-  double shift = 0.0;   ///< tangential jump less EdgePair::slide, m
+  double shift = 0.0;   ///< tangential jump less EdgePair::slide, m; the jump itself where the area is 0
   double offset = 0.0;  ///< opening less EdgePair::gap, m
   double damped = 0.0;  ///< force of damping in the last step, N
+  double rest = 0.0;    ///< opening below which an end whose area is 0 goes through the law, m
 };
 
 /// Pair of facets.
@@ -51,18 +55,32 @@ struct FoundPair {
   std::vector<double> internals;       ///< internal variables of the law at both ends in turn
   std::vector<double> lost;            ///< losses of the law, times the area
   int law = 0;                         ///< entry of State::laws
-  bool is_near = true;                 ///< true for a pair that stands in a row, or is to
-  int slot = -1;  ///< place in the rows: kLanes row + lane; -1 for a pair that is in none
+  std::array<int, 2> sets{-1, -1};     ///< set of parameters of each end; -1: not known yet
+  /// Square of a way since the last search, over that of the way that ends the lists, up to which the pair
+  /// can neither press nor change.
+  double wakes = 0.0;
+  bool is_near = true;  ///< true for a pair that stands in a row, or is to
+  int slot = -1;        ///< place in the rows: kLanes row + lane; -1 for a pair that is in none
 
-  /// Tells whether the pair has nothing of a new one but energy that it lost.
+  /// Tells whether the pair was pressed in the last step.
   bool presses() const {
-    return is_handed_over || not_counted > 0.0 || ends[0].area > 0.0 || ends[1].area > 0.0;
+    return not_counted > 0.0 || ends[0].area > 0.0 || ends[1].area > 0.0 || ends[0].damped != 0.0 ||
+           ends[1].damped != 0.0;
   }
+  /// Tells whether the pair has numbers that a new one has not, beside energy that it lost.
+  bool remembers() const { return is_handed_over || presses(); }
   bool has_lost() const {
     for (const double energy : lost)
       if (energy != 0.0) return true;
     return lost_area != 0.0 || lost_damping != 0.0;
   }
+};
+
+/// Constants of a law for a set of parameters.
+struct ConstantsOfSet {
+  std::vector<std::byte> bytes;  ///< empty until they are asked for
+  std::vector<double> numbers;
+  ContactStiffness<double> stiffness;
 };
 
 /// Data of found contacts of a body.
@@ -76,6 +94,7 @@ struct FoundData {
   std::vector<double> longest;     ///< longest facet of each block, m
   std::vector<double> most_depth;  ///< depth from which on ends do not count, by block, m
   std::vector<int> interfaces;     ///< interface of each pair of materials, row by row
+  std::vector<int> of_body;        ///< interface of each block that is a loose body; else -1
   std::vector<int> first_contact;  ///< first contact of each interface; -1 where it has none
   std::vector<std::vector<int>> contacts_of_block;
   GridpointContacts at_gridpoint;
@@ -83,11 +102,18 @@ struct FoundData {
   std::vector<bool> is_handed_over;     ///< by face of the model
   FlatArray<std::uint8_t> handed_over;  ///< bits of these faces, see State::handed_over
 
-  std::vector<FoundPair> pairs;            ///< pairs that are near, or not as new ones, by key
-  std::vector<std::array<int, 2>> far;     ///< keys of far pairs, ascending
-  FlatArray<Vec<2>> searched_far;          ///< displacement by slot at the last search for far pairs, m
-  double skin = 0.0, reach = 0.0;          ///< m
+  std::vector<FoundPair> pairs;         ///< pairs that are near, or not as new ones, by key
+  std::vector<std::array<int, 2>> far;  ///< keys of far pairs, ascending
+  std::vector<bool> is_listed;          ///< true for facets that these lists know: free, and not flown off
+  FlatArray<Vec<2>> searched_far;       ///< displacement by slot at the last search for far pairs, m
+  double mean_edge = 0.0;               ///< m
+  std::vector<int> block_of_slot;       ///< block of each slot of gridpoints; 0 where idle
+  /// Twice the way that the gridpoints of each block may go before the next search for far and near pairs, m:
+  /// the faster a block, the longer.
+  std::vector<double> skin, reach;
+  std::vector<ConstantsOfSet> constants;   ///< by set of parameters
   bool has_far = false, has_near = false;  ///< true for lists that hold
+  bool has_rows = false;                   ///< true where the near pairs stand in rows
   std::int64_t searches = 0;               ///< number of searches for near pairs
 };
 

@@ -13,6 +13,7 @@
 #include "pyroclast/laws/common.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/reader.hpp"
+#include "pyroclast/model/loose_bodies.hpp"
 #include "pyroclast/model/outline.hpp"
 
 namespace pyroclast {
@@ -26,8 +27,12 @@ constexpr double kMostDepth = 0.25;
 constexpr double kTouching = 1e-6;
 /// Bound of a change of gaps, overlaps and cosines over the reach, while gridpoints go that far.
 constexpr double kMargin = 5.0;
-/// Distance from the origin, over the reach, beyond which nothing meets any more.
-constexpr double kFarthest = 1e7;
+/// Distance from the origin, over the mean edge, beyond which nothing meets any more.
+constexpr double kFarthest = 1e5;
+/// Steps to the end of lists of far pairs over those to the end of lists of near ones.
+constexpr double kFarOverNear = 20.0;
+/// Longest such ways: for far pairs over the mean edge, for near ones over those for far pairs.
+constexpr double kLongestFar = 0.25, kLongestNear = 0.2;
 /// Bound of a gridpoint's share of critical damping over that of its block, the root of the ratio of their
 /// masses.
 constexpr double kGridpointDamping = 3.0;
@@ -117,8 +122,7 @@ void FoundContacts::make(Body<2>& body) {
     sum += facet.length;
   }
   const double mean_edge = sum / static_cast<double>(std::max<std::size_t>(found.facets.size(), 1));
-  found.skin = found.parameters.skin * mean_edge;
-  found.reach = found.parameters.reach * mean_edge;
+  found.mean_edge = mean_edge;
   found.most_depth.resize(blocks);
   for (int b = 0; b < model.block_count(); ++b) {
     double area = 0.0;
@@ -148,6 +152,7 @@ void FoundContacts::make(Body<2>& body) {
   for (int i = 0; i < std::ssize(serves); ++i)
     if (const int set = FoundContacts(body).set_of_interface(i); set >= 0)
       serves[i] = lets_go(body.properties.contacts[set]);
+  found.of_body = interfaces_of_loose_bodies(model);
   const std::string& name = found.parameters.like;
   const int like = name.empty() ? 0 : place_in(model.interface_names, name);
   if (like >= std::ssize(serves))
@@ -163,7 +168,9 @@ void FoundContacts::make(Body<2>& body) {
   }
 
   const auto slots = static_cast<std::size_t>(body.layout.gridpoint_packs) * kLanes;
-  found.arrays.force = body.made<Vec<2>>(slots);
+  found.block_of_slot.resize(slots);
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    found.block_of_slot[body.layout.gridpoint_slot[g]] = block_of[g];
   found.arrays.searched = body.made<Vec<2>>(slots);
   found.searched_far = body.made<Vec<2>>(slots);
   found.handed_over = body.made<std::uint8_t>(body.layout.faces.size());
@@ -183,7 +190,7 @@ std::array<int, 4> FoundContacts::corners(const Key& key) const {
 
 /// \param place  returns the place of a gridpoint, m
 template <class Place>
-auto FoundContacts::pair_at(const Key& key, Place place) const {
+EdgePair<double> FoundContacts::pair_at(const Key& key, Place place) const {
   const auto at = corners(key);
   return edge_pair<double>({place(at[0]), place(at[1])}, {place(at[2]), place(at[3])},
                            found_.facets[key[0]].length, found_.facets[key[1]].length);
@@ -212,7 +219,11 @@ std::uint32_t FoundContacts::ends_that_count(const FoundPair& pair) const {
   return (holds_together(at[0], at[2]) ? 0U : 1U) | (holds_together(at[1], at[3]) ? 0U : 2U);
 }
 
+/// Returns the interface of a pair: that of a loose body, of two the one that the deck names later; else that
+/// of the two materials.
 int FoundContacts::interface_of(const Key& key) const {
+  const auto of_body = [&](int facet) { return found_.of_body[found_.facets[facet].block]; };
+  if (const int interface = std::max(of_body(key[0]), of_body(key[1])); interface >= 0) return interface;
   const auto material = [&](int facet) { return body_.model.block_material[found_.facets[facet].block]; };
   return found_
       .interfaces[material(key[0]) * static_cast<int>(body_.model.material_names.size()) + material(key[1])];
@@ -250,7 +261,7 @@ int FoundContacts::set_of_interface(int interface) const {
 }
 
 const LawTable& FoundContacts::law_of(const FoundPair& pair) const {
-  return body_.properties.contacts.law(set_of(pair, 0));
+  return body_.properties.contacts.law(pair.sets[0]);
 }
 
 int FoundContacts::law_index(const FoundPair& pair) const {
@@ -260,6 +271,7 @@ int FoundContacts::law_index(const FoundPair& pair) const {
 FoundPair FoundContacts::new_pair(const Key& key) const {
   FoundPair pair;
   pair.facets = key;
+  pair.sets = {set_of(pair, 0), set_of(pair, 1)};
   pair.law = law_index(pair);
   const LawOfRows& law = found_.arrays.laws[pair.law];
   for (int end = 0; end < 2; ++end)
@@ -303,12 +315,16 @@ void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
   for (int i = 0; i < std::ssize(of_interface); ++i)
     if (const int set = set_of_interface(i); set >= 0)
       of_interface[i] = std::max(of_interface[i], stiffness_of_set(set));
+  double of_bodies = 0.0;
+  for (const int interface : found_.of_body)
+    if (interface >= 0) of_bodies = std::max(of_bodies, of_interface[interface]);
   // Damping takes a share of the step. It is that of a block, whose gridpoints are lighter.
   const double share = kGridpointDamping * found_.parameters.damping,
                grown = share + std::sqrt(1.0 + share * share);
   const int materials = static_cast<int>(model.material_names.size());
   for (const BlockFacet& facet : found_.facets) {
-    double needed = 0.0;
+    // any block may meet any body
+    double needed = of_bodies;
     for (int other = 0; other < materials; ++other)
       needed = std::max(
           needed, of_interface[found_.interfaces[model.block_material[facet.block] * materials + other]]);
@@ -324,64 +340,106 @@ void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
 // The search
 
 void FoundContacts::begin() {
-  search_where_needed();
+  search();
   leave_out_overlaps(std::vector<bool>(found_.facets.size(), true), kTouching);
-}
-
-bool FoundContacts::must_search(double square_of_way) const {
-  const double most = 0.5 * found_.reach;
-  return !(square_of_way <= most * most);
+  make_rows();
 }
 
 void FoundContacts::search_where_needed() {
   const auto watched = static_cast<int>(found_.arrays.watched.size());
-  if (found_.has_near && !must_search(body_.step.passes.way_of_found(body_.state, 0, watched))) return;
-  take_back();
-  if (found_.has_far) {
-    double longest = 0.0;
-    for (const int pack : found_.arrays.watched)
-      for (int slot = slot_of(pack, 0); slot < slot_of(pack + 1, 0); ++slot) {
-        const Vec<2> way = body_.arrays.displacement[slot] - found_.searched_far[slot];
-        longest = std::max(longest, dot(way, way));
-      }
-    found_.has_far = longest <= 0.25 * found_.skin * found_.skin;
+  found_.seen.way = found_.has_near ? body_.step.passes.way_of_found(body_.state, 0, watched) : 0.0;
+  if (!found_.has_near || !(found_.seen.way <= 1.0)) {
+    search();
+    found_.seen.way = 0.0;
   }
-  if (!found_.has_far) find_far();
-  find_near();
-  make_rows();
+  if (!found_.has_rows) make_rows();
 }
 
-/// Lists the pairs of free facets whose boxes, grown by half of the largest distance of a pair that counts
-/// before the next such search, meet.
+/// Finds the near pairs, and first the far ones where they are not known any more. Rows stay where they hold
+/// the same pairs.
+void FoundContacts::search() {
+  take_back();
+  for (std::size_t f = 0; found_.has_far && f < found_.facets.size(); ++f)
+    for (const int g : found_.facets[f].gridpoints) {
+      if (!found_.is_listed[f]) break;
+      const int slot = body_.layout.gridpoint_slot[g];
+      const Vec<2> way = body_.arrays.displacement[slot] - found_.searched_far[slot];
+      const double most = 0.5 * found_.skin[found_.facets[f].block];
+      found_.has_far = found_.has_far && dot(way, way) <= most * most;
+    }
+  if (!found_.has_far) find_far();
+  if (find_near())
+    found_.has_rows = false;
+  else if (found_.has_rows)
+    let_sleep();
+  watch();
+}
+
+/// Returns twice the way that each block's fastest gridpoint goes in some steps, m.
+/// \param least, most  bounds, m
+std::vector<double> FoundContacts::ways(double steps, double least, double most) const {
+  std::vector<double> ways(found_.longest.size(), least);
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
+    const int slot = body_.layout.gridpoint_slot[g];
+    const double way = 2.0 * steps * body_.state.time_step * norm(vector_at<2>(body_.state.velocity, slot));
+    double& of_block = ways[found_.block_of_slot[slot]];
+    if (!(way <= of_block)) of_block = way < most ? way : most;
+  }
+  return ways;
+}
+
+/// Returns the box of a facet at the search for far pairs, grown by half of the largest distance of a pair
+/// that counts before the next such search; none for a facet that has flown off, or has no number.
+std::optional<FoundContacts::Box> FoundContacts::box_of(int index) const {
+  const BlockFacet& facet = found_.facets[index];
+  const Vec<2> a = place(facet.gridpoints[0], found_.searched_far),
+               b = place(facet.gridpoints[1], found_.searched_far);
+  const double farthest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1])});
+  if (!(farthest < kFarthest * found_.mean_edge)) return {};
+  const double grow =
+      0.5 * ((1.0 + kMargin * kLongestNear) * found_.skin[facet.block] + found_.most_depth[facet.block]);
+  Box box;
+  for (int i = 0; i < 2; ++i) {
+    box.low[i] = std::min(a[i], b[i]) - grow;
+    box.high[i] = std::max(a[i], b[i]) + grow;
+  }
+  return box;
+}
+
+/// Lists a pair of free facets as far where their boxes meet and it may press before the next such search.
+void FoundContacts::list_if_far(int a, const Box& box_a, int b, const Box& box_b) {
+  if (found_.facets[a].block == found_.facets[b].block) return;
+  for (int k = 0; k < 2; ++k)
+    if (box_a.low[k] > box_b.high[k] || box_b.low[k] > box_a.high[k]) return;
+  const Key key{std::min(a, b), std::max(a, b)};
+  const auto p = pair_at(key, [&](int g) { return place(g, found_.searched_far); });
+  const double skin = std::max(found_.skin[found_.facets[a].block], found_.skin[found_.facets[b].block]);
+  if (way_to_press(key, p) < kMargin * (1.0 + kLongestNear) * skin) found_.far.push_back(key);
+}
+
+void FoundContacts::sort_far() {
+  std::sort(found_.far.begin(), found_.far.end());
+  found_.far.erase(std::unique(found_.far.begin(), found_.far.end()), found_.far.end());
+}
+
+/// Lists the far pairs of free facets.
 void FoundContacts::find_far() {
-  struct Box {
-    Vec<2> low, high;
-  };
+  found_.skin = ways(kFarOverNear * found_.parameters.steps, found_.parameters.skin * found_.mean_edge,
+                     std::max(kLongestFar, found_.parameters.skin) * found_.mean_edge);
+  found_.searched_far = body_.arrays.displacement;
   std::vector<int> free;
   std::vector<Box> boxes;
-  std::vector<int> watched;
   double sum = 0.0;
+  found_.is_listed.assign(found_.facets.size(), false);
   for (int f = 0; f < std::ssize(found_.facets); ++f) {
-    const BlockFacet& facet = found_.facets[f];
-    if (!facet.is_free) continue;
-    const Vec<2> a = place(facet.gridpoints[0], body_.arrays.displacement),
-                 b = place(facet.gridpoints[1], body_.arrays.displacement);
-    const double farthest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1])});
-    if (!(farthest < kFarthest * found_.reach)) continue;  // flown off, or no number
-    const double grow = 0.5 * (found_.skin + kMargin * found_.reach + found_.most_depth[facet.block]);
+    if (!found_.facets[f].is_free) continue;
+    const auto box = box_of(f);
+    if (!box) continue;
+    found_.is_listed[f] = true;
     free.push_back(f);
-    sum += facet.length;
-    Box& box = boxes.emplace_back();
-    for (int i = 0; i < 2; ++i) {
-      box.low[i] = std::min(a[i], b[i]) - grow;
-      box.high[i] = std::max(a[i], b[i]) + grow;
-    }
-    for (const int g : facet.gridpoints) watched.push_back(body_.layout.gridpoint_slot[g] / kLanes);
+    boxes.push_back(*box);
+    sum += found_.facets[f].length;
   }
-  std::sort(watched.begin(), watched.end());
-  watched.erase(std::unique(watched.begin(), watched.end()), watched.end());
-  found_.arrays.watched = FlatArray<int>(watched);
-
   // cells of a grid, with the facets whose boxes reach into them
   const double cell = free.empty() ? 1.0 : 2.0 * sum / static_cast<double>(free.size());
   std::vector<std::array<int, 3>> entries;
@@ -396,68 +454,153 @@ void FoundContacts::find_far() {
   for (std::size_t i = 0; i < entries.size(); ++i)
     for (std::size_t j = i + 1; j < entries.size() && same_cell(entries[i], entries[j]); ++j) {
       const int a = entries[i][2], b = entries[j][2];
-      if (found_.facets[free[a]].block == found_.facets[free[b]].block) continue;
-      bool meet = true;
-      for (int k = 0; k < 2; ++k)
-        meet = meet && boxes[a].low[k] <= boxes[b].high[k] && boxes[b].low[k] <= boxes[a].high[k];
-      if (meet) found_.far.push_back({free[a], free[b]});
+      list_if_far(free[a], boxes[a], free[b], boxes[b]);
     }
-  std::sort(found_.far.begin(), found_.far.end());
-  found_.far.erase(std::unique(found_.far.begin(), found_.far.end()), found_.far.end());
-  found_.searched_far = body_.arrays.displacement;
+  sort_far();
   found_.has_far = true;
 }
 
-/// Tells whether a pair may press before the next search.
-bool FoundContacts::is_near(const Key& key) const {
-  const auto p = pair_at(key, [&](int g) { return place(g, body_.arrays.displacement); });
-  const double margin = kMargin * found_.reach;
-  const double turn = margin * (1.0 / p.length_a + 1.0 / p.length_b);
-  if (p.cosine < -turn || p.overlap < -margin) return false;
-  if (p.overlap <= 0.0 || p.cosine <= 0.0) return true;
-  const auto [least, most] = std::minmax(p.gap[0], p.gap[1]);
-  return least < margin && most > -most_depth(key) - margin;
+/// Adds facets that have just become free to the lists of far pairs that hold.
+void FoundContacts::add_to_far(const std::vector<int>& facets) {
+  if (!found_.has_far) return;
+  for (const int a : facets) {
+    const auto box = box_of(a);
+    if (!box) continue;
+    found_.is_listed[a] = true;
+    for (int b = 0; b < std::ssize(found_.facets); ++b)
+      if (found_.is_listed[b]) list_if_far(a, *box, b, *box_of(b));
+  }
+  sort_far();
 }
 
-/// Lists the pairs that are near, in rows or not, and those that have lost energy.
-void FoundContacts::find_near() {
+/// Lists the packs of gridpoints of free facets, and the ways that these may go.
+void FoundContacts::watch() {
+  std::vector<WatchedPack> watched;
+  std::vector<int> entry(static_cast<std::size_t>(body_.layout.gridpoint_packs), -1);
+  std::vector<bool> is_watched(found_.block_of_slot.size());
+  for (std::size_t f = 0; f < found_.facets.size(); ++f)
+    if (found_.is_listed[f])
+      for (const int g : found_.facets[f].gridpoints) is_watched[body_.layout.gridpoint_slot[g]] = true;
+  for (int pack = 0; pack < body_.layout.gridpoint_packs; ++pack) {
+    WatchedPack of_pack{{}, pack};
+    bool any = false;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int slot = slot_of(pack, lane);
+      if (!is_watched[slot]) continue;
+      const double most = 0.5 * found_.reach[found_.block_of_slot[slot]];
+      of_pack.over_way.number[lane] = 1.0 / (most * most);
+      any = true;
+    }
+    if (any) watched.push_back(of_pack);
+  }
+  found_.arrays.watched = FlatArray<WatchedPack>(watched);
+  see(found_.seen, found_.arrays);
+}
+
+/// Returns how far the corners of a pair that does not press must go at least until it may, m, but for
+/// kMargin; 0 or less where it may at once.
+double FoundContacts::way_to_press(const Key& key, const EdgePair<double>& p) const {
+  if (!(p.overlap > 0.0) || !(p.cosine > 0.0))
+    return std::max(-p.overlap, -p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
+  const auto [least, most] = std::minmax(p.gap[0], p.gap[1]);
+  return std::max(least, -most_depth(key) - most);
+}
+
+/// Returns the same of a pair that is handed over and rests: until an end goes through the law, or until its
+/// edges may leave each other.
+double FoundContacts::way_to_change(const FoundPair& pair, const EdgePair<double>& p) const {
+  double way = std::min(p.overlap, p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
+  for (int k = 0; k < 2; ++k) way = std::min(way, p.gap[k] + pair.ends[k].offset - pair.ends[k].rest);
+  return way;
+}
+
+/// Returns FoundPair::wakes of a pair that does not press; 1 or more where it cannot before the next search.
+/// \param handed_over  the pair where it is handed over, else null
+double FoundContacts::wakes(const Key& key, const FoundPair* handed_over) const {
+  const auto p = pair_at(key, [&](int g) { return place(g, body_.arrays.displacement); });
+  const double way = handed_over ? way_to_change(*handed_over, p) : way_to_press(key, p);
+  const double reach =
+      std::max(found_.reach[found_.facets[key[0]].block], found_.reach[found_.facets[key[1]].block]);
+  const double share = way / (kMargin * reach);
+  return share > 0.0 ? share * share : 0.0;
+}
+
+/// Lets rows and gridpoints sleep while no pair of theirs can press.
+void FoundContacts::let_sleep() {
+  auto& arrays = found_.arrays;
+  for (FoundRow& row : arrays.rows) row.wakes = std::numeric_limits<double>::max();
+  for (const FoundPair& pair : found_.pairs)
+    if (pair.slot >= 0) {
+      double& wakes = arrays.rows[pair.slot / kLanes].wakes;
+      wakes = std::min(wakes, pair.wakes);
+    }
+  for (LoadedGridpoint& gridpoint : arrays.loaded) {
+    gridpoint.wakes = std::numeric_limits<double>::max();
+    for (int k = gridpoint.first_force; k < gridpoint.last_force; ++k)
+      gridpoint.wakes = std::min(gridpoint.wakes, arrays.rows[arrays.acting[k] / (4 * kLanes)].wakes);
+  }
+}
+
+/// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether the near
+/// ones are others than before.
+bool FoundContacts::find_near() {
+  std::vector<double> reach =
+      ways(found_.parameters.steps, found_.parameters.reach * found_.mean_edge, found_.mean_edge);
+  for (std::size_t b = 0; b < reach.size(); ++b) reach[b] = std::min(reach[b], kLongestNear * found_.skin[b]);
+  found_.reach = std::move(reach);
   std::vector<FoundPair> next;
+  next.reserve(found_.pairs.size());
+  bool others = false;
   auto old = found_.pairs.begin();
-  const auto keep_old = [&](bool is_near) {
-    old->is_near = is_near || old->presses();
-    if (old->is_near || old->has_lost()) next.push_back(std::move(*old));
+  const auto keep_old = [&](bool is_far) {
+    if (old->presses())
+      old->wakes = 0.0;
+    else if (old->is_handed_over || is_far)
+      old->wakes = wakes(old->facets, old->is_handed_over ? &*old : nullptr);
+    else
+      old->wakes = 1.0;
+    old->is_near = old->wakes < 1.0;
+    others = others || old->is_near != (old->slot >= 0);
+    if (old->is_near || old->remembers() || old->has_lost()) next.push_back(std::move(*old));
     ++old;
   };
   for (const Key& key : found_.far) {
     while (old != found_.pairs.end() && old->facets < key) keep_old(false);
-    const bool is_near = this->is_near(key);
-    if (old != found_.pairs.end() && old->facets == key)
-      keep_old(is_near);
-    else if (is_near)
+    if (old != found_.pairs.end() && old->facets == key) {
+      keep_old(true);
+    } else if (const double share = wakes(key, nullptr); share < 1.0) {
       next.push_back(new_pair(key));
+      next.back().wakes = share;
+      others = true;
+    }
   }
   while (old != found_.pairs.end()) keep_old(false);
   found_.pairs = std::move(next);
   found_.arrays.searched = body_.arrays.displacement;
+  found_.has_near = true;
   ++found_.searches;
+  return others;
 }
 
 // The rows
 
-/// Puts near pairs into rows: those of one law and its choices side by side, and first those that press.
+/// Puts near pairs into rows: those of one law and its choices side by side, first those that press, and then
+/// those that wake sooner.
 void FoundContacts::make_rows() {
   struct Group {
     int law;
     std::vector<int> choices;
-    bool stands_apart;
+    double wakes;  // those that sleep long stand together
     auto operator<=>(const Group&) const = default;
+    bool goes_with(const Group& o) const { return law == o.law && choices == o.choices; }
   };
   std::vector<std::pair<Group, int>> order;
   for (int i = 0; i < std::ssize(found_.pairs); ++i) {
     FoundPair& pair = found_.pairs[i];
     pair.slot = -1;
-    if (pair.is_near)
-      order.push_back({{pair.law, body_.properties.contacts.choices(set_of(pair, 0)), !pair.presses()}, i});
+    if (!pair.is_near) continue;
+    if (pair.sets[0] < 0) pair.sets = {set_of(pair, 0), set_of(pair, 1)};
+    order.push_back({{pair.law, body_.properties.contacts.choices(pair.sets[0]), pair.wakes}, i});
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;
@@ -466,7 +609,7 @@ void FoundContacts::make_rows() {
   int internals = 0, losses = 0, constants = 0, choices = 0;
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
-    while (end < order.size() && end < i + kLanes && order[end].first == order[i].first) ++end;
+    while (end < order.size() && end < i + kLanes && order[end].first.goes_with(order[i].first)) ++end;
     FoundRow& row = rows.emplace_back();
     row.law = order[i].first.law;
     const LawOfRows& law = arrays.laws[row.law];
@@ -483,8 +626,8 @@ void FoundContacts::make_rows() {
   arrays.lost = FlatArray<Line>(static_cast<std::size_t>(losses));
   arrays.constants = FlatArray<Line>(static_cast<std::size_t>(constants));
   arrays.choices = FlatArray<std::byte>(static_cast<std::size_t>(choices));
-  arrays.forces = FlatArray<VectorPack<2>>(4 * rows.size());
-  std::vector<ConstantsOfSet> of_sets(static_cast<std::size_t>(body_.properties.contacts.size()));
+  arrays.forces = FlatArray<Vec<2>>(4 * kLanes * rows.size());
+  found_.constants.resize(static_cast<std::size_t>(body_.properties.contacts.size()));
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::size_t at = firsts[r] + static_cast<std::size_t>(lane);
@@ -492,19 +635,19 @@ void FoundContacts::make_rows() {
       FoundPair& pair = found_.pairs[order[idles ? firsts[r] : at].second];
       if (!idles) pair.slot = slot_of(static_cast<int>(r), lane);
       // an idle lane is a new pair of the same facets, without thickness
-      put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane, of_sets);
+      put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane);
       if (idles) arrays.rows[r].thickness.number[lane] = 0.0;
     }
   list_loads();
+  let_sleep();
   see(found_.seen, arrays);
   found_.seen.is_damped = found_.parameters.damping > 0.0;
-  found_.has_near = true;
+  found_.has_rows = true;
 }
 
 /// Returns the constants of a set of parameters, derived when they are first asked for.
-const FoundContacts::ConstantsOfSet& FoundContacts::constants_of(int set,
-                                                                 std::vector<ConstantsOfSet>& of_sets) const {
-  ConstantsOfSet& constants = of_sets[set];
+const ConstantsOfSet& FoundContacts::constants_of(int set) const {
+  ConstantsOfSet& constants = found_.constants[set];
   if (!constants.bytes.empty()) return constants;
   const LawTable& law = body_.properties.contacts.law(set);
   constants.bytes.resize(law.constants_size);
@@ -515,8 +658,7 @@ const FoundContacts::ConstantsOfSet& FoundContacts::constants_of(int set,
   return constants;
 }
 
-void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane,
-                                 std::vector<ConstantsOfSet>& of_sets) {
+void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane) {
   auto& arrays = found_.arrays;
   FoundRow& row = arrays.rows[index];
   const LawOfRows& law = arrays.laws[row.law];
@@ -532,7 +674,7 @@ void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane,
   put(row.applied, pair.applied);
   put(row.lost_area, pair.lost_area);
   put(row.lost_damping, pair.lost_damping);
-  put(row.damping, damping_of(pair, constants_of(set_of(pair, 0), of_sets).stiffness.normal));
+  put(row.damping, damping_of(pair, constants_of(pair.sets[0]).stiffness.normal));
   const auto bit = 1U << static_cast<unsigned>(lane);
   if (pair.is_handed_over) row.handed_over |= bit;
   const auto ends = ends_that_count(pair);
@@ -542,8 +684,9 @@ void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane,
     put(row.held[k], pair.ends[k].held);
     put(row.shift[k], pair.ends[k].shift);
     put(row.offset[k], pair.ends[k].offset);
+    put(row.rest[k], pair.ends[k].rest);
     put(row.damped[k], pair.ends[k].damped);
-    const ConstantsOfSet& constants = constants_of(set_of(pair, k), of_sets);
+    const ConstantsOfSet& constants = constants_of(pair.sets[k]);
     if (lane == 0 && k == 0) std::ranges::copy(constants.bytes, arrays.choices.begin() + row.first_choice);
     for (int i = 0; i < law.constants; ++i)
       put(arrays.constants[row.first_constant + k * law.constants + i], constants.numbers[i]);
@@ -558,26 +701,33 @@ void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane,
 /// Lists the forces of each gridpoint in the order of the pairs' keys.
 void FoundContacts::list_loads() {
   auto& arrays = found_.arrays;
-  std::vector<std::array<int, 2>> forces;  // slot, and place of the force
+  std::vector<std::array<int, 2>> forces;  // slot, and entry of the force
   for (const FoundPair& pair : found_.pairs) {
     if (pair.slot < 0) continue;
     const auto at = corners(pair.facets);
     for (int i = 0; i < 4; ++i)
-      forces.push_back({body_.layout.gridpoint_slot[at[i]],
-                        (4 * (pair.slot / kLanes) + i) * 2 * kLanes + pair.slot % kLanes});
+      forces.push_back(
+          {body_.layout.gridpoint_slot[at[i]], (4 * (pair.slot / kLanes) + i) * kLanes + pair.slot % kLanes});
   }
   std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
   std::vector<LoadedGridpoint> loaded;
   std::vector<int> acting;
-  for (const auto& [slot, place] : forces) {
+  for (const auto& [slot, entry] : forces) {
     if (loaded.empty() || loaded.back().slot != slot)
       loaded.push_back({slot, static_cast<int>(acting.size()), 0});
-    acting.push_back(place);
+    acting.push_back(entry);
     loaded.back().last_force = static_cast<int>(acting.size());
   }
   arrays.loaded = FlatArray<LoadedGridpoint>(loaded);
   arrays.acting = FlatArray<int>(acting);
-  std::fill(arrays.force.begin(), arrays.force.end(), Vec<2>{});
+  std::vector<int> of_bundle;
+  for (const Bundle& bundle : body_.layout.bundles) {
+    const auto before = [](const LoadedGridpoint& g, int slot) { return g.slot < slot; };
+    const auto first = std::lower_bound(loaded.begin(), loaded.end(), slot_of(bundle.first_pack, 0), before);
+    of_bundle.push_back(static_cast<int>(first - loaded.begin()));
+  }
+  of_bundle.push_back(static_cast<int>(loaded.size()));
+  arrays.loaded_of_bundle = FlatArray<int>(of_bundle);
 }
 
 /// Gives pairs the numbers that they have in rows.
@@ -600,6 +750,7 @@ void FoundContacts::take_back() {
       end.area = row.area[k].number[lane];
       end.held = row.held[k].number[lane];
       end.shift = row.shift[k].number[lane];
+      end.rest = row.rest[k].number[lane];
       end.damped = row.damped[k].number[lane];
       for (int i = 0; i < law.internals; ++i)
         pair.internals[k * law.internals + i] =
@@ -616,12 +767,25 @@ void FoundContacts::take_back() {
 
 void FoundContacts::forget_lists() {
   for (FoundPair& pair : found_.pairs) pair.slot = -1;
-  found_.has_far = found_.has_near = false;
+  found_.has_far = found_.has_near = found_.has_rows = false;
+  found_.constants.clear();
 }
 
 void FoundContacts::follow_properties() {
   take_back();
-  found_.has_near = false;
+  for (FoundPair& pair : found_.pairs) {
+    pair.sets = {-1, -1};
+    pair.slot = -1;
+    for (PairEnd& end : pair.ends)
+      if (pair.is_handed_over && end.area == 0.0) end.rest = std::numeric_limits<double>::max();
+  }
+  found_.constants.clear();
+  found_.has_near = found_.has_rows = false;
+}
+
+void FoundContacts::follow_masses() {
+  take_back();
+  found_.has_rows = false;
 }
 
 // Faces that are handed over
@@ -676,8 +840,12 @@ FoundPair FoundContacts::pair_of_face(int face) const {
     const ContactState state = read.contact(first + k);
     const double stiffness =
         body_.properties.contacts[body_.properties.of_contact[first + k]].stiffness().shear;
-    pair.ends[k] = {area, state.shear_traction[0] / stiffness, state.tangential_jump[0] - p.slide[k],
-                    state.opening - p.gap[k], 0.0};
+    pair.ends[k] = {area,
+                    state.shear_traction[0] / stiffness,
+                    state.tangential_jump[0] - p.slide[k],
+                    state.opening - p.gap[k],
+                    0.0,
+                    0.0};
     pair.internals.insert(pair.internals.end(), state.internals.begin(), state.internals.end());
     pair.stored += state.stored * area;
   }
@@ -697,12 +865,17 @@ void FoundContacts::hand_over() {
   }
   for (std::size_t f = 0; f < fresh.size(); ++f)
     fresh[f] = ends[found_.facets[f].gridpoints[0]] || ends[found_.facets[f].gridpoints[1]];
-  for (const int face : faces) mark_handed_over(face);
+  std::vector<int> sides;
+  for (const int face : faces) {
+    mark_handed_over(face);
+    for (int side = 0; side < 2; ++side) sides.push_back(found_.outline + 2 * face + side);
+  }
   std::sort(found_.pairs.begin(), found_.pairs.end(),
             [](const FoundPair& a, const FoundPair& b) { return a.facets < b.facets; });
-  forget_lists();
-  search_where_needed();
+  add_to_far(sides);
+  search();
   leave_out_overlaps(fresh, 0.0);
+  make_rows();
 }
 
 /// Leaves out the present overlap of pairs that lie in each other as they begin.
@@ -711,15 +884,17 @@ void FoundContacts::hand_over() {
 void FoundContacts::leave_out_overlaps(const std::vector<bool>& fresh, double tolerance) {
   const Reader<2> read(body_);
   for (FoundPair& pair : found_.pairs) {
-    if (!pair.is_near || pair.presses() || !(fresh[pair.facets[0]] || fresh[pair.facets[1]])) continue;
+    if (!pair.is_near || pair.remembers() || !(fresh[pair.facets[0]] || fresh[pair.facets[1]])) continue;
     const auto p =
         pair_at(pair.facets, [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); });
     if (!p.face) continue;
     const double least = -tolerance * std::min(p.length_a, p.length_b), most = -most_depth(pair.facets);
     const auto lies_in = [&](double gap) { return gap < least && gap > most; };
-    if (lies_in(p.gap[0]) || lies_in(p.gap[1])) pair.not_counted = p.overlap;
+    if (lies_in(p.gap[0]) || lies_in(p.gap[1])) {
+      pair.not_counted = p.overlap;
+      pair.wakes = 0.0;
+    }
   }
-  make_rows();
 }
 
 // Sums and states
@@ -747,7 +922,8 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
   const auto each_number = [](FoundPair& pair, auto f) {
     f(pair.ratio), f(pair.not_counted), f(pair.stored), f(pair.applied), f(pair.lost_area),
         f(pair.lost_damping);
-    for (PairEnd& end : pair.ends) f(end.area), f(end.held), f(end.shift), f(end.offset), f(end.damped);
+    for (PairEnd& end : pair.ends)
+      f(end.area), f(end.held), f(end.shift), f(end.offset), f(end.rest), f(end.damped);
     for (double& number : pair.internals) f(number);
     for (double& number : pair.lost) f(number);
   };
@@ -756,7 +932,7 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
     for (int face = 0; face < std::ssize(found_.is_handed_over); ++face)
       if (found_.is_handed_over[face]) faces.push_back(face);
     for (FoundPair& pair : found_.pairs) {
-      if (!pair.presses() && !pair.has_lost()) continue;
+      if (!pair.remembers() && !pair.has_lost()) continue;
       keys.insert(keys.end(), {pair.facets[0], pair.facets[1], pair.is_handed_over ? 1 : 0});
       each_number(pair, [&](double& number) { numbers.push_back(number); });
     }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 
 namespace pyroclast {
@@ -20,14 +22,14 @@ class FoundContacts {
   /// Searches for the pairs at the beginning of a run; where blocks lie in each other already, that part of
   /// their overlap does not count.
   void begin();
-  /// Searches for pairs where gridpoints have gone too far since the last search. A step asks for it with
-  /// the square of the longest way, m².
+  /// Searches for pairs where gridpoints have gone too far since the last search.
   void search_where_needed();
-  bool must_search(double square_of_way) const;
   /// Hands faces over to pairs whose contact points are all broken, with all that the points remember.
   void hand_over();
-  /// Lets the rows follow new properties.
+  /// Lets the rows follow new properties: every end goes through its law in the next step.
   void follow_properties();
+  /// Lets the damping follow new masses.
+  void follow_masses();
   /// Adds the stiffness that free facets may meet to that of their gridpoints, and that of faces beyond their
   /// own contacts', N/m.
   void add_stiffness(std::vector<double>& of_gridpoints) const;
@@ -35,16 +37,9 @@ class FoundContacts {
 
  private:
   using Key = std::array<int, 2>;
-  /// Constants of a law for a set of parameters.
-  struct ConstantsOfSet {
-    std::vector<std::byte> bytes;
-    std::vector<double> numbers;
-    ContactStiffness<double> stiffness;
-  };
-
   Vec<2> place(int gridpoint, const FlatArray<Vec<2>>& displacement) const;
   template <class Place>
-  auto pair_at(const Key& key, Place place) const;
+  EdgePair<double> pair_at(const Key& key, Place place) const;
   double most_depth(const Key& key) const;
   std::array<int, 4> corners(const Key& key) const;
   std::uint32_t ends_that_count(const FoundPair& pair) const;
@@ -56,14 +51,27 @@ class FoundContacts {
   const LawTable& law_of(const FoundPair& pair) const;
   int law_index(const FoundPair& pair) const;
   double damping_of(const FoundPair& pair, double stiffness) const;
-  const ConstantsOfSet& constants_of(int set, std::vector<ConstantsOfSet>& of_sets) const;
+  const ConstantsOfSet& constants_of(int set) const;
   FoundPair new_pair(const Key& key) const;
 
+  struct Box {
+    Vec<2> low, high;
+  };
   void find_far();
-  void find_near();
-  bool is_near(const Key& key) const;
+  std::optional<Box> box_of(int facet) const;
+  void list_if_far(int a, const Box& box_a, int b, const Box& box_b);
+  void add_to_far(const std::vector<int>& facets);
+  void sort_far();
+  void watch();
+  std::vector<double> ways(double steps, double least, double most) const;
+  bool find_near();
+  double way_to_press(const Key& key, const EdgePair<double>& p) const;
+  double way_to_change(const FoundPair& pair, const EdgePair<double>& p) const;
+  double wakes(const Key& key, const FoundPair* handed_over) const;
+  void let_sleep();
+  void search();
   void make_rows();
-  void put_into_row(const FoundPair& pair, int row, int lane, std::vector<ConstantsOfSet>& of_sets);
+  void put_into_row(const FoundPair& pair, int row, int lane);
   void list_loads();
   void take_back();
   void mark_handed_over(int face);

@@ -14,8 +14,11 @@ struct FoundParameters {
   /// Share of critical damping while pairs press: that of a block on its contact. It never pulls.
   double damping = 0.0;
   // The parameters from here on change speed, not results.
-  double skin = 0.1;    ///< distance beyond which pairs are not listed as far, over the mean edge
-  double reach = 0.02;  ///< likewise of near pairs
+  double skin = 0.02;    ///< least distance beyond which pairs are not listed as far, over the mean edge
+  double reach = 0.001;  ///< likewise of near pairs
+  /// Steps that the fastest gridpoint of a block takes to the end of that block's lists of near pairs; more
+  /// steps mean fewer searches, and more pairs in each.
+  double steps = 250.0;
 };
 
 }  // namespace pyroclast

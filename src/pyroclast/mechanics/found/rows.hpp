@@ -25,14 +25,16 @@ struct alignas(64) FoundRow {
   Line thickness;    ///< thickness of the body times the pair's ratio, m; 0 where idle
   Line most_depth;   ///< depth from which on an end does not count, m
   Line not_counted;  ///< m
-  Line area[2], held[2], shift[2], offset[2];     ///< see PairEnd
-  Line shear_stiffness[2];                        ///< Pa/m
-  Line damping;                                   ///< coefficient of damping, Pa s/m
-  Line damped[2];                                 ///< see PairEnd
-  Line stored, applied, lost_area, lost_damping;  ///< see FoundPair
-  std::array<std::uint32_t, 2> counts;            ///< bits of the lanes whose end may press
-  std::uint32_t handed_over;                      ///< bits of the lanes whose pair is handed over
-  int law;                                        ///< entry of State::laws and FoundRows::laws
+  Line area[2], held[2], shift[2], offset[2], rest[2];  ///< see PairEnd
+  Line shear_stiffness[2];                              ///< Pa/m
+  Line damping;                                         ///< coefficient of damping, Pa s/m
+  Line damped[2];                                       ///< see PairEnd
+  Line stored, applied, lost_area, lost_damping;        ///< see FoundPair
+  std::array<std::uint32_t, 2> counts;                  ///< bits of the lanes whose end may press
+  std::uint32_t handed_over;                            ///< bits of the lanes whose pair is handed over
+  double wakes;  ///< FoundRows::way below which no pair of the row can press or change
+  bool rests;    ///< true where no pair pressed in the last step, and all that follows from it is written
+  int law;       ///< entry of State::laws and FoundRows::laws
   int first_internal;  ///< first line of FoundRows::internals, of the first end and then the second
   int first_loss;      ///< first line of FoundRows::lost
   int first_constant;  ///< first line of FoundRows::constants, of the first end and then the second
@@ -43,6 +45,13 @@ struct alignas(64) FoundRow {
 struct LoadedGridpoint {
   int slot = 0;
   int first_force = 0, last_force = 0;  ///< entries of FoundRows::acting
+  double wakes = 0.0;                   ///< least of the rows
+};
+
+/// Pack of gridpoints of free facets.
+struct WatchedPack {
+  Line over_way;  ///< one over the square of the way that each may go before the next search, 1/m²
+  int pack = 0;
 };
 
 /// Arrays of found contacts as a step needs them, owned (FlatArray) or seen (View).
@@ -52,11 +61,11 @@ struct FoundArrays {
   Array<FoundRow> rows;
   Array<Line> internals, lost, constants;
   Array<std::byte> choices;
-  Array<VectorPack<2>> forces;    ///< forces on the four corners of each row, N
+  Array<Vec<2>> forces;           ///< forces on the four corners of each row, eight of each corner, N
   Array<LoadedGridpoint> loaded;  ///< gridpoints by slot
-  Array<int> acting;              ///< places among the numbers of `forces`, in the order of the pairs' keys
-  Array<Vec<2>> force;            ///< sum of these forces by slot, N
-  Array<int> watched;             ///< packs of gridpoints of free facets, ascending
+  Array<int> loaded_of_bundle;    ///< first of them of each bundle, and of one more
+  Array<int> acting;              ///< entries of `forces`, in the order of the pairs' keys
+  Array<WatchedPack> watched;     ///< by pack, ascending
   Array<Vec<2>> searched;         ///< displacement by slot at the last search for near pairs, m
 
   template <class F, class... A>
@@ -69,8 +78,8 @@ struct FoundArrays {
     f(ArrayInfo{"found_choices", Per::entry}, a.choices...);
     f(ArrayInfo{"found_forces", Per::entry}, a.forces...);
     f(ArrayInfo{"found_loaded", Per::entry}, a.loaded...);
+    f(ArrayInfo{"found_loaded_of_bundle", Per::entry}, a.loaded_of_bundle...);
     f(ArrayInfo{"found_acting", Per::entry}, a.acting...);
-    f(ArrayInfo{"found_force", Per::entry}, a.force...);
     f(ArrayInfo{"found_watched", Per::entry}, a.watched...);
     f(ArrayInfo{"found_searched", Per::entry}, a.searched...);
   }
@@ -79,6 +88,8 @@ struct FoundArrays {
 /// What a step sees of found contacts.
 struct FoundRows : FoundArrays<View> {
   bool is_damped = false;
+  /// Longest way since the last search, see FoundContactForces::way.
+  double way = 0.0;
   bool moves = false;  ///< true where the sweep moves the body
 };
 

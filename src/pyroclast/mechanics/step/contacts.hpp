@@ -51,10 +51,20 @@ struct Contacts {
   /// Implements PackFunctions::update.
   static void update(State<Dim>& s, int first, int last, bool measure) {
     with_kinematics(s, [&](auto kinematics) {
-      if (measure)
-        update_packs<kinematics(), true>(s, first, last);
-      else
-        update_packs<kinematics(), false>(s, first, last);
+      const auto packs = measure ? update_packs<kinematics(), true> : update_packs<kinematics(), false>;
+      if constexpr (Dim == 2 && kinematics() == Kinematics::finite)
+        if (!s.handed_over.empty()) {
+          const auto some_handed_over = measure ? update_handed_over<true> : update_handed_over<false>;
+          for (int pack = first; pack < last;) {
+            const bool hands_over = s.handed_over[pack] != 0;
+            int end = pack + 1;
+            while (end < last && (s.handed_over[end] != 0) == hands_over) ++end;
+            (hands_over ? some_handed_over : packs)(s, pack, end);
+            pack = end;
+          }
+          return;
+        }
+      packs(s, first, last);
     });
   }
 
@@ -66,61 +76,44 @@ struct Contacts {
   // flatten, because lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
   [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
-    [[maybe_unused]] const bool hands_over = !s.handed_over.empty();
     for (int pack = first; pack < last; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
-      if constexpr (Dim == 2 && kKinematics == Kinematics::finite)
-        if (hands_over && s.handed_over[pack] != 0) {
-          update_handed_over<kMeasure>(s, pack);
-          continue;
-        }
-      update_pack<kKinematics, kMeasure>(s, pack,
-                                         [](const PointPack& point) { return Real::load(point.area); });
+      update_pack<kKinematics, kMeasure>(s, pack, EveryFace());
     }
   }
 
-  /// Updates a pack of faces of which found pairs press some: these keep their history, and bear nothing.
+  /// Updates packs of faces of which found pairs press some: these keep their history, and bear nothing.
   template <bool kMeasure>
-  [[gnu::flatten, gnu::noinline]] static void update_handed_over(State<Dim>& s, int pack) {
-    const auto handed_over = Real::Truth::from_bits(s.handed_over[pack]);
-    const auto area_of = [&](const PointPack& point) {
-      return select(handed_over, Real(0.0), Real::load(point.area));
-    };
-    const int first = s.layout.first_point_of(pack);
-    if (!any(area_of(s.layout.points[first]) > 0.0)) {
+  [[gnu::flatten, gnu::noinline]] static void update_handed_over(State<Dim>& __restrict s, int first_pack,
+                                                                 int last_pack) {
+    for (int pack = first_pack; pack < last_pack; ++pack) {
+      R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
+      const OtherFaces faces{Real::Truth::from_bits(s.handed_over[pack])};
+      const int first = s.layout.first_point_of(pack);
+      if (any(faces.area(s.layout.points[first]) > 0.0)) {
+        update_pack<Kinematics::finite, kMeasure>(s, pack, faces);
+        continue;
+      }
       for (int at = first; at < s.layout.first_point_of(pack + 1); ++at)
         for (auto* const forces : {&s.contact_force[slot_of(at, 0)], &s.turning_force[slot_of(at, 0)]})
           R::store(Vector{}, forces);
       if constexpr (kMeasure) s.face_sums[pack] = {};
-      return;
     }
-    HistoryOfFaces history;
-    history.keep(s, pack);
-    update_pack<Kinematics::finite, kMeasure>(s, pack, area_of);
-    history.put_back(s, pack, handed_over);
   }
 
-  /// Internal variables and losses of a pack of faces in the plane.
-  struct HistoryOfFaces {
-    static constexpr int kPoints = 2;
-    Line lines[kPoints * (kInternals + kLosses) + 1];
+  /// Faces that an update takes through the law: all of a pack.
+  struct EveryFace {
+    static Real area(const PointPack& point) { return Real::load(point.area); }
+    static void put(const Real& number, double* to) { number.store(to); }
+    static Real lost(const Real& more) { return more; }
+  };
+  /// Faces of a pack that are not handed over to found pairs.
+  struct OtherFaces {
+    typename Real::Truth handed_over = Real::Truth::from_bits(0);
 
-    void keep(const State<Dim>& s, int pack) {
-      const auto take = [](Line* kept, const Line* line, int count) {
-        for (int i = 0; i < count; ++i) kept[i] = line[i];
-      };
-      take(lines, s.internals.data() + s.first_internal[pack], kPoints * kInternals);
-      take(lines + kPoints * kInternals, s.loss.data() + s.first_loss[pack], kPoints * kLosses);
-    }
-    /// \param lanes  true where the faces keep it
-    void put_back(const State<Dim>& s, int pack, const typename Real::Truth& lanes) const {
-      const auto put = [&](Line* line, const Line* kept, int count) {
-        for (int i = 0; i < count; ++i)
-          select(lanes, Real::load(kept[i].number), Real::load(line[i].number)).store(line[i].number);
-      };
-      put(s.internals.data() + s.first_internal[pack], lines, kPoints * kInternals);
-      put(s.loss.data() + s.first_loss[pack], lines + kPoints * kInternals, kPoints * kLosses);
-    }
+    Real area(const PointPack& point) const { return select(handed_over, Real(0.0), Real::load(point.area)); }
+    void put(const Real& number, double* to) const { select(handed_over, Real::load(to), number).store(to); }
+    Real lost(const Real& more) const { return select(handed_over, Real(0.0), more); }
   };
 
   /// Implements PackFunctions::update_lanes.
@@ -130,7 +123,7 @@ struct Contacts {
     Tangential<Dim, Real> tangential;
     for (int t = 0; t + 1 < Dim; ++t) tangential[t] = Real::load(jump[t + 1].number);
     const auto respond = [&](const auto& with) {
-      return update_lines(with, Real::load(jump[0].number), tangential, internals, losses);
+      return update_lines(with, Real::load(jump[0].number), tangential, internals, losses, EveryFace());
     };
     const auto r = own ? respond(own_constants(of_all, own)) : respond(of_all);
     LanesResponse response;
@@ -184,34 +177,34 @@ struct Contacts {
     return frame;
   }
 
-  /// \param area_of  function that returns the areas on which points press
-  template <Kinematics kKinematics, bool kMeasure, class AreaOf>
-  static void update_pack(State<Dim>& s, int pack, AreaOf area_of) {
+  /// \param faces  the faces that go through the law: EveryFace or OtherFaces
+  template <Kinematics kKinematics, bool kMeasure, class Faces>
+  static void update_pack(State<Dim>& s, int pack, const Faces& faces) {
     if (s.one_set[pack]) {
       const OneForAll& constants = constants_of_set(s, pack);
       respond_to_jumps<kKinematics, kMeasure>(
-          s, pack, area_of, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-            return update_point(s, pack, point, constants, opening, tangential);
+          s, pack, faces, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+            return update_point(s, pack, point, constants, opening, tangential, faces);
           });
     } else {
       respond_to_jumps<kKinematics, kMeasure>(
-          s, pack, area_of, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-            return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential);
+          s, pack, faces, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+            return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential, faces);
           });
     }
   }
 
-  /// \param area_of  as of update_pack
+  /// \param faces    as of update_pack
   /// \param respond  function from (point, opening, tangential jump) to a ContactResponse
-  template <Kinematics kKinematics, bool kMeasure, class AreaOf, class Respond>
-  static void respond_to_jumps(State<Dim>& s, int pack, AreaOf area_of, Respond respond) {
+  template <Kinematics kKinematics, bool kMeasure, class Faces, class Respond>
+  static void respond_to_jumps(State<Dim>& s, int pack, const Faces& faces, Respond respond) {
     const Frame frame = frame_of<kKinematics>(s, pack);
     const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
     Real turning = 0.0;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
     for (int at = first; at < last; ++at) {
       const PointPack& point = s.layout.points[at];
-      const Real area = area_of(point);
+      const Real area = faces.area(point);
       const Vector jump = R::gather_differences(s.displacement, point.b, point.a);
       const Real opening = dot(jump, frame.normal);
       Tangential<Dim, Real> tangential;
@@ -229,13 +222,13 @@ struct Contacts {
       }
     }
     if constexpr (kKinematics == Kinematics::finite)
-      add_turning_forces(s, first, frame, turning * area_of(s.layout.points[first]));
+      add_turning_forces(s, first, frame, turning * faces.area(s.layout.points[first]));
     if constexpr (kMeasure) {
       FaceSums& sums = s.face_sums[pack];
       sums.stored = sum(stored);
       sums.applied = sum(applied);
-      sums.jump =
-          largest(select(area_of(s.layout.points[first]) > 0.0, widest / size_against_jumps(s, first), 0.0));
+      sums.jump = largest(
+          select(faces.area(s.layout.points[first]) > 0.0, widest / size_against_jumps(s, first), 0.0));
     }
   }
 
@@ -262,33 +255,38 @@ struct Contacts {
     return c;
   }
 
-  template <class Constants>
+  template <class Constants, class Faces>
   static ContactResponse<Dim, Real> update_point(State<Dim>& s, int pack, int point,
                                                  const Constants& constants, const Real& opening,
-                                                 const Tangential<Dim, Real>& tangential) {
+                                                 const Tangential<Dim, Real>& tangential,
+                                                 const Faces& faces) {
     Line *internals = nullptr, *losses = nullptr;
     if constexpr (kInternals > 0) internals = &s.internals[s.first_internal[pack] + point * kInternals];
     if constexpr (kLosses > 0) losses = &s.loss[s.first_loss[pack] + point * kLosses];
-    const auto response = update_lines(constants, opening, tangential, internals, losses);
+    const auto response = update_lines(constants, opening, tangential, internals, losses, faces);
     if constexpr (kLosses > 0) s.losing[s.layout.first_point_of(pack) + point] = response.changed != 0;
     return response;
   }
 
   /// Takes eight points through the law. Internal variables are written only where the law says that they
   /// may have changed.
-  template <class Constants>
+  template <class Constants, class Faces>
   static ContactResponse<Dim, Real> update_lines(const Constants& constants, const Real& opening,
                                                  const Tangential<Dim, Real>& tangential, Line* internals,
-                                                 Line* losses) {
+                                                 Line* losses, const Faces& faces) {
     Internals h;
     Internals::each(
         [&, line = internals](const auto&, Real& number) mutable { number = Real::load(line++->number); }, h);
-    typename Law::template Losses<LineSum> sums;
-    sums.each([&, line = losses](const auto&, LineSum& sum) mutable { sum.number = line++->number; }, sums);
+    typename Law::template Losses<LineSum<Faces>> sums;
+    sums.each(
+        [&, line = losses](const auto&, LineSum<Faces>& sum) mutable {
+          sum = {line++->number, faces};
+        },
+        sums);
     const auto response = Law::template update<Dim>(constants, opening, tangential, h, sums);
     Internals::each(
         [&, line = internals](const InternalInfo& info, const Real& number) mutable {
-          if (info.when == 0 || (response.changed & info.when) != 0) number.store(line->number);
+          if (info.when == 0 || (response.changed & info.when) != 0) faces.put(number, line->number);
           ++line;
         },
         h);
@@ -296,9 +294,11 @@ struct Contacts {
   }
 
   /// Sum that adds to eight numbers in an array.
+  template <class Faces>
   struct LineSum {
     double* number = nullptr;
-    void operator+=(const Real& more) const { (Real::load(number) + more).store(number); }
+    Faces faces{};
+    void operator+=(const Real& more) const { (Real::load(number) + faces.lost(more)).store(number); }
   };
 
   /// Adds forces that keep moments in balance where the frame turns with the edge. The components of a jump

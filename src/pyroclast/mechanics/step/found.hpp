@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/rows.hpp"
@@ -18,42 +19,52 @@ struct FoundContactForces {
 
   /// Computes the forces of rows.
   static void update(State<2>& s, int first, int last) {
-    for (int row = first; row < last; ++row) update_row(s, *s.found, row);
+    FoundRows& found = *s.found;
+    for (int row = first; row < last; ++row)
+      if (!(found.way < found.rows[row].wakes)) update_row(s, found, row);
   }
 
-  /// Sums the forces of rows on gridpoints.
-  /// \param first, last  entries of FoundRows::loaded
-  static void sum_forces(State<2>& s, int first, int last) {
-    FoundRows& found = *s.found;
-    const double* const forces = &found.forces.data()->c[0][0];
-    for (int i = first; i < last; ++i) {
+  /// Adds the forces of rows on the gridpoints of a bundle.
+  /// \param index  index of the bundle
+  /// \param sum    sums of forces by pack from the bundle's first on, N
+  static void add_forces(const FoundRows& found, const Bundle& bundle, int index, VectorPack<2>* sum) {
+    for (int i = found.loaded_of_bundle[index]; i < found.loaded_of_bundle[index + 1]; ++i) {
       const LoadedGridpoint& gridpoint = found.loaded[i];
-      Vec<2> sum{};
-      for (int k = gridpoint.first_force; k < gridpoint.last_force; ++k) {
-        sum[0] += forces[found.acting[k]];
-        sum[1] += forces[found.acting[k] + kLanes];
-      }
-      found.force[gridpoint.slot] = sum;
+      if (found.way < gridpoint.wakes) continue;
+      Vec<2> force{};
+      for (int k = gridpoint.first_force; k < gridpoint.last_force; ++k)
+        force += found.forces[found.acting[k]];
+      auto& of_pack = sum[gridpoint.slot / kLanes - bundle.first_pack].c;
+      for (int j = 0; j < 2; ++j) of_pack[j][gridpoint.slot % kLanes] += force[j];
     }
   }
 
-  /// Returns the square of the longest way of a watched gridpoint since the last search, m².
+  /// Returns the square of the longest way of a watched gridpoint since the last search, over that of the way
+  /// that it may go before the next one.
   /// \param first, last  entries of FoundRows::watched
   static double way(const State<2>& s, int first, int last) {
     const FoundRows& found = *s.found;
     Real longest = 0.0;
     for (int i = first; i < last; ++i) {
-      const int slot = slot_of(found.watched[i], 0);
+      const WatchedPack& watched = found.watched[i];
+      const int slot = slot_of(watched.pack, 0);
       const Vector moved = R::load(&s.displacement[slot]) - R::load(&found.searched[slot]);
-      longest = larger(longest, dot(moved, moved));
+      longest = larger(longest, dot(moved, moved) * Real::load(watched.over_way.number));
     }
     return largest(longest);
   }
 
  private:
+  /// Corners, pairs and conditions of a row in a step.
+  struct Now {
+    Truth handed_over;             ///< pairs that are handed over, and face each other
+    std::array<Truth, 2> goes_in;  ///< ends whose gap asks the law
+    std::array<Real, 2> gap, area_before;
+  };
+
   [[gnu::flatten]] static void update_row(const State<2>& s, FoundRows& found, int index) {
     FoundRow& row = found.rows[index];
-    VectorPack<2>* const forces = &found.forces[4 * index];
+    Vec<2>* const forces = &found.forces[4 * kLanes * index];
     const auto corner = [&](int i) {
       return R::gather(s.gathered_position, row.corners[i]) + R::gather(s.displacement, row.corners[i]);
     };
@@ -61,35 +72,47 @@ struct FoundContactForces {
     const EdgePair<Real> p =
         edge_pair<Real>({corner(0), corner(1)}, {corner(2), corner(3)}, Real::load(row.unloaded_a.number),
                         Real::load(row.unloaded_b.number));
-    const std::array<Real, 2> gap{p.gap[0] + Real::load(row.offset[0].number),
-                                  p.gap[1] + Real::load(row.offset[1].number)};
-    const std::array<Real, 2> area_before{Real::load(row.area[0].number), Real::load(row.area[1].number)};
+    Now now;
+    const Truth was_handed_over = Truth::from_bits(row.handed_over);
+    now.handed_over = p.face & was_handed_over;
     const Real most_depth = Real::load(row.most_depth.number);
-    const auto is_pressed = [&](int k) { return (gap[k] < zero) & (zero - gap[k] < most_depth); };
-    const Truth handed_over = p.face & Truth::from_bits(row.handed_over);
-    const Truth touches = p.face & (is_pressed(0) | is_pressed(1));
-    // most rows stand apart
-    if (!any(touches | handed_over | (area_before[0] > zero) | (area_before[1] > zero) | is_damped(row))) {
-      if (row.handed_over != 0) let_go(s, row, 0);
-      zero.store(row.not_counted.number);
-      for (int i = 0; i < 4; ++i) R::store(Vector{}, forces[i].c);
-      for (Line* line : {&row.stored, &row.applied}) zero.store(line->number);
+    for (int k = 0; k < 2; ++k) {
+      now.gap[k] = p.gap[k] + Real::load(row.offset[k].number);
+      now.area_before[k] = Real::load(row.area[k].number);
+      now.goes_in[k] =
+          p.face & (now.gap[k] < Real::load(row.rest[k].number)) & (zero - now.gap[k] < most_depth);
+    }
+    const Truth touches = now.goes_in[0] | now.goes_in[1];
+    const bool works =
+        any(touches | (now.area_before[0] > zero) | (now.area_before[1] > zero) | is_damped(row));
+    const auto leaves = was_handed_over & !p.face;
+    // most rows stand apart, or rest
+    if (!works) {
+      if (row.handed_over != 0 && any(leaves)) let_go(s, row, leaves);
+      if (!row.rests) rest(row, forces);
       return;
     }
+    row.rests = false;
     const Real not_counted = select(touches, smaller(Real::load(row.not_counted.number), p.overlap), zero);
     not_counted.store(row.not_counted.number);
-    if (row.handed_over != 0) let_go(s, row, bits_of(handed_over));
-    EndAreas<Real> areas(p, Real::load(row.thickness.number), not_counted, gap);
+    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
+    EndAreas<Real> areas(p, Real::load(row.thickness.number), not_counted, most_depth, now.gap);
     EndTractions<Real> tractions;
     Real stored = zero;
     const auto way = found.is_damped ? gap_ways(s, row, p) : std::array<Real, 2>{zero, zero};
     for (int k = 0; k < 2; ++k) {
       const Truth acts = p.face & Truth::from_bits(row.counts[k]) & (areas.area[k] > zero) &
-                         (areas.counted > zero) & (is_pressed(k) | handed_over);
+                         (areas.counted > zero) &
+                         (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
+      if (any(acts | (now.area_before[k] > zero))) {
+        stored += press_end(s, row, k, acts, now, p.slide[k], areas.area[k], tractions);
+      } else {
+        areas.area[k] = zero;
+        forget(s, row, k, leaves);
+      }
+      const Truth bears = areas.area[k] > zero;
       auto& end = areas.ends[k];
-      areas.area[k] = select(acts, areas.area[k], zero);
-      for (Real* number : {&end.depth, &end.share, &end.slope}) *number = select(acts, *number, zero);
-      stored += press_end(s, row, k, acts, gap[k], p.slide[k], area_before[k], areas.area[k], tractions);
+      for (Real* number : {&end.depth, &end.share, &end.slope}) *number = select(bears, *number, zero);
     }
     for (int k = 0; found.is_damped && k < 2; ++k)
       damp(s, row, k, way[k], areas.area[k], tractions.normal[k]);
@@ -100,23 +123,34 @@ struct FoundContactForces {
     for (int i = 0; i < 4; ++i) {
       f[i] = R::where(loaded, f[i]);
       applied += norm(f[i]);
-      R::store(f[i], forces[i].c);
+      R::store(f[i], &forces[i * kLanes]);
     }
     applied.store(row.applied.number);
   }
 
+  /// Writes what follows where no pair of a row presses.
+  static void rest(FoundRow& row, Vec<2>* forces) {
+    const Real zero = 0.0;
+    for (int i = 0; i < 4; ++i) R::store(Vector{}, &forces[i * kLanes]);
+    for (Line* line : {&row.not_counted, &row.stored, &row.applied}) zero.store(line->number);
+    row.rests = true;
+  }
+
   /// Takes one end of eight pairs through its law, and books its losses. Returns the energy stored, J.
-  static Real press_end(const State<2>& s, FoundRow& row, int k, const Truth& acts, const Real& gap,
-                        const Real& slide, const Real& area_before, const Real& area,
-                        EndTractions<Real>& tractions) {
+  /// \param acts  ends that may press
+  /// \param area  in and out: areas; zero where an end bears nothing, m²
+  static Real press_end(const State<2>& s, FoundRow& row, int k, const Truth& acts, const Now& now,
+                        const Real& slide, Real& area, EndTractions<Real>& tractions) {
     const Real zero = 0.0;
     FoundRows& found = *s.found;
     const LawOfRows& law = found.laws[row.law];
     Line* const internals = &found.internals[row.first_internal + k * law.internals];
     const Real stiffness = Real::load(row.shear_stiffness[k].number);
+    const Real& area_before = now.area_before[k];
+    area = select(acts, area, zero);
     Real held = Real::load(row.held[k].number), shift = Real::load(row.shift[k].number);
-    // The elastic jump of a new end is zero. Where the area grows the force stays and energy is lost; where
-    // it shrinks the jump stays, and the energy of what leaves is lost.
+    // An end that begins to press goes on from the jump at which it rested. Where the area grows the force
+    // stays and energy is lost; where it shrinks the jump stays, and the energy of what leaves is lost.
     const Truth presses_on = acts & (area_before > zero);
     const Truth grows = presses_on & (area > area_before);
     const Real held_on = select(grows, held * (area_before / area), held);
@@ -127,16 +161,20 @@ struct FoundContactForces {
                zero) +
         select(presses_on & (area < area_before), 0.5 * stiffness * held * held * (area_before - area), zero);
     (Real::load(row.lost_area.number) + lost).store(row.lost_area.number);
-    shift = select(presses_on, shift - (held - held_on), zero - slide);
+    const Truth rested = !(area_before > zero);
+    shift = select(rested, shift - slide, shift - select(presses_on, held - held_on, zero));
     if (law.held_jump >= 0) {
       double* const number = internals[law.held_jump].number;
       select(grows, abs(held_on), Real::load(number)).store(number);
     }
     std::array<Line, 2> jump;
-    select(acts, gap, Real(kOpen)).store(jump[0].number);
+    select(acts, now.gap[k], Real(kOpen)).store(jump[0].number);
     select(acts, slide + shift, zero).store(jump[1].number);
-    Line losses[LawOfRows::kMost];
+    Line losses[LawOfRows::kMost], before[LawOfRows::kMost];
     for (int i = 0; i < law.losses; ++i) zero.store(losses[i].number);
+    const Truth keeps = now.handed_over & !acts;
+    const bool some_keep = any(keeps);
+    for (int i = 0; some_keep && i < law.internals; ++i) before[i] = internals[i];
     const LanesResponse response = s.laws[row.law].update_lanes(
         &found.choices[row.first_choice], &found.constants[row.first_constant + k * law.constants],
         jump.data(), internals, losses);
@@ -148,17 +186,29 @@ struct FoundContactForces {
       }
     }
     if (any(!acts))
-      for (int i = 0; i < law.internals; ++i)
-        select(acts, Real::load(internals[i].number), Real(law.broken[i])).store(internals[i].number);
-    const auto kept = [&](const Real& number, Line& line) { select(acts, number, zero).store(line.number); };
+      for (int i = 0; i < law.internals; ++i) {
+        const Real kept = some_keep ? select(keeps, Real::load(before[i].number), Real(law.broken[i]))
+                                    : Real(law.broken[i]);
+        select(acts, Real::load(internals[i].number), kept).store(internals[i].number);
+      }
+    const Real normal = select(acts, Real::load(response.normal_traction.number), zero);
     const Real shear = select(acts, Real::load(response.shear_traction[0].number), zero);
-    held = shear / stiffness;
-    const Real stored = select(acts, Real::load(response.stored.number), zero);
-    kept(area, row.area[k]);
-    kept(held, row.held[k]);
-    kept(shift, row.shift[k]);
-    tractions.normal[k] = select(acts, Real::load(response.normal_traction.number), zero);
+    // An end that is handed over and bears nothing rests, with its jump, until its gap falls below the
+    // present one; one that is too deep is asked again in each step.
+    const Truth pulls_or_presses = (abs(normal) > zero) | (abs(shear) > zero);
+    const Truth bears = acts & (pulls_or_presses | (!now.handed_over));
+    const Truth begins_to_rest = now.handed_over & !bears & (acts | !rested);
+    const Real rest_at = select(acts, now.gap[k], Real(kAlwaysAsked));
+    select(begins_to_rest, rest_at, Real::load(row.rest[k].number)).store(row.rest[k].number);
+    const Real jump_at_rest = select(keeps & rested, Real::load(row.shift[k].number), slide + shift);
+    area = select(bears, area, zero);
+    held = select(bears, shear / stiffness, zero);
+    area.store(row.area[k].number);
+    held.store(row.held[k].number);
+    select(bears, shift, select(now.handed_over, jump_at_rest, zero)).store(row.shift[k].number);
+    tractions.normal[k] = normal;
     tractions.shear[k] = shear;
+    const Real stored = select(acts, Real::load(response.stored.number), zero);
     tractions.stored[k] = stored - 0.5 * shear * held;
     return stored * area;
   }
@@ -204,15 +254,30 @@ struct FoundContactForces {
     force.store(row.damped[k].number);
   }
 
-  /// Makes those handed-over pairs whose edges have left each other new ones.
-  /// \param still  bits of those that go on
-  static void let_go(const State<2>& s, FoundRow& row, std::uint32_t still) {
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (((row.handed_over & ~still) >> static_cast<unsigned>(lane) & 1U) != 0) {
-        row.thickness.number[lane] = s.thickness;
-        for (Line& offset : row.offset) offset.number[lane] = 0.0;
-      }
-    row.handed_over = still;
+  /// Makes handed-over pairs whose edges have left each other new ones, but for what they still bear.
+  static void set_apart(const State<2>& s, FoundRow& row, const Truth& leaves) {
+    const Real zero = 0.0;
+    select(leaves, Real(s.thickness), Real::load(row.thickness.number)).store(row.thickness.number);
+    for (int k = 0; k < 2; ++k)
+      for (Line* line : {&row.offset[k], &row.rest[k]})
+        select(leaves, zero, Real::load(line->number)).store(line->number);
+    row.handed_over &= ~bits_of(leaves);
+  }
+
+  /// Makes handed-over pairs that rest, and whose edges have left each other, new ones.
+  static void let_go(const State<2>& s, FoundRow& row, const Truth& leaves) {
+    set_apart(s, row, leaves);
+    for (int k = 0; k < 2; ++k) forget(s, row, k, leaves);
+  }
+
+  /// Takes the history of one end from pairs that rest and leave each other.
+  static void forget(const State<2>& s, FoundRow& row, int k, const Truth& leaves) {
+    if (!any(leaves)) return;
+    const LawOfRows& law = s.found->laws[row.law];
+    select(leaves, Real(0.0), Real::load(row.shift[k].number)).store(row.shift[k].number);
+    Line* const internals = &s.found->internals[row.first_internal + k * law.internals];
+    for (int i = 0; i < law.internals; ++i)
+      select(leaves, Real(law.broken[i]), Real::load(internals[i].number)).store(internals[i].number);
   }
 
   static std::uint32_t bits_of(const Truth& condition) {
@@ -225,6 +290,7 @@ struct FoundContactForces {
   }
 
   static constexpr double kOpen = 1.0;  ///< opening of an end that does not press, m
+  static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
 };
 
 }  // namespace pyroclast

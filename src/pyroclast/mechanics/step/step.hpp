@@ -86,7 +86,6 @@ class Step {
     if constexpr (Dim == 2) {
       using Found = FoundContactForces<Set>;
       all.update_found = Found::update;
-      all.sum_found = Found::sum_forces;
       all.way_of_found = Found::way;
     }
     return all;
@@ -101,6 +100,8 @@ class Step {
     Sums sums;
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
+    if constexpr (Dim == 2 && kKinematics == Kinematics::finite)
+      if (s.found) FoundContactForces<Set>::add_forces(*s.found, bundle, index, scratch.sum);
     if (bundle.kind == BundleKind::piece && !bundle.is_part)
       Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, index, sums);
     Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);
@@ -168,15 +169,6 @@ class Step {
       }
       R::store(C::template add_forces<kKinematics, true>(s, pack, total), scratch.sum[i].c);
     }
-    if constexpr (kKinematics == Kinematics::finite)
-      if (s.found) add_found(s, bundle, scratch);
-  }
-
-  /// Adds the forces of found contacts.
-  static void add_found(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
-    for (int i = 0; i < bundle.packs; ++i)
-      R::store(R::load(scratch.sum[i].c) + R::load(&s.found->force[slot_of(bundle.first_pack + i, 0)]),
-               scratch.sum[i].c);
   }
 
  private:

@@ -1,0 +1,87 @@
+#include "pyroclast/setup/read_bodies.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "pyroclast/specimen/region.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Fewest edges of a round body.
+constexpr double kFewestEdges = 12.0;
+
+ReadBody read_body(const Section& s, double block_size) {
+  ReadBody read{s, {}, {}};
+  LooseBody& body = read.body;
+  body.name = s.text("name", "of the body, and of its sets `<name>` and `<name>_outline`");
+  body.deck_place = fmt::format("{}: {}", s.where("name"), s.path());
+  constexpr Meaning kEdge = "of the body's zones, about; without it the size of the specimen's blocks";
+  if (s.has("edge") || block_size == 0.0)
+    body.edge = s.quantity("edge", unit::length, Range::positive(), kEdge);
+  else
+    body.edge = block_size;
+  if (s.has("diameter")) {
+    if (s.has("corners")) s.error("corners", "either corners, or centre and diameter; not both");
+    const double diameter = s.quantity("diameter", unit::length, Range::positive(), "of a round body");
+    const auto centre = s.place("centre", unit::length, "of a round body");
+    if (s.ok())
+      body.corners =
+          specimen::circle_corners({{centre->first, centre->second}}, diameter,
+                                   std::min(body.edge, std::numbers::pi * diameter / kFewestEdges));
+  } else {
+    for (const auto& [x, y] : s.places("corners", unit::length, 3, "of a convex body, in either sense"))
+      body.corners.push_back({{x, y}});
+    if (s.ok() && !is_convex(body.corners)) s.error("corners", "must go round a convex area");
+  }
+  s.know({"corners", "centre", "diameter", "edge"});
+  body.material = s.text("material", "platen", "of the body: a table of [materials], at 20 °C in every run");
+  read.interface.name = body.name;
+  read.interface.friction =
+      s.number("friction", Range::non_negative().usually(0.0, 1.0),
+               "coefficient of friction between the body and all that it meets; of two bodies that of the "
+               "later one");
+  return read;
+}
+
+}  // namespace
+
+std::vector<ReadBody> read_bodies(const Section& root, const DeckSpace& space, double block_size) {
+  std::vector<ReadBody> bodies;
+  for (const Section& s : root.optional_sections(
+           "bodies",
+           "blocks that are not made with the specimen, any number: plates, strips, things that fall; see "
+           "[Bodies of their own](../do/bodies.md#bodies-of-their-own)")) {
+    ReadBody read = read_body(s, block_size);
+    if (space.is_solid()) s.error("name", "a solid has no bodies of their own yet");
+    const auto same = [&](const ReadBody& other) { return other.body.name == read.body.name; };
+    if (s.ok() && std::ranges::any_of(bodies, same))
+      s.error("name", fmt::format("\"{}\" is the name of another body", read.body.name));
+    bodies.push_back(std::move(read));
+  }
+  return bodies;
+}
+
+std::vector<StartVelocity> read_velocities(const Section& root, const DeckSpace& space) {
+  std::vector<StartVelocity> velocities;
+  for (const Section& s :
+       root.optional_sections("velocities", "velocities at the start of the run, of any number of sets")) {
+    StartVelocity start;
+    start.set = s.text("set", "set of gridpoints that moves; see [Sets](../do/bodies.md#sets)");
+    start.deck_place = fmt::format("{}: {}", s.where("set"), s.path());
+    const auto velocity =
+        s.quantities("velocity", unit::velocity, Range::any(), "as [x, y], in a solid [x, y, z]");
+    if (s.ok() && std::ssize(velocity) != space.dimension())
+      s.error("velocity", fmt::format("must be {}, got {} numbers", space.is_solid() ? "[x, y, z]" : "[x, y]",
+                                      velocity.size()));
+    else if (s.ok())
+      std::ranges::copy(velocity, start.velocity.c.begin());
+    velocities.push_back(std::move(start));
+  }
+  return velocities;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,107 @@
+// Promise: bodies of their own and velocities at the start become parts of the model and of its first state,
+// and a deck that asks for impossible ones is refused with its place.
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "decks.hpp"
+#include "messages.hpp"
+#include "pyroclast/setup/setup.hpp"
+
+namespace pyroclast {
+namespace {
+
+Setup setup_of(const std::string& deck) {
+  return read_setup(Deck::parse(deck, "deck.toml"), ".");
+}
+
+/// The block that falls, of few blocks.
+std::string drop() {
+  return with(shipped_case("drop"), "count = 600", "count = 60");
+}
+
+TEST(LooseBodies, AreBlocksWithSetsAndAnInterface) {
+  const auto simulation = make_simulation(setup_of(drop()));
+  const auto& model = static_cast<const ModelOf<2>&>(simulation->model());
+  const int plate = model.block_count() - 1;
+  EXPECT_TRUE(model.is_of_bearing(plate));
+  EXPECT_EQ(model.set("plate").size(),
+            static_cast<std::size_t>(model.block_gridpoints[plate + 1] - model.block_gridpoints[plate]));
+  EXPECT_EQ(model.set("plate").size(), 31U * 4U);
+  EXPECT_EQ(model.set("plate_outline").size(), 66U);  // edges of 10 mm around 300 mm x 30 mm
+  EXPECT_EQ(model.interface_names.back(), "plate");
+  double area = 0.0;
+  const auto volumes = model.zone_volumes();
+  for (int z = model.block_zones[plate]; z < model.block_zones[plate + 1]; ++z) area += volumes[z];
+  EXPECT_NEAR(area, 0.3 * 0.03, 1e-12);
+  EXPECT_EQ(interfaces_of_loose_bodies(model)[plate], std::ssize(model.interface_names) - 1);
+  EXPECT_EQ(interfaces_of_loose_bodies(model)[0], -1);
+  const auto of_plate = simulation->materials().contacts.back();
+  EXPECT_EQ(of_plate["friction"](20.0), 0.3);
+}
+
+// Promise: a round body has the area that its diameter says.
+TEST(LooseBodies, MayBeRound) {
+  const std::string ball = with(drop(),
+                                "corners = [[\"-150 mm\", \"-31 mm\"], [\"150 mm\", \"-31 mm\"], "
+                                "[\"150 mm\", \"-1 mm\"], [\"-150 mm\", \"-1 mm\"]]",
+                                "centre = [\"0 mm\", \"-80 mm\"]\ndiameter = \"120 mm\"");
+  const auto simulation = make_simulation(setup_of(ball));
+  const auto& model = static_cast<const ModelOf<2>&>(simulation->model());
+  const auto volumes = model.zone_volumes();
+  double area = 0.0;
+  for (int z = model.block_zones[model.block_count() - 1]; z < model.zone_count(); ++z) area += volumes[z];
+  EXPECT_NEAR(area, 0.25 * std::numbers::pi * 0.12 * 0.12, 1e-12);
+}
+
+// Promise: the ledger counts what a body has at the start, and gravity adds to it.
+TEST(StartVelocities, AreThoseOfTheFirstStep) {
+  const auto simulation = make_simulation(setup_of(drop()));
+  const Motion& motion = simulation->motion();
+  const auto& model = simulation->model();
+  for (const int g : model.set("specimen")) EXPECT_EQ(motion.read().velocity(g), (Vec<3>{{0.0, -4.0, 0.0}}));
+  for (const int g : model.set("plate")) EXPECT_EQ(motion.read().velocity(g), Vec<3>{});
+  const EnergyLedger start = motion.totals().energy();
+  const double mass = 0.01 * 2200.0;  // some 24 kg, with its aggregate
+  EXPECT_GT(start.kinetic, 0.5 * mass * 16.0);
+  EXPECT_LT(start.kinetic, 1.2 * 0.5 * mass * 16.0);
+  EXPECT_NEAR(start.error(), 0.0, 1e-12 * start.kinetic);
+  simulation->motion().advance(100);
+  const EnergyLedger later = motion.totals().energy();
+  EXPECT_GT(later.kinetic, start.kinetic);
+  EXPECT_NEAR(later.kinetic - start.kinetic, later.gravity, 0.01 * later.gravity);  // one step of 100
+}
+
+TEST(LooseBodies, WrongOnesAreRefusedWithTheirPlace) {
+  const auto refusal = [](const std::string& value, const std::string& other) {
+    return message([&] { make_simulation(setup_of(with(drop(), value, other))); });
+  };
+  const auto says = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const std::string corners =
+      "corners = [[\"-150 mm\", \"-31 mm\"], [\"150 mm\", \"-31 mm\"], "
+      "[\"150 mm\", \"-1 mm\"], [\"-150 mm\", \"-1 mm\"]]";
+  says(refusal("contacts = \"found\"", "contacts = \"first\""), "bodies[0]");
+  says(refusal("name = \"plate\"", "name = \"mortar_mortar\""), "bodies[0].name");
+  says(refusal("name = \"plate\"", "name = \"outline\""), "there is one already");
+  says(refusal("friction = 0.3", "friction = -0.3"), "bodies[0].friction");
+  says(refusal("edge = \"10 mm\"", "edge = \"0 mm\""), "bodies[0].edge");
+  says(refusal("edge = \"10 mm\"", "material = \"mortar\""), "bodies[0].material");
+  says(refusal("edge = \"10 mm\"", "material = \"wood\""), "materials.wood");
+  says(refusal("edge = \"10 mm\"", "centre = [\"0 mm\", \"0 mm\"]\ndiameter = \"10 mm\""), "not both");
+  says(refusal(corners,
+               "corners = [[\"0 mm\", \"-31 mm\"], [\"9 mm\", \"-2 mm\"], [\"0 mm\", \"-20 mm\"], "
+               "[\"-9 mm\", \"-2 mm\"]]"),
+       "must go round a convex area");
+  const std::string inside = refusal("\"-1 mm\"]]", "\"9 mm\"]]");
+  says(inside, "lies in another block");
+  says(inside, "deck.toml:");
+  says(refusal("set = \"specimen\"\nvelocity", "set = \"spec\"\nvelocity"), "there is no set \"spec\"");
+  says(refusal("[\"0 m/s\", \"-4 m/s\"]", "[\"-4 m/s\"]"), "velocities[0].velocity");
+}
+
+}  // namespace
+}  // namespace pyroclast
