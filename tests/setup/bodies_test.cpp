@@ -76,7 +76,7 @@ TEST(StartVelocities, AreThoseOfTheFirstStep) {
 
 TEST(LooseBodies, WrongOnesAreRefusedWithTheirPlace) {
   const auto refusal = [](const std::string& value, const std::string& other) {
-    return message([&] { make_simulation(setup_of(with(drop(), value, other))); });
+    return pyroclast::message([&] { make_simulation(setup_of(with(drop(), value, other))); });
   };
   const auto says = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
