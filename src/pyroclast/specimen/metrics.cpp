@@ -7,7 +7,6 @@
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/specimen.hpp"
-#include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -40,29 +39,26 @@ double least_height(const std::array<Vec<3>, 4>& x) {
 
 }  // namespace
 
-Metrics<2> measure(const Cells<2>& tessellation, const Metrics<2>& done) {
+Metrics<2> measure(const Cells<2>& cells, const Metrics<2>& done) {
   Metrics<2> metrics = done;
-  measure_edges(tessellation, metrics);
+  measure_edges(cells, metrics);
   metrics.smallest_angle = 180.0;
   double total_area = 0.0;
   std::size_t zones = 0;
-  std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
-    total_area += area(polygon);
-    const ZonedCell<2> block = zone_block(polygon);
-    zones += block.zones.size();
-    for (const auto& zone : block.zones) {
-      const auto at = [&](int i) { return block.gridpoints[static_cast<std::size_t>(i)]; };
-      const double angle = smallest_angle({at(zone[0]), at(zone[1]), at(zone[2])}) * 180.0 / std::numbers::pi;
-      if (angle < metrics.smallest_angle) {
-        metrics.smallest_angle = angle;
-        metrics.smallest_angle_cell = static_cast<int>(c);
-      }
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    total_area += extent(cells, c);
+    const ZonedCell<2> zoned = zone_cell(cells, c);
+    zones += zoned.zones.size();
+    for (const auto& [p, q, r] : zoned.zones) {
+      const auto& x = zoned.gridpoints;
+      const double angle = smallest_angle({x[p], x[q], x[r]}) * 180.0 / std::numbers::pi;
+      if (angle >= metrics.smallest_angle) continue;
+      metrics.smallest_angle = angle;
+      metrics.smallest_angle_cell = static_cast<int>(c);
     }
   }
-  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(tessellation.cells.size());
-  metrics.mean_size = std::sqrt(total_area / static_cast<double>(tessellation.cells.size()));
+  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(cells.cells.size());
+  metrics.mean_size = std::sqrt(total_area / static_cast<double>(cells.cells.size()));
   return metrics;
 }
 

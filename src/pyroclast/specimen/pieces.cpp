@@ -14,31 +14,13 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
 namespace {
-
-/// Returns the edges that one cell alone has, each as the cell runs along it.
-std::vector<Facet<2>> free_edges(const Cells<2>& tessellation) {
-  std::map<std::pair<int, int>, int> count;
-  const auto key = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
-  const auto for_each = [&](auto f) {
-    for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-      const auto& cell = tessellation.cells[c];
-      for (std::size_t i = 0; i < cell.size(); ++i)
-        f(cell[i], cell[i + 1 < cell.size() ? i + 1 : 0], static_cast<int>(c));
-    }
-  };
-  for_each([&](int a, int b, int) { ++count[key(a, b)]; });
-  std::vector<Facet<2>> edges;
-  for_each([&](int a, int b, int cell) {
-    if (count[key(a, b)] == 1) edges.push_back({{a, b}, cell});
-  });
-  return edges;
-}
 
 /// Vertex between the ends of an edge.
 struct Hanging {
@@ -53,8 +35,7 @@ std::vector<Hanging> hanging(const Cells<2>& tessellation, std::span<const Facet
   const auto& at = tessellation.vertices;
   std::vector<int> vertices;
   for (const Facet<2>& e : edges) vertices.push_back(e.corners[0]);
-  std::ranges::sort(vertices);
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_unique(vertices);
   std::ranges::sort(vertices, {}, [&](int v) { return std::pair(at[v][0], v); });
   std::vector<Hanging> found;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -115,6 +96,24 @@ std::vector<int> first_alike(const Cells<3>& cells, const std::vector<int>& firs
         known.emplace(from_lowest(std::move(corners)), static_cast<int>(alike.size())).first->second);
   }
   return alike;
+}
+
+/// Returns the distance below which vertices coincide in messages, m; 0 where all lie at one place.
+template <int Dim>
+double coincidence_of(const std::vector<Vec<Dim>>& vertices) {
+  double size = 0.0;
+  for (int d = 0; d < Dim; ++d) {
+    const auto [low, high] = std::ranges::minmax(vertices, {}, [d](const Vec<Dim>& v) { return v[d]; });
+    size = std::max(size, high[d] - low[d]);
+  }
+  return kCoincide * size;
+}
+
+/// Returns how many items are not the first of their kind.
+std::ptrdiff_t repeats(const std::vector<int>& first) {
+  std::ptrdiff_t count = 0;
+  for (int i = 0; i < static_cast<int>(first.size()); ++i) count += first[i] != i ? 1 : 0;
+  return count;
 }
 
 }  // namespace
@@ -179,13 +178,10 @@ template std::string describe_pieces<2>(const Cells<2>&, std::span<const Facet<2
 template std::string describe_pieces<3>(const Cells<3>&, std::span<const Facet<3>>, const Numbering&);
 
 std::string describe_joinable(const Cells<2>& tessellation) {
-  const Box box = box_of(tessellation.vertices);
-  const double near = kCoincide * std::max(box.width(), box.height());
+  const double near = coincidence_of(tessellation.vertices);
   if (!(near > 0.0)) return {};
   const std::vector<int> first = first_near<2>(tessellation.vertices, near);
-  std::ptrdiff_t coincide = 0;
-  for (int v = 0; v < static_cast<int>(first.size()); ++v)
-    if (first[v] != v) ++coincide;
+  const std::ptrdiff_t coincide = repeats(first);
   Cells<2> merged = tessellation;
   for (auto& cell : merged.cells)
     for (int& v : cell) v = first[v];
@@ -237,21 +233,9 @@ std::vector<int> join(Cells<3>& cells, double distance) {
 }
 
 std::string describe_joinable(const Cells<3>& cells) {
-  Vec<3> low = cells.vertices.front(), high = low;
-  for (const Vec<3>& v : cells.vertices)
-    for (int d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], v[d]);
-      high[d] = std::max(high[d], v[d]);
-    }
-  const Vec<3> size = high - low;
-  const double near = kCoincide * std::max({size[0], size[1], size[2]});
+  const double near = coincidence_of(cells.vertices);
   if (!(near > 0.0)) return {};
   const std::vector<int> first = first_near<3>(cells.vertices, near);
-  const auto repeats = [](const std::vector<int>& of) {
-    std::ptrdiff_t count = 0;
-    for (int i = 0; i < static_cast<int>(of.size()); ++i) count += of[i] != i ? 1 : 0;
-    return count;
-  };
   const std::ptrdiff_t vertices = repeats(first), faces = repeats(first_alike(cells, first));
   if (vertices == 0 && faces == 0) return "; no vertices coincide, and no face has the corners of another";
   const std::string coincide =

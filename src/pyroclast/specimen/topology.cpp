@@ -1,8 +1,9 @@
 #include "pyroclast/specimen/topology.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,45 +31,41 @@ bool bends_inwards(const std::vector<Vec<2>>& polygon, double slack) {
   return false;
 }
 
-/// Edges of all cells as the cells run along them, listed by the vertex from which they start.
+/// Calls f(from, to, cell) for the edges of each cell in turn.
+void for_each_edge(const Cells<2>& tessellation, auto f) {
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    const auto& cell = tessellation.cells[c];
+    for (std::size_t i = 0; i < cell.size(); ++i)
+      f(cell[i], cell[i + 1 < cell.size() ? i + 1 : 0], static_cast<int>(c));
+  }
+}
+
+/// Edge as a cell runs along it.
+struct DirectedEdge {
+  std::array<int, 2> ends;
+  int cell;
+};
+
+/// Edges of all cells, in the order of their ends.
 class DirectedEdges {
  public:
-  struct Entry {
-    int to;
-    int cell;
-  };
-
-  explicit DirectedEdges(const Cells<2>& tessellation) : first_(tessellation.vertices.size() + 1, 0) {
-    std::size_t total = 0;
-    for (const auto& cell : tessellation.cells) {
-      total += cell.size();
-      for (const int v : cell) ++first_[static_cast<std::size_t>(v) + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    entries_.resize(total);
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-      const auto& cell = tessellation.cells[c];
-      for (std::size_t i = 0; i < cell.size(); ++i) {
-        const int to = cell[i + 1 < cell.size() ? i + 1 : 0];
-        entries_[next[static_cast<std::size_t>(cell[i])]++] = {to, static_cast<int>(c)};
-      }
-    }
+  explicit DirectedEdges(const Cells<2>& tessellation) {
+    for_each_edge(tessellation, [this](int from, int to, int cell) { edges_.push_back({{from, to}, cell}); });
+    std::ranges::stable_sort(edges_, {}, &DirectedEdge::ends);
   }
 
   /// Returns the number of cells that run from one vertex to the other, and the last of them (-1: none).
   std::pair<int, int> find(int from, int to) const {
-    std::pair<int, int> found{0, -1};
-    for (std::size_t i = first_[static_cast<std::size_t>(from)];
-         i < first_[static_cast<std::size_t>(from) + 1]; ++i) {
-      if (entries_[i].to == to) found = {found.first + 1, entries_[i].cell};
-    }
-    return found;
+    // Clang 14 cannot do ranges::equal_range
+    const std::array ends{from, to};
+    const auto begin = std::ranges::lower_bound(edges_, ends, {}, &DirectedEdge::ends);
+    auto end = begin;
+    while (end != edges_.end() && end->ends == ends) ++end;
+    return {static_cast<int>(end - begin), end == begin ? -1 : (end - 1)->cell};
   }
 
  private:
-  std::vector<std::size_t> first_;
-  std::vector<Entry> entries_;
+  std::vector<DirectedEdge> edges_;
 };
 
 /// Keeps the items that are used, and renumbers them in `lists`. Returns the number that each had.
@@ -131,43 +128,42 @@ Vec<2> centroid(const Cells<2>& cells, std::size_t cell) {
 std::vector<Facet<2>> facets(const Cells<2>& tessellation, const Numbering& numbering) {
   const DirectedEdges directed(tessellation);
   std::vector<Facet<2>> result;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    const auto& cell = tessellation.cells[c];
-    for (std::size_t i = 0; i < cell.size(); ++i) {
-      const int v0 = cell[i];
-      const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
-      const auto [partners, other] = directed.find(v1, v0);
-      if (partners > 1 || directed.find(v0, v1).first > 1) {
-        const Vec<2>&from = tessellation.vertices[v0], &to = tessellation.vertices[v1];
-        throw Error(fmt::format(
-            "{} overlaps another: both have the edge from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m, in the "
-            "same sense",
-            numbering.cell(c), from[0], from[1], to[0], to[1]));
-      }
-      const int left = static_cast<int>(c);
-      if (other < 0 || other > left) result.push_back({{v0, v1}, left, other});
+  for_each_edge(tessellation, [&](int v0, int v1, int cell) {
+    const auto [partners, other] = directed.find(v1, v0);
+    if (partners > 1 || directed.find(v0, v1).first > 1) {
+      const Vec<2>&from = tessellation.vertices[v0], &to = tessellation.vertices[v1];
+      throw Error(fmt::format(
+          "{} overlaps another: both have the edge from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m, in the "
+          "same sense",
+          numbering.cell(static_cast<std::size_t>(cell)), from[0], from[1], to[0], to[1]));
     }
-  }
+    if (other < 0 || other > cell) result.push_back({{v0, v1}, cell, other});
+  });
   return result;
+}
+
+std::vector<Facet<2>> free_edges(const Cells<2>& tessellation) {
+  const DirectedEdges directed(tessellation);
+  std::vector<Facet<2>> edges;
+  for_each_edge(tessellation, [&](int a, int b, int cell) {
+    if (directed.find(a, b).first + directed.find(b, a).first == 1) edges.push_back({{a, b}, cell});
+  });
+  return edges;
 }
 
 std::vector<int> mismatched_cells(const Cells<2>& tessellation, const Region& region) {
   const DirectedEdges directed(tessellation);
   std::vector<LineSet> on;
   for (const Vec<2>& p : tessellation.vertices) on.push_back(region.lines_at(p));
+  std::vector<char> is_matched;
+  for (const auto& cell : tessellation.cells) is_matched.push_back(cell.size() >= 3);
+  for_each_edge(tessellation, [&](int v0, int v1, int cell) {
+    const int partners = region.is_outline(on[v0], on[v1]) ? 0 : 1;
+    if (directed.find(v0, v1).first != 1 || directed.find(v1, v0).first != partners) is_matched[cell] = 0;
+  });
   std::vector<int> result;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    const auto& cell = tessellation.cells[c];
-    bool matched = cell.size() >= 3;
-    for (std::size_t i = 0; matched && i < cell.size(); ++i) {
-      const int v0 = cell[i];
-      const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
-      const bool on_outline =
-          region.is_outline(on[static_cast<std::size_t>(v0)], on[static_cast<std::size_t>(v1)]);
-      matched = directed.find(v0, v1).first == 1 && directed.find(v1, v0).first == (on_outline ? 0 : 1);
-    }
-    if (!matched) result.push_back(static_cast<int>(c));
-  }
+  for (std::size_t c = 0; c < is_matched.size(); ++c)
+    if (!is_matched[c]) result.push_back(static_cast<int>(c));
   return result;
 }
 

@@ -14,6 +14,9 @@ void corners(const Cells<2>& tessellation, std::size_t cell, std::vector<Vec<2>>
 void drop_unused(Cells<2>& cells);
 std::vector<int> drop_unused(Cells<3>& cells);
 
+/// Returns the edges that one cell alone has, each as the cell runs along it.
+std::vector<Facet<2>> free_edges(const Cells<2>& tessellation);
+
 /// Returns the cells, ascending, with fewer than three vertices or an edge that has neither a partner running
 /// the other way nor lies on the outline. When there are none and all areas are positive, the cells tile the
 /// region without gap or overlap.
