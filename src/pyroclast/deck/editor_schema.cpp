@@ -161,18 +161,6 @@ bool is_placeholder(std::string_view step) {
   return std::ranges::all_of(step, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
 
-/// Returns a condition on a table some steps below, where there is one: on each element of an array.
-Json wherever(const std::vector<std::string>& steps, std::size_t from, std::size_t to, Json inner) {
-  for (std::size_t i = to; i-- > from;) {
-    if (is_array_path(steps[i])) inner = {{"items", std::move(inner)}};
-    if (is_placeholder(steps[i]))
-      inner = {{"additionalProperties", std::move(inner)}};
-    else
-      inner = {{"properties", {{without_brackets(steps[i]), std::move(inner)}}}};
-  }
-  return inner;
-}
-
 /// Returns a condition that holds where a table below is there and meets another: of an array, one element.
 Json somewhere(const std::vector<std::string>& steps, std::size_t from, Json inner) {
   for (std::size_t i = steps.size(); i-- > from;) {
@@ -205,7 +193,8 @@ class EditorSchema {
   }
 
  private:
-  /// Entry of a list that is searched by name. Clang 14 cannot hold a pair with a type that holds such a list.
+  /// Entry of a list that is searched by name. Clang 14 cannot hold a pair with a type that holds such a
+  /// list.
   template <class T>
   struct Named {
     std::string name;
@@ -297,6 +286,28 @@ class EditorSchema {
     }
     std::vector<Json>& rules = node_at(table, steps, level).rules;
     if (std::ranges::find(rules, rule) == rules.end()) rules.push_back(std::move(rule));
+  }
+
+  /// Returns a condition on a table some steps below, where there is one: on each element of an array, on
+  /// each table of any name but those that have names of their own.
+  Json wherever(const std::vector<std::string>& steps, std::size_t from, std::size_t to, Json inner) const {
+    for (std::size_t i = to; i-- > from;) {
+      if (is_array_path(steps[i])) inner = {{"items", std::move(inner)}};
+      if (!is_placeholder(steps[i])) {
+        inner = {{"properties", {{without_brackets(steps[i]), std::move(inner)}}}};
+        continue;
+      }
+      Json own = Json::object();
+      for (const DeckTable& table : schema_.tables) {
+        const auto at = steps_of(table.path);
+        if (at.size() == i + 1 && std::equal(at.begin(), at.end() - 1, steps.begin()) &&
+            !is_placeholder(at[i]))
+          own[without_brackets(at[i])] = Json::object();
+      }
+      inner = {{"additionalProperties", std::move(inner)}};
+      if (!own.empty()) inner["properties"] = std::move(own);
+    }
+    return inner;
   }
 
   /// Returns a condition for the table that holds its key.

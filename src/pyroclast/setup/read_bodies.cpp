@@ -19,11 +19,13 @@ ReadBody read_body(const Section& s, double block_size) {
   LooseBody& body = read.body;
   body.name = s.text("name", "of the body, and of its sets `<name>` and `<name>_outline`");
   body.deck_place = fmt::format("{}: {}", s.where("name"), s.path());
-  constexpr Meaning kEdge = "of the body's zones, about; without it the size of the specimen's blocks";
-  if (s.has("edge") || block_size == 0.0)
-    body.edge = s.quantity("edge", unit::length, Range::positive(), kEdge);
-  else
-    body.edge = block_size;
+  body.edge = block_size;
+  if (s.has("edge"))
+    body.edge = s.quantity("edge", unit::length, Range::positive(),
+                           "of the body's zones, about; without it the size of the specimen's blocks");
+  else if (block_size == 0.0)
+    s.error("edge",
+            "is needed: the size of the specimen's blocks, which it is else, is not known before they are");
   if (s.has("diameter")) {
     if (s.has("corners")) s.error("corners", "either corners, or centre and diameter; not both");
     const double diameter = s.quantity("diameter", unit::length, Range::positive(), "of a round body");
