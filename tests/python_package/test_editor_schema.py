@@ -196,10 +196,7 @@ READERS_ALONE = re.compile(r"""
     | missing_key:\ without\ \.materials$                         # ... and their table
     | missing_key:\ without\ \.(record|platens|output|superposition|aggregates|bearings|sets|heat|coupling|inclusions)$  # for others
     | missing_key:\ without\ materials\.\w+\.(conductivity|specific_heat)$  # needed by what another stage does
-    | missing_key:\ without\ heat\.boundaries\[\]\.faces$         # one of several keys is needed
     | missing_key:\ without\ specimen\.depth$                    # thickness is the other
-    | missing_key:\ without\ moisture\.initial\.\w+$             # one of three is needed
-    | missing_key:\ without\ mechanics\.kinematics$             # contacts that are found need another than the default
     | missing_key:\ without\ concrete\.thermal_strain$          # expansion is the other
     | missing_key:\ without\ stages\[\]\.drives\[\]\.\w+$
     | wrong_type:\ (hold|release)\ =                            # components, which a body in the plane has fewer of

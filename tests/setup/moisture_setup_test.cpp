@@ -52,7 +52,8 @@ TEST(MoistureSetup, TakesTheClassWhereNothingIsStated) {
 TEST(MoistureSetup, RefusesWhatHasNoMeaning) {
   expect_error("saturation = 0.77", "saturation = 1.2", "saturation: ");
   expect_error("saturation = 0.77", "saturation = 0.77, humidity = 0.5",
-               "moisture.initial: one of saturation, humidity and content is needed");
+               "moisture.initial.humidity: has no meaning beside \"saturation\"");
+  expect_error("saturation = 0.77", "", "moisture.initial.content: missing");
   expect_error("class = \"high strength\"", "class = \"strong\"", "materials.mortar.moisture.class: ");
   expect_error("permeability = \"5.1e-20 m2\"", "permeability = 0",
                "materials.mortar.moisture.permeability: ");

@@ -207,8 +207,9 @@ class Section {
 
   /// Reads one of several words, or any other text, which `other` explains; returns the first word where the
   /// key is absent.
+  /// \param needed  what a message asks for where the key must be there; empty where it may be absent
   std::string word_or_text(std::string_view key, const std::vector<Choice<int>>& words, Meaning other,
-                           Meaning meaning) const;
+                           Meaning meaning, std::string_view needed = {}) const;
   /// Reads a list of strings that must be there; empty after an error.
   std::vector<std::string> texts(std::string_view key, Meaning meaning) const;
   /// Reads a list of strings; empty if the key is absent.

@@ -617,7 +617,7 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<Word>&
 }
 
 std::string Section::word_or_text(std::string_view key, const std::vector<Choice<int>>& options,
-                                  Meaning other, Meaning meaning) const {
+                                  Meaning other, Meaning meaning, std::string_view needed) const {
   if (auto* survey = deck_->survey()) {
     DeckKey read = key_of(key, ValueForm::word_or_text, "word or text");
     std::vector<std::string> asked;
@@ -626,11 +626,12 @@ std::string Section::word_or_text(std::string_view key, const std::vector<Choice
       read.words.push_back({fmt::format("\"{}\"", option.word), std::string(option.meaning.text())});
     }
     read.words.push_back({"other text", std::string(other.text())});
-    read.fallback = fmt::format("\"{}\"", options.front().word);
+    if (needed.empty()) read.fallback = fmt::format("\"{}\"", options.front().word);
     note(std::move(read), meaning);
     return asked[survey->chosen(table_->path, key, asked)];
   }
-  const auto entry = read(*deck_, table_, key);
+  const auto entry =
+      needed.empty() ? read(*deck_, table_, key) : require(*deck_, table_, key, std::string(needed));
   return (entry ? read_text(*entry) : std::nullopt).value_or(std::string(options.front().word));
 }
 

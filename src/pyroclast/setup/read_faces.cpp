@@ -22,14 +22,13 @@ Vec<3> read_corner(const Section& s, std::string_view key, const DeckSpace& spac
 BoundaryFaces read_faces(const Section& s, const DeckSpace& space) {
   s.know({"box_low", "box_high"});
   BoundaryFaces faces;
-  if (!s.has("faces")) s.error("faces", "is needed: where the boundary acts, such as faces = \"left\"");
   faces.part = s.word_or_text(
       "faces",
       {{BoundaryFaces::kOutline, 0, "all sides, also of holes and notches"},
        {BoundaryFaces::kBox, 1, "faces of the outline whose centres lie in a box"}},
       "the name of a side of the specimen, such as left, of the patch under a bearing, also under "
       "a platen, or of a set",
-      "where the boundary acts");
+      "where the boundary acts", "where the boundary acts is needed, such as \"left\"");
   if (faces.part != BoundaryFaces::kBox) return faces;
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   faces.box_low = read_corner(s, "box_low", space, -kEndless,

@@ -1,7 +1,6 @@
 #include "pyroclast/setup/read_moisture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -135,25 +134,23 @@ void refuse_pores(const Section& root, const specimen::SpecimenParameters& speci
 }
 
 void read_first(const Section& s, MoistureConditions& conditions) {
-  struct Amount {
-    const char* key;
-    FirstWater first;
-    Meaning meaning;
-  };
-  const std::array<Amount, 3> amounts{
-      {{"saturation", FirstWater::saturation, "share of the pores of every phase that liquid fills"},
-       {"humidity", FirstWater::humidity, "vapour pressure over that of saturation, everywhere"},
-       {"content", FirstWater::content,
-        "water over the dry mass of the concrete, evenly spread by its vapour pressure: \"3 %\""}}};
-  int stated = 0;
-  for (const Amount& amount : amounts) {
-    if (!s.has(amount.key)) continue;
-    ++stated;
-    conditions.first = amount.first;
+  const auto amount = [&](const char* key, FirstWater first, Meaning meaning) {
+    conditions.first = first;
     conditions.first_amount =
-        s.number(amount.key, Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, amount.meaning);
-  }
-  if (s.ok() && stated != 1) s.error("one of saturation, humidity and content is needed");
+        s.number(key, Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, meaning);
+  };
+  if (s.has("saturation"))
+    amount("saturation", FirstWater::saturation, "share of the pores of every phase that liquid fills");
+  else if (s.has("humidity"))
+    amount("humidity", FirstWater::humidity, "vapour pressure over that of saturation, everywhere");
+  else
+    amount("content", FirstWater::content,
+           "water over the dry mass of the concrete, evenly spread by its vapour pressure: \"3 %\"");
+  for (const char* key : {"humidity", "content"})
+    if (s.has(key) && s.has("saturation"))
+      s.error(key, "has no meaning beside \"saturation\": give one of the two");
+  if (s.has("content") && s.has("humidity"))
+    s.error("content", "has no meaning beside \"humidity\": give one of the two");
 }
 
 std::optional<MoistureCondition> read_water_condition(const Section& s, CurveReader& time_curves) {

@@ -66,19 +66,21 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
   if (m.mass == MassChoice::scaled)
     m.time_step =
         s.quantity("time_step", unit::time, Range::positive().usually(1e-8, 1e-4), "common time step");
-  m.kinematics =
-      s.choice<Kinematics>("kinematics",
-                           {{"small", Kinematics::small, "zones and contact frames keep their orientation"},
-                            {"finite", Kinematics::finite, "they turn with the body; strains stay small"}},
-                           Kinematics::small, "whether the body may turn");
-  if (m.kinematics == Kinematics::finite && space.is_solid())
-    s.error("kinematics", "blocks of a solid cannot turn yet: kinematics = \"small\"");
   m.found.is_on = s.choice<bool>(
       "contacts",
       {{"first", false, "contacts join the faces that coincide at the start, for ever"},
        {"found", true,
         "blocks that part may meet others, see [Contacts that are found](../understand/found.md)"}},
       false, "which blocks may touch");
+  const std::initializer_list<Choice<Kinematics>> kinematics = {
+      {"small", Kinematics::small, "zones and contact frames keep their orientation"},
+      {"finite", Kinematics::finite, "they turn with the body; strains stay small"}};
+  constexpr Meaning kKinematics = "whether the body may turn";
+  m.kinematics = m.found.is_on
+                     ? s.choice<Kinematics>("kinematics", kinematics, kKinematics)
+                     : s.choice<Kinematics>("kinematics", kinematics, Kinematics::small, kKinematics);
+  if (m.kinematics == Kinematics::finite && space.is_solid())
+    s.error("kinematics", "blocks of a solid cannot turn yet: kinematics = \"small\"");
   if (m.found.is_on && space.is_solid())
     s.error("contacts", "contacts of a solid are not found yet: contacts = \"first\"");
   else if (m.found.is_on && m.kinematics == Kinematics::small && s.ok())
