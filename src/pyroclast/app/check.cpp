@@ -23,6 +23,16 @@ namespace pyroclast::app {
 
 namespace {
 
+/// Says in words how pore water and motion act on each other.
+std::string describe(const PoreCoupling& coupling, bool finds_contacts) {
+  const char* const bears = coupling.acts == PressureActs::no      ? "acts on nothing"
+                            : coupling.acts == PressureActs::zones ? "acts on blocks"
+                                                                   : "acts on blocks and contacts";
+  return fmt::format("its pressure {}; faces that stand open by {:.3g} um or more drain it{}", bears,
+                     1e6 * coupling.crack_width,
+                     finds_contacts ? "; none flows through contacts that are found" : "");
+}
+
 /// Share by which E of contacts may differ from that of blocks without a word.
 constexpr double kLikeModulus = 0.1;
 /// Share by which a strength may differ from that of specimens with such mortar without a word.
@@ -278,6 +288,9 @@ int check(const RunOptions& options) {
   if (const MoistureField* moisture = simulation->moisture())
     fmt::print("water           {:.3g} kg in the pores at the start, its vapour at {:.3g} of saturation\n",
                moisture->water().stored(), moisture->largest_pressure_ratio());
+  if (simulation->moisture() && simulation->moves())
+    fmt::print("                {}\n",
+               describe(setup.heat.moisture->coupling, setup.moving->mechanics.found.is_on));
   if (const auto told = foretell_heat(setup, *simulation)) {
     fmt::print("                by heat alone {}\n", describe(*told));
     if (const std::string warning = warning_of(*told, setup); !warning.empty())

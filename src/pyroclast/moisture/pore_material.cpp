@@ -49,14 +49,14 @@ double pressure_of_saturation(const PoreConditions& at, double saturation) {
   return at.saturation_pressure * exp(-suction / (at.liquid_density * at.gas));
 }
 
-double pressure_of_content(const PoreConditions& at, double content, double guess) {
+double pressure_of_content(const PoreConditions& at, double content, double guess, WaterAt* water_at) {
   // Newton's method in ln p within a bracket, which it halves where a step leaves it: content rises with p.
   double low = -40.0, high = 40.0;  // ln of p over the saturation pressure
   double y = std::clamp(log(guess / at.saturation_pressure), low, high);
   double best = y, least = -1.0;
   for (int trial = 0; trial < 200 && low < high; ++trial) {
     const double p = at.saturation_pressure * exp(y);
-    const WithSlope found = pore_water(at, WithSlope(p, p)).content;
+    const WithSlope found = water_at(at, WithSlope(p, p)).content;
     const double off = found.value - content;
     if (least < 0.0 || std::abs(off) < least) {
       least = std::abs(off);
