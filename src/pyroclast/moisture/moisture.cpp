@@ -294,11 +294,8 @@ double Moisture::imbalance() const {
   return stored() - (state_.ledger.at_start + state_.ledger.released - state_.ledger.left);
 }
 
-std::vector<double> Moisture::saturation() const {
-  std::vector<double> found;
-  for (int c = 0; c < mesh_.cell_count(); ++c)
-    found.push_back(pore_water(conditions(c), state_.pressure[c]).saturation);
-  return found;
+double Moisture::saturation(int cell) const {
+  return pore_water(conditions(cell), state_.pressure[cell]).saturation;
 }
 
 std::vector<double> Moisture::pressure_ratio() const {

@@ -15,7 +15,7 @@ namespace pyroclast {
 
 struct MoistureParameters {
   double largest_step = 10.0;             ///< s
-  double largest_temperature_step = 4.0;  ///< largest change of a temperature in a step, K
+  double largest_temperature_step = 5.0;  ///< largest change of a temperature in a step, K
   double roughness = 1.0;                 ///< of the walls of cracks, see crack_network
 };
 
@@ -99,10 +99,9 @@ class Moisture {
   /// Goes on from a state of the same body under the same conditions.
   void go_on_from(MoistureState state);
 
-  double stored() const;     ///< Returns the water in all cells and cracks, kg.
-  double imbalance() const;  ///< Returns the water that the ledger misses, kg.
-  /// Returns the share of the pores that liquid fills, of each cell.
-  std::vector<double> saturation() const;
+  double stored() const;              ///< Returns the water in all cells and cracks, kg.
+  double imbalance() const;           ///< Returns the water that the ledger misses, kg.
+  double saturation(int cell) const;  ///< Returns the share of the pores of a cell that liquid fills.
   /// Returns the vapour pressure over that of saturation, of each cell.
   std::vector<double> pressure_ratio() const;
   /// Returns the vapour pressure at a face of the mesh, Pa: that of the crack there, or of steady flow

@@ -19,6 +19,10 @@ struct PoreMaterial {
   double compliance = 1e-8;
   double tortuosity = 0.33;  ///< of the diffusion of vapour
 
+  /// Returns the permeability of pores that have been this hot, m2.
+  double permeability_at(double highest_temperature) const {
+    return permeability * permeability_ratio(highest_temperature);
+  }
   /// Throws Error naming the number that is out of range.
   void check() const;
 };
@@ -71,6 +75,7 @@ template <class Real>
 PoreWater<Real> pore_water(const PoreConditions& at, const Real& pressure) {
   using pyroclast::log;
   using pyroclast::power;
+  using std::sqrt;
   const PoreMaterial& m = *at.material;
   PoreWater<Real> w;
   w.vapour_density = vapour_density(at, pressure);
@@ -92,10 +97,9 @@ PoreWater<Real> pore_water(const PoreConditions& at, const Real& pressure) {
   const Real gaseous = Real(1.0) - w.saturation;
   w.content = Real(m.porosity) * (Real(at.liquid_density) * w.saturation + gaseous * w.vapour_density);
   w.liquid_pressure = pressure - suction;
-  const Real inner = Real(1.0) - power(dry, 1.0 / n);
-  w.liquid_mobility =
-      power(w.saturation, 0.5) * inner * inner * Real(at.liquid_density / at.liquid_viscosity);
-  w.vapour_mobility = power(gaseous, 0.5) * power(dry, 2.0 / n) * Real(1.0 / at.vapour_viscosity);
+  const Real outer = power(dry, 1.0 / n), inner = Real(1.0) - outer;
+  w.liquid_mobility = sqrt(w.saturation) * inner * inner * Real(at.liquid_density / at.liquid_viscosity);
+  w.vapour_mobility = sqrt(gaseous) * outer * outer * Real(1.0 / at.vapour_viscosity);
   Real at_least = pressure;
   if (value_of(at_least) < water::kAtmosphere) at_least = water::kAtmosphere;
   w.diffusion = Real(at.diffusion) * gaseous / at_least;

@@ -1,13 +1,13 @@
 #include "pyroclast/setup/read_moisture.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/log.hpp"
 #include "pyroclast/material/curve_catalogue.hpp"
 #include "pyroclast/setup/read_faces.hpp"
 
@@ -59,9 +59,7 @@ PoreMaterial pores_of(PoreClass of) {
 Curve growing_permeability(const Interval& range) {
   return Curve::function(
       "10^(0.008 (T - 20 degC)), at most 1e4",
-      [](double t) {
-        return std::min(kLargestGrowth, std::pow(10.0, kDecades * (t - kReferenceTemperature)));
-      },
+      [](double t) { return std::min(kLargestGrowth, power(10.0, kDecades * (t - kReferenceTemperature))); },
       {std::min(range.lower, kReferenceTemperature), std::max(range.upper, kHottest)}, temperature_axis(),
       {});
 }

@@ -102,7 +102,6 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
 
 /// Takes over what follows from the state of the water.
 void MoistureField::see_state() {
-  saturation_ = moisture_->saturation();
   face_pressure_.clear();
   for (int f = 0; f < std::ssize(face_of_); ++f) face_pressure_.push_back(gauge(moisture_->face_pressure(f)));
 }

@@ -50,7 +50,10 @@ class MoistureField {
   /// bearings.
   double pore_pressure(int block) const;
   /// Returns the share of the pores of a block that liquid fills; 0 in bearings.
-  double saturation(int block) const { return of_block(saturation_, block); }
+  double saturation(int block) const {
+    const int cell = mesh().cell_of_block[block];
+    return cell < 0 ? 0.0 : water().saturation(cell);
+  }
   /// Returns the water in a block, kg/m3; 0 in bearings.
   double content(int block) const { return of_block(water().state().content, block); }
 
@@ -83,7 +86,6 @@ class MoistureField {
   std::vector<int> face_contacts_;  ///< first contact of each face of the model, and of one more
   std::vector<int> face_of_;        ///< face of the model of each face of the mesh
   std::optional<Moisture> moisture_;
-  std::vector<double> saturation_;     ///< of each cell
   std::vector<double> face_pressure_;  ///< of each face of the mesh, over that of the atmosphere, Pa
   std::vector<double> seen_opening_;   ///< of each face of the mesh when the water last saw the cracks, m
   double interval_ = std::numeric_limits<double>::infinity();  ///< to the next exchange, s
