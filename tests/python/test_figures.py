@@ -1210,6 +1210,16 @@ class NothingOverlapsOrIsCutOff(CommandTest):
                 assert_apart(self, name, figure)
 
 
+    def test_titles_stand_apart_from_captions_above_them_where_panels_are_lower_than_the_page_is_wide(self):
+        figure = style.settle(fracture_panels(record_fracture(self.results("rubble"))))
+        figure.set_dpi(100)
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        above, below = figure.axes[:2]
+        gap = above.xaxis.label.get_window_extent(renderer).y0 - below.title.get_window_extent(renderer).y1
+        self.assertGreater(gap, 6.0)  # pixels, of two paddings of 4; it was less than 0
+
+
 class DepthOfTheHeat(CommandTest):
     """Profiles across the specimen, and figures over minutes where it is not uniform."""
 
