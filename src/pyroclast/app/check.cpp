@@ -288,6 +288,12 @@ int check(const RunOptions& options) {
   if (const MoistureField* moisture = simulation->moisture())
     fmt::print("water           {:.3g} kg in the pores at the start, its vapour at {:.3g} of saturation\n",
                moisture->water().stored(), moisture->largest_pressure_ratio());
+  if (const int pockets = simulation->moisture() ? simulation->moisture()->pocket_blocks() : 0)
+    fmt::print(
+        "                {} blocks of the matrix are closed in by stones, or by sealed faces: what their "
+        "stones let "
+        "pass decides their pressure\n",
+        pockets);
   if (simulation->moisture() && simulation->moves())
     fmt::print("                {}\n",
                describe(setup.heat.moisture->coupling, setup.moving->mechanics.found.is_on));

@@ -97,6 +97,12 @@ Moisture::Moisture(MoistureMesh mesh, std::vector<std::optional<PoreMaterial>> m
   make_links();
 }
 
+bool Moisture::opens(int outer_face) const {
+  const auto& condition = conditions_[outer_face];
+  const auto* air = condition ? std::get_if<MoistAir>(&*condition) : nullptr;
+  return condition && !(air && air->coefficient == 0.0);
+}
+
 /// Lists the nodes and the ways between them, for the cracks that the state has.
 void Moisture::make_links() {
   const auto& cracks = state_.cracks;
@@ -121,12 +127,9 @@ void Moisture::make_links() {
       links_.push_back(
           {{face.cells[side], first_crack + crack_at_[f]}, face.area, {face.lengths[side], 0.0}});
   }
-  std::vector<bool> opens;
-  for (const auto& condition : conditions_) {
-    const auto* air = condition ? std::get_if<MoistAir>(&*condition) : nullptr;
-    opens.push_back(condition && !(air && air->coefficient == 0.0));
-  }
-  CrackNetwork network = crack_network(mesh_, cracks, opens, parameters_.roughness);
+  std::vector<bool> open;
+  for (int f = 0; f < std::ssize(conditions_); ++f) open.push_back(opens(f));
+  CrackNetwork network = crack_network(mesh_, cracks, open, parameters_.roughness);
   for (const CrackConduit& conduit : network.conduits)
     links_.push_back({{first_crack + conduit.cracks[0], first_crack + conduit.cracks[1]},
                       conduit.conductance,

@@ -95,6 +95,8 @@ class Moisture {
   void advance(double duration, const std::vector<double>& temperature);
 
   const MoistureMesh& mesh() const { return mesh_; }
+  /// Tells whether water passes through an outer face.
+  bool opens(int outer_face) const;
   const MoistureState& state() const { return state_; }
   /// Goes on from a state of the same body under the same conditions.
   void go_on_from(MoistureState state);

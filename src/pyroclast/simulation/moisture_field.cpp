@@ -80,6 +80,7 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
                    ? pores_of_matrix(stated.material, 1.0 - numbers.fraction[m], model.dimension())
                    : stated.material;
     takes_part[m] = true;
+    is_matrix_.push_back(stated.of_concrete);
     if (!(pores[m]->porosity < 1.0))
       throw Error(
           fmt::format("materials.{}.moisture.porosity: the concrete's cannot all be in {:.3g} of its "
@@ -227,6 +228,24 @@ std::optional<PorePressures> MoistureField::pressures(const Motion* motion) cons
       found.of_contacts[c] = (coupling_.biot + (1.0 - coupling_.biot) * damage) * face_pressure_[f];
     }
   return found;
+}
+
+int MoistureField::pocket_blocks() const {
+  const auto is_matrix = [&](int cell) { return is_matrix_[mesh().material[cell]]; };
+  std::vector<bool> drains(mesh().volume.size());
+  for (std::size_t f = 0; f < mesh().outer_faces.size(); ++f)
+    if (water().opens(static_cast<int>(f))) drains[mesh().outer_faces[f].cell] = true;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const CellFace& face : mesh().faces) {
+      const auto [a, b] = face.cells;
+      if (drains[a] == drains[b] || !is_matrix(a) || !is_matrix(b)) continue;
+      drains[a] = drains[b] = grows = true;
+    }
+  }
+  int pockets = 0;
+  for (int c = 0; c < mesh().cell_count(); ++c) pockets += is_matrix(c) && !drains[c] ? 1 : 0;
+  return pockets;
 }
 
 double MoistureField::pore_pressure(int block) const {

@@ -60,6 +60,9 @@ class MoistureField {
   /// Returns the pressure of the vapour at a contact less that of the atmosphere, at least 0, Pa; 0 at
   /// bearings.
   double contact_pressure(int contact) const;
+  /// Returns how many blocks of phases with the concrete's pores have no way to a face that is not sealed but
+  /// through other phases.
+  int pocket_blocks() const;
   double largest_pore_pressure() const;   ///< Returns that of all blocks, Pa.
   double largest_pressure_ratio() const;  ///< Returns the largest vapour pressure over that of saturation.
 
@@ -82,6 +85,7 @@ class MoistureField {
 
   const Model& model_;
   PoreCoupling coupling_;
+  std::vector<bool> is_matrix_;  ///< by material: true where the pores are stated of the concrete
   std::vector<double> zone_volumes_;
   std::vector<int> face_contacts_;  ///< first contact of each face of the model, and of one more
   std::vector<int> face_of_;        ///< face of the model of each face of the mesh
