@@ -36,6 +36,7 @@ std::vector<FoundPoint> found_points(const Body<2>& body) {
       point.middle = middle;
       point.normal = p.normal;
       point.area = end.area;
+      point.length = end.area / body.model.thickness;
       point.opening = p.gap[k] + end.offset;
       point.slip = p.slide[k] + end.shift;
       // the law, taken to the same jump once more, gives the same tractions
@@ -48,6 +49,11 @@ std::vector<FoundPoint> found_points(const Body<2>& body) {
       point.normal_traction = response.normal_traction + end.damped / end.area;
       point.shear_traction = response.shear_traction[0];
       point.stored = response.stored;
+      // a corner presses across the edge that it meets
+      point.force =
+          p.normal * (point.normal_traction * end.area) +
+          p.tangent * ((point.shear_traction * p.slide_factor[k] - point.normal_traction * p.gap_slope[k]) *
+                       end.area);
     }
   }
   return points;
