@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from .live.units import mm as mm
     from .live.units import s as s
     from .stored.compressed import Compressed as Compressed
+    from .stored.found import found_contacts as found_contacts
     from .stored.heated import Heated as Heated
     from .stored.results import Results as Results
     from .stored.results import SpecimenFolder as SpecimenFolder
@@ -75,6 +76,7 @@ else:
         "_core": ("Body", "commit", "instruction_sets", "version"),
         "errors": ("DeckError", "Diagnostic", "Error"),
         "stored.compressed": ("Compressed",),
+        "stored.found": ("found_contacts",),
         "stored.heated": ("Heated",),
         "stored.results": ("Results", "SpecimenFolder", "read"),
         "stored.run_facts": ("RunFacts",),

@@ -192,6 +192,9 @@ class Cases(unittest.TestCase):
         self.assertAlmostEqual(impulse / (mass * (after + 4.0 + 9.81 * times[-1])), 1.0, delta=0.05)
         self.assertGreater(after, -4.0)
         self.assertGreater(run.column("cracks_m")[-1], 0.1)
+        self.assertNotIn("fall too slowly", str(run.summary["warnings"]))
+        damped = finished("drop", "mechanics.local_damping=0.8", "stages[0].duration=0.1 ms")
+        self.assertIn("is free, and falls too slowly", str(damped.summary["warnings"]))
 
     def test_rubble_stays_on_its_ground(self):
         run = finished("rubble")

@@ -29,10 +29,11 @@ inline Vec<2> turned(const Vec<2>& x, double angle) {
 }
 
 /// The blocks of a random tessellation without platens, one material, one interface, turned by `angle`.
-inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint64_t seed,
+/// \param width  width of the outline, m
+inline ModelOf<2> tessellated(int blocks, const specimen::Region& outline, double width, std::uint64_t seed,
                               double angle = 0.0) {
   specimen::SpecimenParameters p;
-  p.outline = specimen::Region::rectangle(width, height);
+  p.outline = outline;
   p.seed = seed;
   p.aggregates = {.fraction = 0.0,
                   .d_min = 0.1 * width,
@@ -64,6 +65,11 @@ inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint
       model.join_faces({gridpoint(e.inner, e.corners[0]), gridpoint(e.inner, e.corners[1])},
                        {gridpoint(e.outer, e.corners[0]), gridpoint(e.outer, e.corners[1])}, 0);
   return model;
+}
+
+inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint64_t seed,
+                              double angle = 0.0) {
+  return tessellated(blocks, specimen::Region::rectangle(width, height), width, seed, angle);
 }
 
 /// A column of `count` square blocks of size d, joined face to face, its axis turned by `angle` from the y

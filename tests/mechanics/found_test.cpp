@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bodies.hpp"
 #include "copy_state.hpp"
+#include "loose_blocks.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "small_chunks.hpp"
@@ -12,64 +12,6 @@ namespace pyroclast {
 namespace {
 
 using namespace bodies;
-
-constexpr double kGravity = 9.81;
-
-std::vector<Vec<2>> rectangle(double x, double y, double width, double height, double angle = 0.0,
-                              const Vec<2>& about = {}) {
-  std::vector<Vec<2>> corners{{{x, y}}, {{x + width, y}}, {{x + width, y + height}}, {{x, y + height}}};
-  for (auto& corner : corners) corner = turned(corner - about, angle) + about;
-  return corners;
-}
-
-int add_block(ModelOf<2>& model, const std::vector<Vec<2>>& corners) {
-  const auto zoned = specimen::zone_block(corners);
-  return model.add_block(zoned.gridpoints, zoned.zones, 0);
-}
-
-ModelOf<2> empty_model() {
-  ModelOf<2> model;
-  model.material_names = {"mortar"};
-  model.interface_names = {"mortar-mortar"};
-  return model;
-}
-
-/// Parameters of blocks that fly: real mass, no damping.
-MechanicsParameters flying(double gravity, double safety) {
-  MechanicsParameters p;
-  p.gravity = {{0.0, -gravity}};
-  p.kinematics = Kinematics::finite;
-  p.safety = safety;
-  p.found.is_on = true;
-  p.zones_for_a_thread = 1;
-  return p;
-}
-
-Frictional::Properties<double> rubbing(double stiffness, double friction) {
-  return {stiffness, 0.4 * stiffness, friction};
-}
-
-void hold(Mechanics<2>& m, int block) {
-  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
-    for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
-}
-
-Vec<2> velocity_of_block(const Mechanics<2>& m, int block) {
-  Vec<2> momentum{};
-  double mass = 0.0;
-  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
-    momentum += m.read().velocity(g) * m.body().mass[g];
-    mass += m.body().mass[g];
-  }
-  return momentum * (1.0 / mass);
-}
-
-double lowest(const Mechanics<2>& m, int block) {
-  double y = 1e9;
-  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
-    y = std::min(y, m.model().position[g][1] + m.read().displacement(g)[1]);
-  return y;
-}
 
 struct Fall {
   double restitution = 0.0, fastest = 0.0;  ///< velocity after over velocity before, and that before, m/s
@@ -141,11 +83,6 @@ TEST(FoundContactsVerification, BrickSlidesDownAnInclineOfSeveralBlocks) {
   const EnergyLedger e = m.totals().energy();
   EXPECT_LT(std::abs(e.error()), 2e-5 * e.kinetic);
   EXPECT_GT(e.dissipated.of("friction"), 0.1 * e.gravity);
-}
-
-/// Two rows of blocks, the lower face of the upper row broken.
-ModelOf<2> two_rows(int blocks, double size) {
-  return lattice(blocks, 2, [=](double x, double y) { return Vec<2>{{x * blocks * size, y * 2 * size}}; });
 }
 
 // Promise: a broken face that is handed over presses on as it did: neither energy nor forces change.
@@ -290,6 +227,15 @@ void expect_equal(const Mechanics<2>& m, const Mechanics<2>& expected, const std
   EXPECT_EQ(m.totals().unbalanced_ratio(), expected.totals().unbalanced_ratio());
 }
 
+/// Tells whether each free facet stands in a row with each of every other block.
+bool has_all_pairs_in_rows(const FoundData& found) {
+  std::size_t all = 0;
+  for (const BlockFacet& a : found.facets)
+    for (const BlockFacet& b : found.facets) all += a.is_free && b.is_free && a.block < b.block ? 1 : 0;
+  const auto in_rows = std::ranges::count_if(found.pairs, [](const FoundPair& p) { return p.slot >= 0; });
+  return static_cast<std::size_t>(in_rows) == all;
+}
+
 constexpr int kCrushingSteps = 1200;
 
 // Promise: bits depend neither on threads and instruction sets, nor on batches, nor on the time and the
@@ -328,11 +274,12 @@ TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
     EXPECT_EQ(m.body().found->searches > expected.body().found->searches, steps < 250.0);
     expect_equal(m, expected, std::to_string(steps) + " steps to the next search");
   }
-  for (const double width : {0.1, 0.5}) {
+  for (const double width : {0.1, 0.5, 16.0}) {
     auto parameters = crushing();
     parameters.found.skin = parameters.found.reach = width;
-    expect_equal(crushed(model, parameters, 1, 100, kCrushingSteps), expected,
-                 "lists as wide as " + std::to_string(width) + " edges");
+    const auto m = crushed(model, parameters, 1, 100, kCrushingSteps);
+    expect_equal(m, expected, "lists as wide as " + std::to_string(width) + " edges");
+    EXPECT_EQ(has_all_pairs_in_rows(*m.body().found), width > 10.0);  // the body is 10 edges wide
   }
   {
     const SmallChunks few(7);

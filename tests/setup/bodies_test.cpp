@@ -1,14 +1,19 @@
 // Promise: bodies of their own and velocities at the start become parts of the model and of its first state,
-// and a deck that asks for impossible ones is refused with its place.
+// and a deck that asks for impossible ones is refused with its place. Pieces that fly too slowly, and those
+// that passed through others, are told.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "decks.hpp"
 #include "messages.hpp"
 #include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/watching/loose_pieces.hpp"
 
 namespace pyroclast {
 namespace {
@@ -101,6 +106,67 @@ TEST(LooseBodies, WrongOnesAreRefusedWithTheirPlace) {
   says(inside, "deck.toml:");
   says(refusal("set = \"specimen\"\nvelocity", "set = \"spec\"\nvelocity"), "there is no set \"spec\"");
   says(refusal("[\"0 m/s\", \"-4 m/s\"]", "[\"-4 m/s\"]"), "velocities[0].velocity");
+}
+
+/// The block that falls, without a velocity at the start.
+std::string at_rest() {
+  return with(drop(), "\"-4 m/s\"", "\"0 m/s\"");
+}
+
+bool is_told(const std::vector<std::string>& warnings, const std::string& words) {
+  return std::ranges::any_of(warnings, [&](const auto& w) { return w.find(words) != std::string::npos; });
+}
+
+// Promise: a piece that flies under local damping or with scaled mass is told with the share of gravity with
+// which it falls, and it does fall so.
+TEST(LoosePieces, ThatFallTooSlowlyAreTold) {
+  const auto simulation = make_simulation(setup_of(at_rest()));
+  const auto pieces = falling_pieces(*simulation);
+  ASSERT_EQ(pieces.size(), 2U);  // no stage holds the plate yet
+  EXPECT_EQ(std::ssize(pieces[0].blocks), simulation->model().block_count() - 1);
+  EXPECT_NEAR(pieces[0].share_of_gravity, 1.0, 1e-12);
+  EXPECT_EQ(warnings_of_loose_pieces(*simulation), std::vector<std::string>{});
+
+  const std::string damped = with(at_rest(), "local_damping = 0.0", "local_damping = 0.8");
+  for (const auto& [deck, cause, tolerance] :
+       {std::tuple{with(damped, "\"combined\"", "\"local\""), "because of local damping;", 0.02},
+        {damped, "because of local damping;", 0.02},
+        {with(damped, "mass = \"real\"", "mass = \"scaled\"\ntime_step = \"2 us\""),
+         "because of scaled mass and local damping;", 0.1}}) {
+    const auto slow = make_simulation(setup_of(deck));
+    const double share = falling_pieces(*slow)[0].share_of_gravity;
+    EXPECT_LT(share, 0.61);
+    EXPECT_TRUE(is_told(warnings_of_loose_pieces(*slow), "2 pieces are free, and fall too slowly"));
+    EXPECT_TRUE(is_told(warnings_of_loose_pieces(*slow), cause));
+    slow->motion().advance(400);
+    const auto& of_specimen = slow->model().set("specimen");
+    double velocity = 0.0;
+    for (const int g : of_specimen) velocity -= slow->motion().read().velocity(g)[1];
+    velocity /= static_cast<double>(of_specimen.size());
+    EXPECT_NEAR(velocity / (9.81 * slow->motion().time()), share, tolerance * share) << deck;
+  }
+}
+
+// Promise: what lies in blocks that it has no contact with is counted and named with its depth.
+TEST(LoosePieces, ThatPassedThroughOthersAreTold) {
+  const double step = make_simulation(setup_of(drop()))->motion().time_step();
+  const auto moved_by = [&](double way) {  // m, in one step; no force acts before
+    const auto simulation =
+        make_simulation(setup_of(with(drop(), "\"-4 m/s\"", "\"" + std::to_string(-way / step) + " m/s\"")));
+    simulation->motion().advance(1);
+    return passed_through(*simulation);
+  };
+  const PassedThrough none = moved_by(0.9e-3);
+  EXPECT_EQ(none.gridpoints, 0);
+  EXPECT_EQ(none.block, -1);
+  const PassedThrough deep = moved_by(5e-3);
+  EXPECT_NEAR(deep.depth, 4e-3, 1e-5);  // the plate lies 1 mm below the lowest corner
+  EXPECT_GE(deep.gridpoints, 1);
+  EXPECT_GE(deep.blocks, 1);
+  EXPECT_LT(deep.blocks, 5);
+  const auto simulation = make_simulation(setup_of(drop()));
+  EXPECT_EQ(deep.other, simulation->model().block_count() - 1);
+  EXPECT_LT(deep.block, deep.other);
 }
 
 }  // namespace

@@ -744,6 +744,15 @@ class Run:
         table: pandas.DataFrame = library("pandas", "contacts").DataFrame(columns)
         return table.astype({"face": int})
 
+    def found_contacts(self) -> pandas.DataFrame:
+        """Returns the contacts that are found and press now (docs/understand/found.md), a row for each end of a pair of
+        edges: `interface` (name), `block_a` and `block_b`, the number of the `face` whose sides press each other after
+        it broke, else -1, `x_m` and `y_m`, `normal_x` and `normal_y` from a to b, `force_x_N` and
+        `force_y_N` on a, and their fields that are numbers (docs/lookup/fields.md): `length_m`, `opening_m`, ...
+        """
+        table: pandas.DataFrame = library("pandas", "found_contacts").DataFrame(self._core.found_points())
+        return table
+
     def to_pandas(self) -> pandas.DataFrame:
         """Returns the history as a DataFrame, with the units of its columns in `attrs["units"]`."""
         return self.history.to_pandas()

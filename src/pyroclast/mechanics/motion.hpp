@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pyroclast/mechanics/cracks.hpp"
+#include "pyroclast/mechanics/found/found_points.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 
 /// Motion of a body in the plane or in space, for all code that need not know which: stages, press, records,
@@ -104,6 +105,7 @@ class Motion {
   /// Returns the names of the energies that the laws, and creep, dissipate.
   virtual const std::vector<std::string_view>& dissipations() const = 0;
   virtual std::vector<CrackKind> crack_kinds() const = 0;
+  virtual std::vector<FoundPoint> found_points() const = 0;  ///< See found_points; none in a solid.
   /// Returns an array of the state: "displacement" by slot, "velocity" and "force" by pack, "internals" by
   /// line. Throws Error for another name.
   virtual ArrayInMemory array_of(std::string_view name) const = 0;
@@ -151,6 +153,12 @@ class MotionOf final : public Motion {
     return mechanics_.body().dissipations;
   }
   std::vector<CrackKind> crack_kinds() const override { return pyroclast::crack_kinds(mechanics_.body()); }
+  std::vector<FoundPoint> found_points() const override {
+    if constexpr (Dim == 2)
+      return pyroclast::found_points(mechanics_.body());
+    else
+      return {};
+  }
   ArrayInMemory array_of(std::string_view name) const override;
   std::span<const int> gridpoint_slots() const override {
     const auto& slots = mechanics_.body().layout.gridpoint_slot;

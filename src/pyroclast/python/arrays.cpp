@@ -14,6 +14,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/simulation/watching/fields.hpp"
+#include "pyroclast/simulation/watching/found_fields.hpp"
 
 namespace pyroclast::python {
 
@@ -145,6 +146,39 @@ py::dict contact_points(const Simulation& simulation) {
   add("area_m2", [&](int c) { return model.joint(c).area; });
   for (int axis = 0; axis < model.dimension(); ++axis)
     add(fmt::format("normal_{}", "xyz"[axis]), [&](int c) { return model.normal(c)[axis]; });
+  return all;
+}
+
+py::dict found_points(const Simulation& simulation) {
+  const std::vector<FoundPoint> points = motion_of(simulation).found_points();
+  py::list interface;
+  for (const FoundPoint& point : points)
+    interface.append(simulation.model().interface_names[static_cast<std::size_t>(point.interface)]);
+  py::dict all;
+  all["interface"] = interface;
+  const auto add_whole = [&](const char* name, auto number) {
+    all[name] = filled<int>(points, 0, [&](const FoundPoint& p, py::ssize_t) { return number(p); });
+  };
+  const auto add = [&](const std::string& name, auto number) {
+    all[py::str(name)] =
+        filled<double>(points, 0, [&](const FoundPoint& p, py::ssize_t) { return number(p); });
+  };
+  add_whole("block_a", [](const FoundPoint& p) { return p.blocks[0]; });
+  add_whole("block_b", [](const FoundPoint& p) { return p.blocks[1]; });
+  add_whole("face", [](const FoundPoint& p) { return p.face; });
+  for (int axis = 0; axis < 2; ++axis)
+    add(fmt::format("{}_m", "xy"[axis]), [&](const FoundPoint& p) { return p.position[axis]; });
+  for (int axis = 0; axis < 2; ++axis)
+    add(fmt::format("normal_{}", "xy"[axis]), [&](const FoundPoint& p) { return p.normal[axis]; });
+  for (int axis = 0; axis < 2; ++axis)
+    add(fmt::format("force_{}_N", "xy"[axis]), [&](const FoundPoint& p) { return p.force[axis]; });
+  for (const FoundField& field : found_fields())
+    if (field.kind == ValueKind::number)
+      add(name_with_unit(field), [&](const FoundPoint& p) {
+        double number = 0.0;
+        field.read(p, &number);
+        return number;
+      });
   return all;
 }
 

@@ -32,6 +32,9 @@ py::dict fields(const Simulation& simulation, Item item, const std::vector<std::
 /// Returns the place of every contact point, its interface and its law.
 py::dict contact_points(const Simulation& simulation);
 
+/// Returns the ends of pairs that press now: places, blocks, faces, interfaces and fields that are numbers.
+py::dict found_points(const Simulation& simulation);
+
 /// Returns all cells of a history, (rows, columns); NaN where a cell is empty.
 py::array_t<double> table(const History& history);
 py::array_t<double> row(const std::vector<std::optional<double>>& cells);

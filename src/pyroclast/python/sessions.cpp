@@ -399,7 +399,8 @@ void bind_arrays(py::class_<Held>& bound) {
                                      "specimen; Deck.make_specimen makes it");
                                return PythonSpecimen{*specimen};
                              })
-      .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
+      .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); })
+      .def("found_points", [](const Held& h) { return found_points(h.get().simulation()); });
 }
 
 }  // namespace

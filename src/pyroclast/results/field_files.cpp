@@ -10,6 +10,7 @@
 
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/simulation/watching/fields.hpp"
+#include "pyroclast/simulation/watching/found_fields.hpp"
 
 namespace pyroclast {
 
@@ -46,6 +47,34 @@ void write_fields(Hdf5File& file, const Simulation& simulation, Item item) {
       column += components(field);
     }
   });
+}
+
+/// Writes the ends of pairs that press as lines to the middle of their overlap, with their fields.
+void write_found(Hdf5File& file, const Simulation& simulation) {
+  const std::vector<FoundPoint> points = simulation.motion().found_points();
+  std::vector<Vec<3>> ends;
+  std::vector<std::int32_t> block_a, block_b, face;
+  std::vector<std::uint8_t> interface;
+  for (const FoundPoint& point : points) {
+    for (const Vec<2>& end : {point.position, point.middle}) ends.push_back({{end[0], end[1], 0.0}});
+    block_a.push_back(point.blocks[0]);
+    block_b.push_back(point.blocks[1]);
+    face.push_back(point.face);
+    interface.push_back(static_cast<std::uint8_t>(point.interface));
+  }
+  write_lines(file, ends);
+  for (const FoundField& field : found_fields()) {
+    if (!field.in_files) continue;
+    const auto values = values_of(field, points);
+    const int components = components_of(field.kind, 2), padding = components == 2 ? 1 : 0;
+    file.dataset(path_of(field), columns_of<float>(values, components, 0, components, padding),
+                 components == 1 ? 0 : components + padding);
+  }
+  file.dataset("/VTKHDF/CellData/block_a", block_a);
+  file.dataset("/VTKHDF/CellData/block_b", block_b);
+  file.dataset("/VTKHDF/CellData/face", face);
+  file.dataset("/VTKHDF/CellData/interface", interface);
+  file.dataset("/VTKHDF/FieldData/interface_names", simulation.model().interface_names);
 }
 
 /// Columns of the history that frames.csv has, where the history has them.
@@ -106,12 +135,15 @@ FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& si
   if (simulation.moves())
     contacts_.emplace(folder, MeshPart::contacts, simulation.model().dimension(),
                       frame_times(history, frames));
+  if (simulation.moves() && simulation.motion().parameters().found.is_on)
+    found_.emplace(folder, MeshPart::found, simulation.model().dimension(), frame_times(history, frames));
   write_mesh(folder, simulation.model());
 }
 
 std::vector<std::string> FieldFiles::lost() const {
   std::vector<std::string> names = blocks_.lost();
-  if (contacts_) std::ranges::copy(contacts_->lost(), std::back_inserter(names));
+  for (const auto* series : {&contacts_, &found_})
+    if (*series) std::ranges::copy((*series)->lost(), std::back_inserter(names));
   return names;
 }
 
@@ -127,6 +159,7 @@ void FieldFiles::write(const Simulation& simulation, const History& history, Fra
     contacts_->write(times, [&](Hdf5File& file) {
       for (const Item item : {Item::contact_end, Item::contact}) write_fields(file, simulation, item);
     });
+  if (found_) found_->write(times, [&](Hdf5File& file) { write_found(file, simulation); });
   frames_.line(frame_line(history, columns_, frames.rows.size(), row));
   frames.rows.push_back(row);
 }

@@ -18,8 +18,9 @@ struct FrameRows {
   std::vector<std::int64_t> rows;  ///< rows of the history at which they were taken
 };
 
-/// Files of a run's fields: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts, see
-/// FrameSeries, and `frames.csv`, which lists the frames with some columns of the history.
+/// Files of a run's fields: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts and of
+/// those that are found, see FrameSeries, and `frames.csv`, which lists the frames with some columns of the
+/// history.
 class FieldFiles {
  public:
   /// Creates the folder, writes the mesh and lists the frames that are there.
@@ -38,7 +39,7 @@ class FieldFiles {
   std::vector<std::string> columns_;  ///< columns of the history in frames.csv
   LineFile frames_;
   FrameSeries blocks_;
-  std::optional<FrameSeries> contacts_;
+  std::optional<FrameSeries> contacts_, found_;
 };
 
 }  // namespace pyroclast

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint8_t kVtkLine = 3, kVtkTriangle = 5, kVtkQuad = 9, kVtkTetrahedron = 10;
 
 const char* name(MeshPart part) {
-  return part == MeshPart::blocks ? "blocks" : "contacts";
+  return part == MeshPart::blocks ? "blocks" : part == MeshPart::contacts ? "contacts" : "found";
 }
 
 /// Cell field that the mesh holds for all frames.
@@ -79,11 +79,16 @@ void write_points(Hdf5File& file, const std::string& group, Item item, const Mod
       });
 }
 
+/// Tells VTK what the file is.
+void tell_type(Hdf5File& file) {
+  file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
+  file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
+}
+
 void link_mesh(Hdf5File& file, MeshPart part, int dimension) {
   const std::string grid = name(part);
   file.group("/VTKHDF");
-  file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-  file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
+  tell_type(file);
   for (const char* array : {"Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
                             "NumberOfConnectivityIds"})
     file.external_link(fmt::format("/VTKHDF/{}", array), kMeshFile, fmt::format("/{}/{}", grid, array));
@@ -161,6 +166,19 @@ void write_contacts(Hdf5File& file, const Model& model) {
 
 }  // namespace
 
+void write_lines(Hdf5File& file, const std::vector<Vec<3>>& points) {
+  const auto count = static_cast<std::int64_t>(points.size());
+  begin_grid(file, "/VTKHDF", count, count / 2, 2, kVtkLine);
+  tell_type(file);
+  std::vector<double> rows;
+  for (const Vec<3>& point : points) rows.insert(rows.end(), point.c.begin(), point.c.end());
+  file.rows("/VTKHDF/Points", 0, rows);
+  write_sequence<std::int64_t>(file, "/VTKHDF/Connectivity", count, [](std::int64_t end) { return end; });
+  file.group("/VTKHDF/FieldData");
+  file.group("/VTKHDF/PointData");
+  file.group("/VTKHDF/CellData");
+}
+
 void write_mesh(const std::filesystem::path& folder, const Model& model) {
   Hdf5File file(file_in(folder, kMeshFile));
   write_blocks(file, model);
@@ -190,7 +208,7 @@ std::vector<std::string> FrameSeries::lost() const {
 
 void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
   Hdf5File file(file_in(folder_, file_name(part_, count())));
-  link_mesh(file, part_, dimension_);
+  if (part_ != MeshPart::found) link_mesh(file, part_, dimension_);
   fields(file);
   file.close();
   times_ = std::move(times);

@@ -12,12 +12,20 @@
 namespace pyroclast {
 
 /// Part of a mesh that has fields of its own.
-enum class MeshPart : std::uint8_t { blocks, contacts };
+enum class MeshPart : std::uint8_t {
+  blocks,
+  contacts,
+  found  ///< ends of pairs of edges that press: each frame has a mesh of its own
+};
 
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles or tetrahedra
 /// with block and material, contact points as cells, see ends_of_contact, with interface and length or area.
 /// A collective. \param folder  empty on ranks but the first
 void write_mesh(const std::filesystem::path& folder, const Model& model);
+
+/// Writes lines as the mesh of a frame of its own.
+/// \param points  both ends of each line in turn, m
+void write_lines(Hdf5File& file, const std::vector<Vec<3>>& points);
 
 /// Returns some columns of rows, row by row.
 /// \param width    numbers of a row
@@ -36,8 +44,8 @@ std::vector<To> columns_of(const std::vector<From>& rows, int width, int first, 
 }
 
 /// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read. Each frame k is a file
-/// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it; `blocks.hdf.series` or
-/// `contacts.hdf.series` opens all of them as a time series.
+/// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it, or a file `found_<k>.hdf`, which
+/// is whole; `blocks.hdf.series` and so on open all of them as a time series.
 class FrameSeries {
  public:
   /// \param dimension  dimension of the body, 2 or 3
@@ -47,7 +55,8 @@ class FrameSeries {
 
   /// Writes a frame.
   /// \param times   times of all frames so far and of this one, s
-  /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData
+  /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData; of what is found
+  ///                also the mesh, see write_lines
   void write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }

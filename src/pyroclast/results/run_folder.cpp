@@ -58,6 +58,8 @@ constexpr auto kWritten = std::to_array<const char*>({
     "fields/blocks_[0-9]*.hdf",
     "fields/contacts.hdf.series",
     "fields/contacts_[0-9]*.hdf",
+    "fields/found.hdf.series",
+    "fields/found_[0-9]*.hdf",
 });
 constexpr auto kFolders =
     std::to_array<std::string_view>({"specimen", "fields", "figures", "checkpoints", "inputs"});

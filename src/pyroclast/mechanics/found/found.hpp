@@ -54,6 +54,7 @@ struct FoundPair {
   double lost_damping = 0.0;           ///< energy lost to damping, J
   std::vector<double> internals;       ///< internal variables of the law at both ends in turn
   std::vector<double> lost;            ///< losses of the law, times the area
+  int interface = 0;                   ///< interface that gives the law
   int law = 0;                         ///< entry of State::laws
   std::array<int, 2> sets{-1, -1};     ///< set of parameters of each end; -1: not known yet
   /// Square of a way since the last search, over that of the way that ends the lists, up to which the pair

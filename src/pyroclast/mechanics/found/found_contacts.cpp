@@ -219,9 +219,11 @@ std::uint32_t FoundContacts::ends_that_count(const FoundPair& pair) const {
   return (holds_together(at[0], at[2]) ? 0U : 1U) | (holds_together(at[1], at[3]) ? 0U : 2U);
 }
 
-/// Returns the interface of a pair: that of a loose body, of two the one that the deck names later; else that
-/// of the two materials.
+/// Returns the interface of a pair: that of its face; or that of a loose body, of two the one that the deck
+/// names later; else that of the two materials.
 int FoundContacts::interface_of(const Key& key) const {
+  if (const int face = face_of(key); face >= 0)
+    return body_.model.contacts[body_.model.face_contacts[face]].interface;
   const auto of_body = [&](int facet) { return found_.of_body[found_.facets[facet].block]; };
   if (const int interface = std::max(of_body(key[0]), of_body(key[1])); interface >= 0) return interface;
   const auto material = [&](int facet) { return body_.model.block_material[found_.facets[facet].block]; };
@@ -242,7 +244,7 @@ int FoundContacts::set_of(const FoundPair& pair, int end) const {
   const auto& of_contact = body_.properties.of_contact;
   const BlockFacet &first = found_.facets[pair.facets[0]], &second = found_.facets[pair.facets[1]];
   if (const int face = face_of(pair.facets); face >= 0) return of_contact[model.face_contacts[face] + end];
-  const int interface = interface_of(pair.facets);
+  const int interface = pair.interface;
   for (const BlockFacet& facet : {first, second})
     if (facet.face >= 0)
       if (const int c = model.face_contacts[facet.face]; model.contacts[c].interface == interface)
@@ -271,6 +273,7 @@ int FoundContacts::law_index(const FoundPair& pair) const {
 FoundPair FoundContacts::new_pair(const Key& key) const {
   FoundPair pair;
   pair.facets = key;
+  pair.interface = interface_of(key);
   pair.sets = {set_of(pair, 0), set_of(pair, 1)};
   pair.law = law_index(pair);
   const LawOfRows& law = found_.arrays.laws[pair.law];
@@ -732,37 +735,7 @@ void FoundContacts::list_loads() {
 
 /// Gives pairs the numbers that they have in rows.
 void FoundContacts::take_back() {
-  const auto& arrays = found_.arrays;
-  for (FoundPair& pair : found_.pairs) {
-    if (pair.slot < 0) continue;
-    const FoundRow& row = arrays.rows[pair.slot / kLanes];
-    const LawOfRows& law = arrays.laws[row.law];
-    const int lane = pair.slot % kLanes;
-    const bool was_handed_over = pair.is_handed_over;
-    pair.is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
-    pair.not_counted = row.not_counted.number[lane];
-    pair.stored = row.stored.number[lane];
-    pair.applied = row.applied.number[lane];
-    pair.lost_area = row.lost_area.number[lane];
-    pair.lost_damping = row.lost_damping.number[lane];
-    for (int k = 0; k < 2; ++k) {
-      PairEnd& end = pair.ends[k];
-      end.area = row.area[k].number[lane];
-      end.held = row.held[k].number[lane];
-      end.shift = row.shift[k].number[lane];
-      end.rest = row.rest[k].number[lane];
-      end.damped = row.damped[k].number[lane];
-      for (int i = 0; i < law.internals; ++i)
-        pair.internals[k * law.internals + i] =
-            arrays.internals[row.first_internal + k * law.internals + i].number[lane];
-    }
-    for (int i = 0; i < law.losses; ++i) pair.lost[i] = arrays.lost[row.first_loss + i].number[lane];
-    if (was_handed_over &&
-        !pair.is_handed_over) {  // the sides have left each other: what follows is a new pair
-      pair.ratio = 1.0;
-      for (PairEnd& end : pair.ends) end.offset = 0.0;
-    }
-  }
+  for (FoundPair& pair : found_.pairs) take_from_row(found_, pair);
 }
 
 void FoundContacts::forget_lists() {
@@ -898,6 +871,38 @@ void FoundContacts::leave_out_overlaps(const std::vector<bool>& fresh, double to
 }
 
 // Sums and states
+
+void take_from_row(const FoundData& found, FoundPair& pair) {
+  if (pair.slot < 0) return;
+  const auto& arrays = found.arrays;
+  const FoundRow& row = arrays.rows[pair.slot / kLanes];
+  const LawOfRows& law = arrays.laws[row.law];
+  const int lane = pair.slot % kLanes;
+  const bool was_handed_over = pair.is_handed_over;
+  pair.is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
+  pair.not_counted = row.not_counted.number[lane];
+  pair.stored = row.stored.number[lane];
+  pair.applied = row.applied.number[lane];
+  pair.lost_area = row.lost_area.number[lane];
+  pair.lost_damping = row.lost_damping.number[lane];
+  for (int k = 0; k < 2; ++k) {
+    PairEnd& end = pair.ends[k];
+    end.area = row.area[k].number[lane];
+    end.held = row.held[k].number[lane];
+    end.shift = row.shift[k].number[lane];
+    end.rest = row.rest[k].number[lane];
+    end.damped = row.damped[k].number[lane];
+    for (int i = 0; i < law.internals; ++i)
+      pair.internals[k * law.internals + i] =
+          arrays.internals[row.first_internal + k * law.internals + i].number[lane];
+  }
+  for (int i = 0; i < law.losses; ++i) pair.lost[i] = arrays.lost[row.first_loss + i].number[lane];
+  if (was_handed_over &&
+      !pair.is_handed_over) {  // the sides have left each other: what follows is a new pair
+    pair.ratio = 1.0;
+    for (PairEnd& end : pair.ends) end.offset = 0.0;
+  }
+}
 
 double stored_by(const FoundData& found) {
   double sum = 0.0;

@@ -84,6 +84,8 @@ class FoundContacts {
   FoundData& found_;
 };
 
+/// Gives a pair the numbers that it has in its row; does nothing where it stands in none.
+void take_from_row(const FoundData& found, FoundPair& pair);
 /// Returns the energy that found pairs store, J.
 double stored_by(const FoundData& found);
 /// Returns the sum of the magnitudes of the forces of found pairs, N.

@@ -15,6 +15,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/mechanics/cracks.hpp"
+#include "pyroclast/simulation/watching/found_fields.hpp"
 
 namespace pyroclast {
 
@@ -348,6 +349,7 @@ std::vector<FieldInfo> possible_fields() {
   std::ranges::copy(of_laws(built_in_laws(), {2, 3}, add_memory), std::back_inserter(all));
   for (const KnownField& f : kOfContacts) all.push_back(info_of(f));
   std::ranges::copy(of_laws(built_in_laws(), {2, 3}, add_losses), std::back_inserter(all));
+  std::ranges::copy(found_fields(), std::back_inserter(all));
   return all;
 }
 

@@ -11,7 +11,7 @@ namespace pyroclast {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kItemNames{"gridpoint", "zone", "contact", "contact_end"};
+constexpr std::array<std::string_view, 5> kItemNames{"gridpoint", "zone", "contact", "contact_end", "found"};
 
 /// Returns how many items belong to a contact; 0 for items of blocks.
 int items_of_contact(Item item, int dimension) {
@@ -60,6 +60,8 @@ int count_of(Item item, const Model& model) {
     case Item::contact:
     case Item::contact_end:
       break;
+    case Item::found:
+      throw Error("the contacts that are found are no part of the model");
   }
   const int contacts = model.part ? contacts_by_chunk(model).chunks.whole_count() : model.contact_count();
   return items_of_contact(item, model.dimension()) * contacts;

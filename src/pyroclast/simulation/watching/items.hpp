@@ -17,7 +17,8 @@ enum class Item : std::uint8_t {
   zone,
   contact,  ///< contact point
   /// Corners of the cell by which files show a contact point, see ends_of_contact.
-  contact_end
+  contact_end,
+  found  ///< end of a pair of edges that presses; a body has now more of them and now fewer, see found_fields
 };
 
 /// Returns the number of corners of the cell by which files show a contact point. In the plane it is a line
@@ -45,7 +46,7 @@ Vec<3> at_end(const Model& model, int contact, int end, Value value) {
 const char* name_of(Item item);
 /// Returns the item of a name. Throws Error for another name.
 Item item_of(std::string_view name);
-/// Returns the number of items of the whole body: a collective.
+/// Returns the number of items of the whole body, not of those that are found: a collective.
 int count_of(Item item, const Model& model);
 
 /// Reads rows of numbers, one of each item, and hands them out in the order of the whole body, slice by

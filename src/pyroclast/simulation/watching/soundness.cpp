@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/laws/common.hpp"
+#include "pyroclast/simulation/watching/loose_pieces.hpp"
 
 namespace pyroclast {
 
@@ -248,10 +250,10 @@ Soundness judge_soundness(const Run& run, const std::vector<ReportedStage>& stag
         *history.cell(*row, "temperature_degC"),
         simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : "",
         simulation.model().dimension() == 2
-            ? "with mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical "
-              "temperatures "
-              "8 to 28 K"
+            ? "with mechanics.kinematics = \"finite\", f_c was up to 4 % lower there, and critical "
+              "temperatures up to 20 K"
             : "blocks that turn would be softer there, but blocks of a solid cannot turn yet"));
+  std::ranges::move(warnings_of_loose_pieces(simulation), std::back_inserter(s.warnings));
   return s;
 }
 

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "bodies.hpp"
+
+/// Blocks that are not joined, as the tests of found contacts have them.
+namespace pyroclast::bodies {
+
+inline constexpr double kGravity = 9.81;
+
+inline std::vector<Vec<2>> rectangle(double x, double y, double width, double height, double angle = 0.0,
+                                     const Vec<2>& about = {}) {
+  std::vector<Vec<2>> corners{{{x, y}}, {{x + width, y}}, {{x + width, y + height}}, {{x, y + height}}};
+  for (auto& corner : corners) corner = turned(corner - about, angle) + about;
+  return corners;
+}
+
+inline int add_block(ModelOf<2>& model, const std::vector<Vec<2>>& corners) {
+  const auto zoned = specimen::zone_block(corners);
+  return model.add_block(zoned.gridpoints, zoned.zones, 0);
+}
+
+inline ModelOf<2> empty_model() {
+  ModelOf<2> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  return model;
+}
+
+/// Parameters of blocks that fly: real mass, no damping.
+inline MechanicsParameters flying(double gravity, double safety) {
+  MechanicsParameters p;
+  p.gravity = {{0.0, -gravity}};
+  p.kinematics = Kinematics::finite;
+  p.safety = safety;
+  p.found.is_on = true;
+  p.zones_for_a_thread = 1;
+  return p;
+}
+
+inline Frictional::Properties<double> rubbing(double stiffness, double friction) {
+  return {stiffness, 0.4 * stiffness, friction};
+}
+
+inline void hold(Mechanics<2>& m, int block) {
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
+    for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+}
+
+inline Vec<2> velocity_of_block(const Mechanics<2>& m, int block) {
+  Vec<2> momentum{};
+  double mass = 0.0;
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
+    momentum += m.read().velocity(g) * m.body().mass[g];
+    mass += m.body().mass[g];
+  }
+  return momentum * (1.0 / mass);
+}
+
+inline double lowest(const Mechanics<2>& m, int block) {
+  double y = 1e9;
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
+    y = std::min(y, m.model().position[g][1] + m.read().displacement(g)[1]);
+  return y;
+}
+
+/// Two rows of square blocks, joined.
+inline ModelOf<2> two_rows(int blocks, double size) {
+  return lattice(blocks, 2, [=](double x, double y) { return Vec<2>{{x * blocks * size, y * 2 * size}}; });
+}
+
+}  // namespace pyroclast::bodies
