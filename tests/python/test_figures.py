@@ -331,7 +331,7 @@ class PicturesOfTheDocs(unittest.TestCase):
 
     NEAR = 20  # of 765: rounding to the palette
 
-    def test_broken_tension_is_orange(self):
+    def test_broken_contacts_have_the_colour_of_tension_or_of_one_damage(self):
         pictures = script("pictures").PICTURES
         cracked_ones = {name for name, shown in pictures.items() if any("fracture" in f for f in shown.figures)}
         self.assertGreater(len(cracked_ones), 14)
@@ -340,8 +340,9 @@ class PicturesOfTheDocs(unittest.TestCase):
                 red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB"), int), 2, 0)
                 packed = np.unique(red << 16 | green << 8 | blue)  # much faster than rows of three
                 colours = np.column_stack([packed >> 16, packed >> 8 & 255, packed & 255])
-                wanted = np.round(255 * np.array(to_rgba(style.TENSION_COLOUR)[:3]))
-                self.assertLess(np.abs(colours - wanted).sum(axis=1).min(), self.NEAR)
+                wanted = np.round([255 * np.array(to_rgba(colour)[:3])
+                                   for colour in (style.TENSION_COLOUR, style.MIXED_COLOUR)])
+                self.assertLess(np.abs(colours[:, None] - wanted).sum(axis=2).min(), self.NEAR)
 
     def test_one_script_knows_what_makes_each(self):
         pictures = script("pictures")

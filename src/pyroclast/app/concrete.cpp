@@ -293,9 +293,7 @@ void add_law(std::map<std::string, std::string>& v, const Asked& a, const Mortar
         fmt::format("law = \"{}\"           # one damage for tension and shear\nsoftening = \"linear\"\n",
                     first_guess(3).law);
     v["DILATION"] =
-        "psi = \"0 deg\"              # broken faces do not dilate ...\nu_r = \"0.1 mm\"             # ... "
-        "over "
-        "this slip\n";
+        "psi = \"0 deg\"  # broken faces do not dilate ...\nu_r = \"0.1 mm\"  # ... over this slip\n";
   } else {
     v["C_RES"] =
         fmt::format("c_res = \"{}\"            # residual cohesion\n", in(contacts.c_res, 1e-6, "MPa"));
