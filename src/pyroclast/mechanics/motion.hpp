@@ -35,6 +35,8 @@ class MotionReader {
   virtual Vec<3> velocity(int gridpoint) const = 0;
   virtual Vec<3> force(int gridpoint) const = 0;
   virtual bool is_prescribed(int gridpoint, int component) const = 0;
+  virtual double real_mass(int gridpoint) const = 0;
+  virtual double moving_mass(int gridpoint) const = 0;
 
   virtual SymmetricTensor<3> stress(int zone) const = 0;
   virtual SymmetricTensor<3> elastic_strain(int zone) const = 0;
@@ -194,6 +196,8 @@ class MotionOf final : public Motion {
     bool is_prescribed(int gridpoint, int component) const override {
       return read_.is_prescribed(gridpoint, component);
     }
+    double real_mass(int gridpoint) const override { return read_.real_mass(gridpoint); }
+    double moving_mass(int gridpoint) const override { return read_.moving_mass(gridpoint); }
     SymmetricTensor<3> stress(int zone) const override { return in_space(read_.stress(zone)); }
     SymmetricTensor<3> elastic_strain(int zone) const override { return read_.elastic_strain(zone); }
     SymmetricTensor<3> creep_strain(int zone) const override { return in_space(read_.creep_strain(zone)); }

@@ -46,6 +46,8 @@ class Reader {
   Vec<Dim> force(int gridpoint) const;
   Vec<Dim> applied_force(int gridpoint) const;  ///< N
   bool is_prescribed(int gridpoint, int component) const;
+  double real_mass(int gridpoint) const { return body_.gravity_mass[gridpoint]; }  ///< kg
+  double moving_mass(int gridpoint) const { return body_.mass[gridpoint]; }        ///< kg
   /// Returns the displacement to which the last forces belong, m.
   Vec<Dim> displacement_of_force(int gridpoint) const;
 

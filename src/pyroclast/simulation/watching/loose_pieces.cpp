@@ -1,7 +1,9 @@
 #include "pyroclast/simulation/watching/loose_pieces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -11,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/mechanics/cracks.hpp"
+#include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
 
@@ -19,44 +22,106 @@ namespace {
 /// Share of gravity above which a piece falls as it should.
 constexpr double kFalls = 0.99;
 
-Vec<2> in_plane(const Vec<3>& place) {
-  return {{place[0], place[1]}};
+using PairOfBlocks = std::array<int, 2>;
+
+/// Tells whether a contact holds its blocks together, or bears something.
+bool connects(const Motion& motion, int contact) {
+  const ContactState state = motion.read().contact(contact);
+  if (state.normal_traction != 0.0 || norm(state.shear_traction) != 0.0) return true;
+  double most = -1.0;  // without a damage nothing holds a contact that bears nothing
+  for (const Remembers mode : kCrackModes)
+    if (place_of(*state.law, mode, state.dimension) >= 0) most = std::max(most, state.remembered(mode));
+  return most >= 0.0 && most < 1.0;
+}
+
+/// Calls `take(a, b, connects)` for the blocks of each contact of the whole body, on the first rank: a
+/// collective.
+template <class Take>
+void each_contact(const Simulation& simulation, bool asks_connects, Take take) {
+  const Model& model = simulation.model();
+  const auto block_of = [&](int gridpoint) {
+    const int block = model.block_of(gridpoint);
+    return static_cast<double>(model.part ? model.part->block[block] : block);
+  };
+  constexpr int kWidth = 3;
+  in_slices<double>(
+      Item::contact, model, kWidth,
+      [&](int contact, double* row) {
+        row[0] = block_of(model.joint(contact).a);
+        row[1] = block_of(model.joint(contact).b);
+        row[2] = asks_connects && connects(simulation.motion(), contact) ? 1.0 : 0.0;
+      },
+      [&](std::int64_t, const std::vector<double>& rows) {
+        for (auto row = rows.begin(); row != rows.end(); row += kWidth)
+          take(static_cast<int>(row[0]), static_cast<int>(row[1]), row[2] != 0.0);
+      });
+}
+
+/// Calls `take(block, row)` for each gridpoint of the whole body, on the first rank: a collective.
+/// \param read  writes a row of so many numbers
+template <class Read, class Take>
+void each_gridpoint(const Simulation& simulation, int width, Read read, Take take) {
+  const Model& model = simulation.model();
+  in_slices<double>(
+      Item::gridpoint, model, width + 1,
+      [&](int g, double* row) {
+        const int block = model.block_of(g);
+        row[0] = model.part ? model.part->block[block] : block;
+        read(g, row + 1);
+      },
+      [&](std::int64_t, const std::vector<double>& rows) {
+        for (auto row = rows.begin(); row != rows.end(); row += width + 1)
+          take(static_cast<int>(row[0]), &row[1]);
+      });
 }
 
 /// Block of a plane body where it lies now.
 struct PlacedBlock {
-  std::vector<std::array<int, 2>> edges;  // of its outline, counter-clockwise
+  std::vector<std::array<int, 2>> edges;  // gridpoints, counter-clockwise round the block
   Vec<2> low, high;                       // of its box
   double size = 0.0;                      // root of its area, m
 };
 
+/// Blocks of a plane body where they lie now: all of them on the first rank, none on others.
 class PlacedBlocks {
  public:
-  explicit PlacedBlocks(const Simulation& simulation) : model_(simulation.model()) {
-    for (int g = 0; g < model_.gridpoint_count(); ++g)
-      place_.push_back(in_plane(model_.place(g) + simulation.motion().read().displacement(g)));
-    const std::vector<int> block_of = zone_blocks(model_);
+  explicit PlacedBlocks(const Simulation& simulation) {
+    const Model& model = simulation.model();
+    std::vector<Vec<2>> start;
+    std::vector<int> block_of;
+    each_gridpoint(
+        simulation, 4,
+        [&](int g, double* row) {
+          const Vec<3> x = model.place(g), u = simulation.motion().read().displacement(g);
+          for (int i = 0; i < 2; ++i) row[i] = x[i], row[2 + i] = x[i] + u[i];
+        },
+        [&](int block, const double* row) {
+          block_of.push_back(block);
+          start.push_back({{row[0], row[1]}});
+          place_.push_back({{row[2], row[3]}});
+        });
+    std::vector<std::array<int, 3>> zones;
+    in_slices<double>(
+        Item::zone, model, 3,
+        [&](int zone, double* row) {
+          for (const int g : model.gridpoints_of_zone(zone))
+            *row++ = model.part ? model.part->gridpoint[g] : g;
+        },
+        [&](std::int64_t, const std::vector<double>& rows) {
+          for (auto row = rows.begin(); row != rows.end(); row += 3)
+            zones.push_back({static_cast<int>(row[0]), static_cast<int>(row[1]), static_cast<int>(row[2])});
+        });
+    if (block_of.empty()) return;
+    blocks_.resize(static_cast<std::size_t>(std::ranges::max(block_of)) + 1);
     std::set<std::array<int, 2>> edges;
-    const auto each_edge = [&](int zone, auto f) {
-      const auto g = model_.gridpoints_of_zone(zone);
-      const bool is_positive = cross(in_plane(model_.place(g[1]) - model_.place(g[0])),
-                                     in_plane(model_.place(g[2]) - model_.place(g[0]))) > 0.0;
-      for (int i = 0; i < 3; ++i) {
-        const int from = g[i], to = g[(i + 1) % 3];
-        f(is_positive ? std::array{from, to} : std::array{to, from});
-      }
-    };
-    for (int zone = 0; zone < model_.zone_count(); ++zone)
-      each_edge(zone, [&](const std::array<int, 2>& edge) { edges.insert(edge); });
-    blocks_.resize(static_cast<std::size_t>(model_.block_count()));
-    const std::vector<double> volumes = model_.zone_volumes();
-    for (int zone = 0; zone < model_.zone_count(); ++zone) {
-      PlacedBlock& block = blocks_[block_of[zone]];
-      block.size += volumes[zone] / model_.thickness;
-      each_edge(zone, [&](const std::array<int, 2>& edge) {
-        if (!edges.contains({edge[1], edge[0]})) block.edges.push_back(edge);
-      });
+    for (auto& zone : zones) {
+      const double twice = cross(start[zone[1]] - start[zone[0]], start[zone[2]] - start[zone[0]]);
+      if (twice < 0.0) std::swap(zone[1], zone[2]);
+      blocks_[block_of[zone[0]]].size += 0.5 * std::abs(twice);
+      for (std::size_t i = 0; i < 3; ++i) edges.insert({zone[i], zone[(i + 1) % 3]});
     }
+    for (const auto& edge : edges)
+      if (!edges.contains({edge[1], edge[0]})) blocks_[block_of[edge[0]]].edges.push_back(edge);
     constexpr double kFar = std::numeric_limits<double>::infinity();
     for (PlacedBlock& block : blocks_) {
       block.size = std::sqrt(block.size);
@@ -92,37 +157,30 @@ class PlacedBlocks {
   }
 
  private:
-  const Model& model_;
   std::vector<Vec<2>> place_;
   std::vector<PlacedBlock> blocks_;
 };
 
-/// Tells whether a contact holds its blocks together, or bears something.
-bool connects(const Motion& motion, int contact) {
-  const ContactState state = motion.read().contact(contact);
-  if (state.normal_traction != 0.0 || norm(state.shear_traction) != 0.0) return true;
-  double most = -1.0;  // without a damage nothing holds a contact that bears nothing
-  for (const Remembers mode : kCrackModes)
-    if (place_of(*state.law, mode, state.dimension) >= 0) most = std::max(most, state.remembered(mode));
-  return most >= 0.0 && most < 1.0;
-}
+/// Sums over a block.
+struct BlockSums {
+  bool is_held = false;
+  double real_mass = 0.0, moving_mass = 0.0;  // kg
+};
 
 }  // namespace
 
 PassedThrough passed_through(const Simulation& simulation) {
   PassedThrough passed;
-  const Model& model = simulation.model();
-  if (!simulation.moves() || model.dimension() != 2 || model.part) return passed;
+  if (!simulation.moves() || simulation.model().dimension() != 2) return passed;
   const PlacedBlocks blocks(simulation);
-  std::set<std::array<int, 2>> joined;
-  for (int c = 0; c < model.contact_count(); ++c) {
-    const int a = model.block_of(model.joint(c).a), b = model.block_of(model.joint(c).b);
+  std::set<PairOfBlocks> joined;
+  each_contact(simulation, false, [&](int a, int b, bool) {
     joined.insert({std::min(a, b), std::max(a, b)});
-  }
+  });
   std::vector<int> order(static_cast<std::size_t>(blocks.count()));
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, [&](int block) { return blocks[block].low[0]; });
-  std::map<int, bool> deep;  // gridpoints that lie in others
+  std::map<int, int> deep;  // gridpoints that lie in others, and their blocks
   const auto look_into = [&](int block, int other) {
     const double most = PassedThrough::kDeep * std::min(blocks[block].size, blocks[other].size);
     for (const auto& edge : blocks[block].edges) {
@@ -132,7 +190,7 @@ PassedThrough passed_through(const Simulation& simulation) {
         passed.block = block;
         passed.other = other;
       }
-      if (depth > most) deep[edge[0]] = true;
+      if (depth > most) deep[edge[0]] = block;
     }
   };
   for (std::size_t i = 0; i < order.size(); ++i)
@@ -145,7 +203,7 @@ PassedThrough passed_through(const Simulation& simulation) {
       look_into(b, a);
     }
   std::set<int> of_blocks;
-  for (const auto& [gridpoint, is_deep] : deep) of_blocks.insert(model.block_of(gridpoint));
+  for (const auto& [gridpoint, block] : deep) of_blocks.insert(block);
   passed.gridpoints = static_cast<int>(deep.size());
   passed.blocks = static_cast<int>(of_blocks.size());
   return passed;
@@ -153,47 +211,58 @@ PassedThrough passed_through(const Simulation& simulation) {
 
 std::vector<FallingPiece> falling_pieces(const Simulation& simulation) {
   std::vector<FallingPiece> pieces;
-  const Model& model = simulation.model();
-  if (!simulation.moves() || model.part) return pieces;
+  if (!simulation.moves()) return pieces;
   const Motion& motion = simulation.motion();
   const MechanicsParameters& parameters = motion.parameters();
-  const double gravity = norm(parameters.gravity);
-  if (gravity == 0.0) return pieces;
+  if (norm(parameters.gravity) == 0.0) return pieces;
 
-  std::vector<int> piece(static_cast<std::size_t>(model.block_count()));
+  std::vector<BlockSums> sums;
+  each_gridpoint(
+      simulation, 3,
+      [&](int g, double* row) {
+        for (int i = 0; i < simulation.model().dimension(); ++i)
+          if (motion.read().is_prescribed(g, i)) row[0] = 1.0;
+        row[1] = motion.read().real_mass(g);
+        row[2] = motion.read().moving_mass(g);
+      },
+      [&](int block, const double* row) {
+        if (block >= std::ssize(sums)) sums.resize(static_cast<std::size_t>(block) + 1);
+        BlockSums& of_block = sums[block];
+        of_block.is_held = of_block.is_held || row[0] != 0.0;
+        of_block.real_mass += row[1];
+        of_block.moving_mass += row[2];
+      });
+  std::vector<int> piece(sums.size());
   std::iota(piece.begin(), piece.end(), 0);
   const auto first_of = [&](int block) {
     while (piece[block] != block) block = piece[block] = piece[piece[block]];
     return block;
   };
-  const auto join = [&](int a, int b) { piece[first_of(a)] = first_of(b); };
-  for (int c = 0; c < model.contact_count(); ++c)
-    if (connects(motion, c)) join(model.block_of(model.joint(c).a), model.block_of(model.joint(c).b));
+  const auto join = [&](int a, int b) {
+    const int first = first_of(a), other = first_of(b);
+    piece[std::max(first, other)] = std::min(first, other);
+  };
+  each_contact(simulation, true, [&](int a, int b, bool connects) {
+    if (connects) join(a, b);
+  });
   for (const FoundPoint& point : motion.found_points()) join(point.blocks[0], point.blocks[1]);
 
-  std::map<int, FallingPiece> of_first;
-  std::set<int> held;
-  for (int block = 0; block < model.block_count(); ++block) {
-    const int first = first_of(block);
-    of_first[first].blocks.push_back(block);
-    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-      for (int i = 0; i < model.dimension(); ++i)
-        if (motion.read().is_prescribed(g, i)) held.insert(first);
+  struct Sum : BlockSums {
+    std::vector<int> blocks;
+  };
+  std::map<int, Sum> of_piece;  // by their first blocks
+  for (int block = 0; block < std::ssize(sums); ++block) {
+    Sum& sum = of_piece[first_of(block)];
+    sum.is_held = sum.is_held || sums[block].is_held;
+    sum.real_mass += sums[block].real_mass;
+    sum.moving_mass += sums[block].moving_mass;
+    sum.blocks.push_back(block);
   }
   // local damping takes its share of a force that moves a piece on, in the combined form half of it
   const double undamped =
       1.0 - (parameters.damping_form == DampingForm::combined ? 0.5 : 1.0) * parameters.local_damping;
-  for (auto& [first, falling] : of_first) {
-    if (held.contains(first)) continue;
-    std::vector<int> gridpoints;
-    for (const int block : falling.blocks)
-      for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-        gridpoints.push_back(g);
-    const GridpointSet set = gridpoint_set(model, std::move(gridpoints));
-    falling.share_of_gravity = undamped * norm(motion.totals().total_weight(set)) /
-                               (gravity * motion.totals().total_moving_mass(set));
-    pieces.push_back(std::move(falling));
-  }
+  for (auto& [first, sum] : of_piece)
+    if (!sum.is_held) pieces.push_back({std::move(sum.blocks), undamped * sum.real_mass / sum.moving_mass});
   std::ranges::stable_sort(pieces, std::greater{}, [](const FallingPiece& p) { return p.blocks.size(); });
   return pieces;
 }

@@ -16,8 +16,8 @@ struct PassedThrough {
   double depth = 0.0;  ///< depth of that gridpoint, m
   static constexpr double kDeep = 0.01;
 };
-/// Finds what passed through, at the present displacements. Nothing where several ranks hold the body, and in
-/// a solid.
+/// Finds what passed through, at the present displacements: a collective. Nothing in a solid, and on ranks
+/// but the first.
 PassedThrough passed_through(const Simulation& simulation);
 
 /// Piece of a body that falls: blocks that contacts hold together, none of which is held or pressed by
@@ -26,11 +26,11 @@ struct FallingPiece {
   std::vector<int> blocks;
   double share_of_gravity = 1.0;  ///< acceleration over that of gravity
 };
-/// Finds the pieces that fall under gravity, the largest first. Nothing where several ranks hold the body.
+/// Finds the pieces that fall under gravity, the largest first: a collective. Nothing on ranks but the first.
 std::vector<FallingPiece> falling_pieces(const Simulation& simulation);
 
-/// Returns the warnings of both, one line each; none in a body whose blocks may meet any other and fall as
-/// they should.
+/// Returns the warnings of both, one line each: a collective. None on ranks but the first, and in a body
+/// whose blocks may meet any other and fall as they should.
 std::vector<std::string> warnings_of_loose_pieces(const Simulation& simulation);
 
 }  // namespace pyroclast
