@@ -92,12 +92,12 @@ void Exchange::set_down(const Press& press) {
 bool Exchange::advance(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
-  if (kept_.is_handed_over) {
+  if (kept_.is_handed_over && !kept_.is_cut_short) {
     simulation.loads().mark();
     kept_.strain_before = kept_.last_strain =
         simulation.ranks().together([&] { return shortening(simulation); });
   }
-  kept_.is_handed_over = false;
+  kept_.is_handed_over = kept_.is_cut_short = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;
   const std::int64_t to_check =
       std::min(coupling_.most_cycles - done, kCyclesPerCheck - done % kCyclesPerCheck);
@@ -105,11 +105,13 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   simulation.motion().advance(static_cast<int>(steps));
   kept_.cycles += steps;
   if (steps < to_check) return false;
-  if (kept_.cycles % (kChecksPerLookAtCracks * kCyclesPerCheck) == 0 && simulation.cracks_outrun_water())
-    return true;
   const auto [now, is_supported, is_still] = read(simulation);
   kept_.ran_away = may_fail && now - kept_.strain_before > coupling_.failure_strain;
   if (kept_.ran_away) return true;
+  if (kept_.cycles % (kChecksPerLookAtCracks * kCyclesPerCheck) == 0 && simulation.cracks_outrun_water()) {
+    kept_.is_cut_short = true;
+    return true;
+  }
   if (kept_.cycles >= coupling_.least_cycles) {
     kept_.converged = is_supported && is_still;
     if (kept_.converged) return true;
@@ -163,13 +165,14 @@ double Exchange::expected_cycles() const {
 }
 
 void Exchange::visit_state(StateVisitor& visitor) {
-  auto& [number, cycles, converged, ran_away, is_handed_over, even_steps_left, even_motion, strain_before,
-         last_strain] = kept_;  // another member does not compile until it has a name here
+  auto& [number, cycles, converged, ran_away, is_handed_over, is_cut_short, even_steps_left, even_motion,
+         strain_before, last_strain] = kept_;  // another member does not compile until it has a name here
   visitor.visit("exchange", number, state::count());
   visitor.visit("cycles", cycles, state::count());
   visitor.visit("converged", converged);
   visitor.visit("ran_away", ran_away);
   visitor.visit("is_handed_over", is_handed_over);
+  visitor.visit("is_cut_short", is_cut_short);
   visitor.visit("even_steps_left", even_steps_left, state::within(0, kEvenSteps));
   visitor.visit("even_axial", even_motion.axial);
   visitor.visit("even_lateral", even_motion.lateral);

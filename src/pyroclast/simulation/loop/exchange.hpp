@@ -93,7 +93,10 @@ class Exchange {
     std::int64_t cycles = 0;
     bool converged = true;
     bool ran_away = false;
-    bool is_handed_over = false;       ///< true from handing over to the first step after it
+    bool is_handed_over = false;  ///< true from handing over to the first step after it
+    /// True from an exchange that pore water ended to the first step after it: a platen sinks on from where
+    /// that exchange began.
+    bool is_cut_short = false;
     std::int64_t even_steps_left = 0;  ///< steps left of moving evenly and of the halt after it
     Press::EvenMotion even_motion;     ///< motion to come
     /// Strains of the specimen: at the exchange, and when cycles were last added.
