@@ -405,18 +405,19 @@ def print_critical_temperatures(rows: list[dict[str, str]], common: dict) -> Non
         of(rows, "critical_degC", test="heated", level=f"{level:g}", **common), 0)] for level in LEVELS])
 
 
+def retained(rows: list[dict[str, str]], name: str, kind: str, level: str, to: int, common: dict) -> np.ndarray:
+    """Strength or modulus over that of the cold specimen, which all concretes of one body share, seed by seed; strain at the
+    peak as it is."""
+    hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
+    cold = [of(rows, name, test="cold", seed=s, **common | {"concrete": "as it stands"}) for s in SEEDS]
+    return np.array([h[0] / (1.0 if name == "strain_at_peak" else c[0]) for h, c in zip(hot, cold) if len(h) and len(c)])
+
+
 def print_strengths(rows: list[dict[str, str]], common: dict, temperatures: tuple[int, ...]) -> None:
-    """Strengths and moduli over those of the cold specimen, which all concretes of one body share."""
     print("Strength and modulus over those at 20 °C of the same specimen\n")
     lines = []
     for name in ("f_c_MPa", "E_GPa", "strain_at_peak"):
         for kind, level in (("hot", "0"), ("hot", "0.4"), ("residual", "0")):
-            line = [name, kind, level]
-            for to in temperatures:
-                hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
-                cold = [of(rows, name, test="cold", seed=s, **common | {"concrete": "as it stands"}) for s in SEEDS]
-                ratios = [h[0] / (1.0 if name == "strain_at_peak" else c[0])
-                          for h, c in zip(hot, cold) if len(h) and len(c)]
-                line.append(mean_and_range(np.array(ratios), 4 if name == "strain_at_peak" else 2))
-            lines.append(line)
+            lines.append([name, kind, level, *(mean_and_range(
+                retained(rows, name, kind, level, to, common), 4 if name == "strain_at_peak" else 2) for to in temperatures)])
     print_table(["", "test", "level"] + [f"{to} °C" for to in temperatures], lines)

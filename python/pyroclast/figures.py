@@ -15,7 +15,7 @@ a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png; one with water in its pores
-water.png. A run that keeps no fields gets
+water.png and, with fields, water_profile.png. A run that keeps no fields gets
 those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png,
 unless no law of its contacts has a damage.
 
@@ -49,7 +49,7 @@ from .draw.records import record_course, record_fracture, records, records_of
 from .draw.sections import gradation, morphology
 from .draw.solid_sections import COLOURS, cracks_inside, plane_section
 from .draw.style import page_of, save
-from .draw.water import water
+from .draw.water import water, water_profile
 from .errors import Error
 from .programs import complain, run_program, say
 from .stored.compressed import Compressed
@@ -152,6 +152,8 @@ def _of_conduction(run: Results) -> Iterator[Picture]:
         yield Picture("temperature", lambda: temperature_field(run))
     if run.facts.of_role(WATER):
         yield Picture("water", lambda: water(run))
+        if run.has_fields:
+            yield Picture("water_profile", lambda: water_profile(run))
     if profile is not None:
         yield Picture("temperature_profile", lambda: temperature_profile(run, profile))
         if len(profile.isotherm):

@@ -176,12 +176,16 @@ class Concrete(InAFolder):
         larger = 1.0 - (0.58 + (least - 8.0) / 8.0 * 0.30)
         self.assertAlmostEqual(deck["aggregates"]["fraction"], 1800.0 / 2650.0 * larger, delta=2e-3)
         self.assertIn(f"stones from {least:g} mm on, 3 blocks; smaller ones belong to the mortar", done.stdout)
-        contacts, known = (d["contacts"] for d in (deck, tomllib.loads((CASES / "hot_strength_3d.toml").read_text())))
-        for key in ("phi", "phi_res", "beta"):
-            self.assertEqual(contacts["mortar_mortar"][key], known["mortar_mortar"][key])
-        self.assertEqual(contacts["aggregate_mortar"], known["aggregate_mortar"])
-        self.assertAlmostEqual(float(contacts["mortar_mortar"]["c_o"].split()[0]) / float(
-            contacts["mortar_mortar"]["f_t"].split()[0]), 6.0 / 2.5)
+        # the set of the cold cases in space, all strengths and energies times one factor
+        contacts, known = (d["contacts"] for d in (deck, tomllib.loads((CASES / "starter_3d.toml").read_text())))
+        scaled = ("f_t", "f_cm", "c_o", "G_f1", "G_f2")
+        factors = [float(contacts["mortar_mortar"].pop(key).split()[0]) / float(known["mortar_mortar"].pop(key).split()[0])
+                   for key in scaled]
+        for factor in factors:
+            self.assertAlmostEqual(factor, factors[0], places=9)
+        self.assertEqual(contacts, known)
+        keys = tomllib.loads((self.folder / "mine-calibrate.toml").read_text())["parameters"]["strength"]["keys"]
+        self.assertEqual(sorted(keys), sorted(f"contacts.mortar_mortar.{key}" for key in scaled))
 
     def test_a_small_cylinder_is_checked_without_a_warning_and_its_calibration_foretold(self):
         self.concrete("--cylinder", *SIEVES, "--width", "70 mm", "--height", "140 mm", "--blocks", "2500")
@@ -201,10 +205,10 @@ class Concrete(InAFolder):
         words = ("--cylinder", *LIMESTONE, *FULLER)
         self.concrete(*words, "--width", "60 mm", "--height", "90 mm", "--blocks", "2000")
         text = (self.folder / "mine.toml").read_text()
-        (self.folder / "best.toml").write_text(text.replace('phi = "8 deg"', 'phi = "12 deg"'))
+        (self.folder / "best.toml").write_text(text.replace('phi = "12 deg"', 'phi = "14 deg"'))
         hot = ("--hot", "400 degC", "--from", "best.toml")
         self.pyroclast("concrete", *words, *hot, "-o", "hot.toml")
-        self.assertEqual(self.deck("hot.toml")["contacts"]["mortar_mortar"]["phi"], "12 deg")
+        self.assertEqual(self.deck("hot.toml")["contacts"]["mortar_mortar"]["phi"], "14 deg")
         self.assertEqual(self.deck("hot.toml")["specimen"], self.deck()["specimen"])
         self.assertEqual(self.deck("hot.toml")["aggregates"], self.deck()["aggregates"])
         self.pyroclast("check", "hot.toml", "--set", "blocks.count=300")
@@ -212,6 +216,22 @@ class Concrete(InAFolder):
         self.pyroclast("concrete", *LIMESTONE, *FULLER, "--blocks", "1000", "-o", "best.toml")
         told = self.pyroclast("concrete", *words, *hot, "-o", "2.toml", code=1).stderr
         self.assertIn('best.toml": is no deck of a body in space, but --cylinder asks for one', told)
+
+    def test_a_cylinder_whose_contacts_have_another_law_or_other_energies_is_no_deck_to_heat(self):
+        words = ("--cylinder", *LIMESTONE, *FULLER, "--width", "60 mm", "--height", "90 mm", "--blocks", "2000")
+        self.concrete(*words)
+        text = (self.folder / "mine.toml").read_text()
+        two_damages = re.sub(r"(?m)^(law|softening|psi|u_r) = .*\n", "", text).replace(
+            "\nG_f2 =", '\nc_res = "0.06 MPa"\nphi_res = "12 deg"\nG_f2 =', 1)
+        as_stated = re.sub(r"(?m)^mode_2_energy = .*\n", "", text)
+        for other, law in ((two_damages, "cohesive"), (as_stated, "mixed_mode")):
+            (self.folder / "best.toml").write_text(other)
+            self.pyroclast("check", "best.toml", "--set", "blocks.count=300")
+            told = self.pyroclast("concrete", *words[:-2], "--hot", "400 degC", "--from", "best.toml", "-o", "2.toml",
+                                  code=1).stderr
+            self.assertIn(f'its contacts have the law {law}, but this program writes mixed_mode with mode_2_energy = "block '
+                          'size"; write its deck and calibrate it anew', told)
+            self.assertFalse((self.folder / "2.toml").exists())
 
     def test_another_number_of_blocks_than_was_calibrated_is_told(self):
         self.concrete(*LIMESTONE, *FULLER)

@@ -9,10 +9,12 @@ import shutil
 import tomllib
 import unittest
 
+import h5py
 from in_a_folder import InAFolder
 
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 SLAB = pathlib.Path(__file__).parents[1] / "hot_slab.toml"
+STACK = pathlib.Path(__file__).parents[1] / "parted_stack.toml"
 CONCRETE = ("--f_c", "38 MPa", "--E", "32 GPa", "--fraction", "0.4", "--d_max", "20 mm", "--blocks", "100",
             "--width", "60 mm", "--height", "120 mm")
 
@@ -151,6 +153,73 @@ class Depths(InTheFire):
         for face, depth in depths.items():
             self.assertAlmostEqual(depth, depths["plane"], delta=6e-4, msg=face)
             self.assertAlmostEqual(far[face], far["plane"], delta=6.0, msg=face)
+
+
+class Gaps(InTheFire):
+    """Cracks of a solid, by deck: what the motion opens and what is stated, in the heat of a whole run."""
+
+    LENGTH, SIDE, BRICKS = 0.08, 0.04, 4  # m
+    HOT, COLD, CONDUCTIVITY, GAS, JUMP, EMISSIVITY, STATED = 700.0, 100.0, 1.6, 0.04, 2e-7, 0.9, 2e-4
+
+    def stack(self) -> dict:
+        """Bricks on each other, as a file of polyhedra."""
+        section = [(0.0, 0.0), (self.SIDE, 0.0), (self.SIDE, self.SIDE), (0.0, self.SIDE)]
+        levels = range(self.BRICKS + 1)
+        faces = [[4 * level + k for k in range(4)] for level in levels]
+        cells = []
+        for brick in levels[:-1]:
+            below, above = faces[brick], faces[brick + 1]
+            cells.append([brick, brick + 1, *range(len(faces), len(faces) + 4)])
+            faces += [[below[k], below[(k + 1) % 4], above[(k + 1) % 4], above[k]] for k in range(4)]
+        return {"phases": ["mortar"], "faces": faces, "cells": cells, "phase": [0] * self.BRICKS,
+                "vertices_m": [[x, self.LENGTH * level / self.BRICKS, z] for level in levels for x, z in section],
+                "body": {"axis": "y", "length_m": self.LENGTH, "section_m": section,
+                         "sides": ["back", "right", "front", "left"]}}
+
+    def behind(self, face: float, flux: float, width: float) -> float:
+        """Temperature behind a gap into which a flux goes from a face, degC: gas and radiation, by bisection."""
+        kelvin, sigma = 273.15, 5.670374419e-8
+        low, high = -kelvin, face
+        for _ in range(100):
+            middle = 0.5 * (low + high)
+            passed = (self.GAS / (width + self.JUMP) * (face - middle)
+                      + sigma / (2.0 / self.EMISSIVITY - 1.0) * ((face + kelvin)**4 - (middle + kelvin)**4))
+            low, high = (middle, high) if passed > flux else (low, middle)
+        return 0.5 * (low + high)
+
+    def far_side(self, flux: float, widths: list[float]) -> float:
+        """Temperature of the cold end, degC, of bricks and gaps in series."""
+        drop = flux * self.LENGTH / self.BRICKS / self.CONDUCTIVITY
+        at = self.HOT - drop
+        for width in widths:
+            at = self.behind(at, flux, width) - drop
+        return at
+
+    def test_bricks_and_gaps_that_the_motion_opens_add_their_resistances(self):
+        (self.folder / "stack.json").write_text(json.dumps(self.stack()))
+        shutil.copy(STACK, self.folder)
+        self.pyroclast("run", STACK.name, "--quiet", "--no-figures", "-o", "out")
+        stages = json.loads((self.folder / "out/summary.json").read_text())["stages"]
+        self.assertEqual(stages[1]["outcome_id"], "steady")
+        with h5py.File(sorted((self.folder / "out/fields").glob("contacts_*.hdf"))[-1]) as frame:
+            of_point = {name: frame[f"VTKHDF/CellData/{key}"][:4 * (self.BRICKS - 1)].reshape(-1, 4) for name, key in (
+                ("opening", "opening [m]"), ("conductance", "heat_conductance [W m-2 K-1]"),
+                ("drop", "temperature_jump [K]"), ("damage", "tension_damage [1]"))}
+        # one joint has parted, by less than what its end was moved, evenly
+        for joint in (*of_point["conductance"], *of_point["drop"]):
+            self.assertLessEqual(joint.max() - joint.min(), 1e-6 * abs(joint).max())
+        self.assertEqual([joint[0] == 1.0 for joint in of_point["damage"]].count(True), 1)
+        openings = [max(0.0, joint.mean()) for joint in of_point["opening"]]
+        self.assertTrue(9e-4 < max(openings) < 1e-3 and sorted(openings)[1] < 1e-8, openings)
+        # the flux for which bricks and gaps in series lead from the hot to the cold end
+        low, high = 0.0, (self.HOT - self.COLD) * self.CONDUCTIVITY / self.LENGTH
+        widths = [self.STATED + opening for opening in openings]
+        for _ in range(100):
+            flux = 0.5 * (low + high)
+            low, high = (flux, high) if self.far_side(flux, widths) > self.COLD else (low, flux)
+        for joint, (h, drop) in enumerate(zip(of_point["conductance"], of_point["drop"])):
+            # fields have single precision
+            self.assertAlmostEqual(h.mean() * abs(drop.mean()) / flux, 1.0, delta=1e-6, msg=str(joint))
 
 
 class OneCommand(InTheFire):

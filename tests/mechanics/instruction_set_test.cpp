@@ -26,9 +26,9 @@ auto outcome(const Mechanics<Dim>& m) {
     numbers.insert(numbers.end(), state.losses.begin(), state.losses.end());
   }
   const EnergyLedger e = m.totals().energy();
-  for (double part : {e.loading, e.gravity, e.property_change, e.zones, e.contacts, e.kinetic,
-                      e.local_damping, e.viscous_damping, e.dissipated.total(), m.totals().unbalanced_ratio(),
-                      m.totals().largest_relative_jump()})
+  for (double part : {e.loading, e.gravity, e.property_change, e.pore_pressure, e.zones, e.contacts,
+                      e.kinetic, e.local_damping, e.viscous_damping, e.dissipated.total(),
+                      m.totals().unbalanced_ratio(), m.totals().largest_relative_jump()})
     numbers.push_back(part);
   return std::tuple(m.read().displacements(), m.read().velocities(), m.read().forces(), numbers);
 }
@@ -71,7 +71,7 @@ Mechanics<Dim> cracked(const ModelOf<Dim>& model, MechanicsParameters parameters
   parameters.zones_for_a_thread = 1;
   auto m =
       mechanics(model, contact, parameters, 29.4e9, 0.2, std::make_shared<Team>(threads, WhenCrowded::stay));
-  if (own_temperatures) {  // every zone and contact has properties of its own
+  if (own_temperatures) {  // every zone and contact has properties of its own, and pore water presses
     BodyProperties p;
     for (int z = 0; z < model.zone_count(); ++z)
       p.zones.push_back(zone_properties<Dim>((20.0 + 0.001 * (z % 1000)) * 1e9, 0.2, 1e-6 * (z % 1000)));
@@ -81,6 +81,7 @@ Mechanics<Dim> cracked(const ModelOf<Dim>& model, MechanicsParameters parameters
       weaker.cohesion *= 1.0 - 1e-4 * (c % 1000);
       p.contacts.add(weaker);
       p.of_contact.push_back(c);
+      p.pore_pressure.push_back(5e4 * (c % 20));
     }
     m.set_properties(p);
   }
@@ -117,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(Variants, EveryInstructionSet,
                          testing::Values(Variant{"small", Kinematics::small, 0.0, false},
                                          Variant{"finite", Kinematics::finite, 0.0, false},
                                          Variant{"viscous", Kinematics::small, 50.0, false},
-                                         Variant{"own", Kinematics::small, 0.0, true}),
+                                         Variant{"own", Kinematics::small, 0.0, true},
+                                         Variant{"own_finite", Kinematics::finite, 0.0, true}),
                          [](const auto& variant) { return std::string(variant.param.name); });
 
 // Promise: bit by bit the same, on any number of threads, in a body that is cracked all over.

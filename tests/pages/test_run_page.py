@@ -635,6 +635,20 @@ class OtherRuns(PageOfRun):
         browser.open(self.page_of(RUNS / "compression"))
         self.assertIsNone(browser.run("return document.getElementById('properties')"))
 
+    def test_water_has_pressures_amounts_and_fields(self):
+        run = pyroclast.read(RUNS / "kalifa_m100")
+        browser.open(self.page_of(run.folder))
+        browser.run("document.querySelector('#tabs [data-tab=water]').click()")
+        self.assertIn("largest pore pressure [MPa]",
+                      browser.run("return document.getElementById('pore_pressures').textContent"))
+        self.assertIn("water that left [kg]", browser.run("return document.getElementById('water').textContent"))
+        last = len(run.frames) - 1
+        told = browser.run("const a = pyroclast.arrays.pore_pressure; let m = 0; for (let b = 0; b < a.width; b++) "
+                           "m = Math.max(m, a.at(arguments[0], b)); return m", last)
+        row = np.searchsorted(run.history["heating_time_s"], run.frames[last].heating_time)
+        self.assertAlmostEqual(told, run.history["pore_pressure_max_MPa"][row], delta=0.006)
+        self.assert_silent()
+
     def test_heat_has_isotherms_and_a_line_across(self):
         run = pyroclast.read(RUNS / "thermal_wall")
         browser.open(self.page_of(run.folder))

@@ -72,6 +72,42 @@ TEST(MoistureSetup, RefusesWhatHasNoMeaning) {
   expect_error("[moisture]\ninitial = { saturation = 0.77 }\n", "[moisture]\n", "moisture.initial: ");
 }
 
+/// A fire on a wall whose pores hold water.
+std::string wet_wall(const std::string& keys) {
+  std::string text = with(shipped_case("fire_one_side"), "[materials.aggregate]\n",
+                          "[materials.aggregate]\nmoisture = { class = \"rock\" }\n");
+  text = with(text, "[materials.mortar]\n", "[materials.mortar]\nmoisture = { class = \"ordinary\" }\n");
+  return text + "\n[moisture]\ninitial = { saturation = 0.6 }\n" + keys;
+}
+
+TEST(MoistureSetup, ReadsHowWaterAndMotionActOnEachOther) {
+  const auto coupling_of = [](const std::string& keys) {
+    return read_setup(Deck::parse(wet_wall(keys), "deck.toml"), ".").heat.moisture->coupling;
+  };
+  const PoreCoupling all = coupling_of("");
+  EXPECT_EQ(all.acts, PressureActs::all);
+  EXPECT_EQ(all.biot, 0.5);
+  EXPECT_EQ(all.crack_width, 5e-6);
+  EXPECT_EQ(all.exchange_pressure, 2e5);
+  const PoreCoupling stated =
+      coupling_of("acts = \"zones\"\nbiot = 0.8\ncrack_width = \"10 um\"\nexchange_pressure = \"0.1 MPa\"\n");
+  EXPECT_EQ(stated.acts, PressureActs::zones);
+  EXPECT_EQ(stated.biot, 0.8);
+  EXPECT_EQ(stated.crack_width, 1e-5);
+  EXPECT_EQ(stated.exchange_pressure, 1e5);
+  const auto expect = [](const std::string& keys, const std::string& message) {
+    const std::string errors = errors_in(wet_wall(keys));
+    EXPECT_NE(errors.find(message), std::string::npos) << keys << "\n" << errors;
+  };
+  expect("acts = \"some\"\n", "moisture.acts: must be one of");
+  expect("biot = 1.5\n", "moisture.biot: ");
+  expect("crack_width = 0\n", "moisture.crack_width: ");
+  expect("roughness = 0.5\n", "moisture.roughness: ");
+  expect("acts = \"no\"\nbiot = 0.5\n", "moisture.biot: has no meaning beside acts = \"no\"");
+  expect_error("initial = { saturation = 0.77 }", "initial = { saturation = 0.77 }\nbiot = 0.5",
+               "moisture.biot: has no meaning: no stage moves the body");
+}
+
 TEST(MoistureSetup, PoresWithoutWaterAreRefused) {
   std::string text = slab();
   const auto from = text.find("[moisture]"), to = text.find("[[stages]]");

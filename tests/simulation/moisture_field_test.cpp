@@ -123,6 +123,18 @@ TEST(MoistureField, TwoConditionsOnOneFaceAreRefusedAtTheirPlace) {
   }
 }
 
+TEST(MoistureField, TellsBlocksThatStonesCloseIn) {
+  const auto slab_in_air = made(slab("count = 600")),
+             sealed = made(with(with(slab("count = 600"), "faces = \"left\"\nkind = \"air\"",
+                                     "faces = \"left\"\nkind = \"sealed\""),
+                                "faces = \"right\"\nkind = \"air\"", "faces = \"right\"\nkind = \"sealed\""));
+  int mortar = 0;
+  for (int b = 0; b < sealed->model().block_count(); ++b)
+    mortar += sealed->model().block_material[b] == 1 ? 1 : 0;
+  EXPECT_EQ(sealed->moisture()->pocket_blocks(), mortar);
+  EXPECT_LT(slab_in_air->moisture()->pocket_blocks(), mortar / 10);
+}
+
 TEST(MoistureField, SeveralProcessesAreRefused) {
   EXPECT_NO_THROW(require_one_process(1));
   EXPECT_THROW(require_one_process(2), Error);

@@ -93,7 +93,7 @@ TEST(CrackHeat, AGapIsWhatIsStatedAndWhatTheMotionOpens) {
       EXPECT_EQ(gaps[i].damage, motion.read().remembered(i, Remembers::tension_damage));
       EXPECT_EQ(gaps[i].opening, std::max(0.0, motion.read().opening(i)));
     }
-  simulation->show_cracks_to_heat();
+  simulation->show_cracks();
   EXPECT_GT(simulation->field().conduction()->gap_area(), 0.02 * model.thickness);
   for (int contact : parted) {
     EXPECT_GT(simulation->field().conduction()->conductances(simulation->field().gridpoints())[contact], 4.0);

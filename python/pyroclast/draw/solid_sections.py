@@ -214,7 +214,7 @@ def draw_triad(axes: Axes, blocks: BlockMesh, view: View = VIEW) -> None:
     points = view.flat(blocks.points)
     low, width = points.min(axis=0), np.ptp(points[:, 0])
     length = _OF_TRIAD * np.ptp(blocks.points[:, 0])
-    start = low + np.array([0.04, -0.05]) * width
+    start = low + np.array([-0.02, -0.07]) * width
     size = style.page().size(6.5)
     for axis, name in enumerate("xyz"):
         way = view.flat(length * np.eye(3)[axis])

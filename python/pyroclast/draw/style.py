@@ -276,6 +276,8 @@ def settle(figure: Figure) -> Figure:
     of_page = getattr(figure, "of_page", Page())
     _choose_panels(figure, of_page)
     if not of_page.is_column:
+        if (engine := _layout_of(figure)) is not None:
+            engine.execute(figure)  # panels of one scale on both axes shrink by it, and the next finds room for the rest
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
     for _ in range(4):
@@ -517,12 +519,16 @@ def thin(figure: Figure) -> Figure:
     return figure
 
 
+def _layout_of(figure: Figure):
+    return figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # since Matplotlib 3.6
+
+
 @contextmanager
 def _laid_out_once(figure: Figure) -> Iterator[None]:
-    """Lays a figure out once. Saving draws twice, first without ink for the layout; the second layout would find the
-    same again.
+    """Lays a settled figure out once. Saving draws twice, first without ink for the layout; the second layout would
+    find the same again.
     """
-    engine = figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # since Matplotlib 3.6
+    engine = _layout_of(figure)
     if engine is None:
         yield
         return

@@ -16,7 +16,7 @@ from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.reference import TRANSIENT_STRAIN, strain_band
 from ..stored.results import Results
-from ..stored.run_facts import BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE
+from ..stored.run_facts import BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE, PROBE_PRESSURE, WATER
 from .marks import Mark, marks
 from .packing import packed_floats
 
@@ -24,6 +24,10 @@ OVER_LOAD = "strain_of_load"
 """Quantity over which runs are compared: heat before the load has moved the strain of each by its own amount."""
 _MOST_CELLS = 40_000  # of the history that a page keeps
 _MOST_ROWS_OF_PARENT = 400
+_WATER = {"largest_pressure": "largest pore pressure [MPa]",
+          "largest_pressure_ratio": "largest vapour pressure over saturation [–]", "held": "water in the pores [kg]",
+          "left": "water that left [kg]", "released": "water that hydrates gave back [kg]"}
+"""Labels of columns on water, by their meaning."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,12 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
     yield CurveQuantity("gas", "hottest gas [°C]", GAS)
     for probe in run.facts.of_role(PROBE):
         yield CurveQuantity(f"probe {probe.of}", f"probe {probe.of} [°C]", probe.name, 1.0, probe.of)
+    water = {column.of: column.name for column in run.facts.of_role(WATER)}
+    for of, label in _WATER.items():
+        if of in water:
+            yield CurveQuantity(f"water_{of}", label, water[of])
+    for probe in run.facts.of_role(PROBE_PRESSURE):
+        yield CurveQuantity(f"pore {probe.of}", f"pore pressure at probe {probe.of} [MPa]", probe.name)
     yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
     yield CurveQuantity("step", "step", "step")
     for opening in run.facts.of_role(OPENING):

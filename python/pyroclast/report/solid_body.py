@@ -18,7 +18,7 @@ from ..stored.heated import Heated
 from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
-from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite
+from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite, water_of_zones
 
 _OPENING = 1e-6  # m, wanted step: ten times that of the plane, as a solid has so many more contacts
 _SAME = 1e-6  # cosines of one angle differ by less
@@ -214,12 +214,18 @@ class _Reader:
     def _mean_of_points(self, values: np.ndarray) -> np.ndarray:
         return np.add.reduceat(values, self._first[:-1]) / self._count[:, None]
 
+    def _mean(self, of_zones: np.ndarray) -> np.ndarray:
+        """Returns the mean (B,) over the zones of each block, by volume."""
+        return np.bincount(self._number, self._share * of_zones)
+
     def read(self, frame: Frame) -> dict[str, np.ndarray]:
         run = self._run
         found: dict[str, np.ndarray] = {}
         blocks = run.mesh.blocks
         if self._heated:
             found["temperature"] = run.gridpoint_temperature(frame)[self._used].astype(float)
+        path = run.folder / "fields" / f"blocks_{frame.number:04d}.hdf"
+        found.update(water_of_zones(path, len(blocks.zones), self._mean))
         if not run.moves:
             return found
         moves = run.gridpoint_displacement(frame)[self._used].astype(float)
@@ -227,9 +233,8 @@ class _Reader:
         turn = np.einsum("ijk,ik->ij", self._inverse, np.add.reduceat(np.cross(self._arm, moves), self._first[:-1]))
         for i, axis in enumerate("xyz"):
             found[f"shift_{axis}"], found[f"turn_{axis}"] = shift[:, i], turn[:, i]
-        path = run.folder / "fields" / f"blocks_{frame.number:04d}.hdf"
         stress = read_array(path, "VTKHDF/CellData/stress [Pa]", (len(blocks.zones), 6))
-        xx, yy, zz, xy, yz, xz = (1e-6 * np.bincount(self._number, self._share * stress[:, i]) for i in range(6))
+        xx, yy, zz, xy, yz, xz = (1e-6 * self._mean(stress[:, i]) for i in range(6))
         principal = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1))
         found.update(stress_y=yy, stress_1=principal[:, 2], stress_2=principal[:, 0])
         damages = {f"damage_{mode}": run.contact_field(frame, f"{mode}_damage [1]") for mode in run.facts.crack_modes}

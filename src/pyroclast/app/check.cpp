@@ -23,6 +23,16 @@ namespace pyroclast::app {
 
 namespace {
 
+/// Says in words how pore water and motion act on each other.
+std::string describe(const PoreCoupling& coupling, bool finds_contacts) {
+  const char* const bears = coupling.acts == PressureActs::no      ? "acts on nothing"
+                            : coupling.acts == PressureActs::zones ? "acts on blocks"
+                                                                   : "acts on blocks and contacts";
+  return fmt::format("its pressure {}; faces that stand open by {:.3g} um or more drain it{}", bears,
+                     1e6 * coupling.crack_width,
+                     finds_contacts ? "; none flows through contacts that are found" : "");
+}
+
 /// Share by which E of contacts may differ from that of blocks without a word.
 constexpr double kLikeModulus = 0.1;
 /// Share by which a strength may differ from that of specimens with such mortar without a word.
@@ -82,14 +92,17 @@ void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   const auto joint = std::ranges::find(materials.interfaces, matrix + "_" + matrix);
   const auto mortar = std::ranges::find(materials.block_materials, matrix, &BlockMaterial::name);
   if (joint == materials.interfaces.end() || mortar == materials.block_materials.end()) return;
-  const FirstGuess& known = first_guess(simulation.model().dimension());
-  const auto factor = known.factor_of(materials.contacts[joint - materials.interfaces.begin()]);
+  const ContactMaterial& contact = materials.contacts[joint - materials.interfaces.begin()];
+  const auto concretes = known_concretes(simulation.model().dimension());
+  const auto known =
+      std::ranges::find_if(concretes, [&](const FirstGuess& g) { return g.factor_of(contact).has_value(); });
+  if (known == concretes.end()) return;
   for (const auto& stage : setup.stages) {
     const auto* load = dynamic_cast<const Load*>(stage.get());
-    if (!factor || !load || !load->keys().level || *load->keys().level == 0.0) continue;
+    if (!load || !load->keys().level || *load->keys().level == 0.0) continue;
     const double stated = load->keys().strength;
-    const double like =
-        known.strength_with(mortar->young(kReferenceTemperature), setup.specimen.block_size(), *factor);
+    const double like = known->strength_with(mortar->young(kReferenceTemperature),
+                                             setup.specimen.block_size(), *known->factor_of(contact));
     if (std::abs(stated / like - 1.0) > kLikeStrength)
       fmt::print("{}", describe_warnings(
                            {fmt::format("a load is {:g} of f_c = {:.3g} MPa, but specimens with such mortar "
@@ -278,6 +291,15 @@ int check(const RunOptions& options) {
   if (const MoistureField* moisture = simulation->moisture())
     fmt::print("water           {:.3g} kg in the pores at the start, its vapour at {:.3g} of saturation\n",
                moisture->water().stored(), moisture->largest_pressure_ratio());
+  if (const int pockets = simulation->moisture() ? simulation->moisture()->pocket_blocks() : 0)
+    fmt::print(
+        "                {} blocks of the matrix are closed in by stones, or by sealed faces: what their "
+        "stones let "
+        "pass decides their pressure\n",
+        pockets);
+  if (simulation->moisture() && simulation->moves())
+    fmt::print("                {}\n",
+               describe(setup.heat.moisture->coupling, setup.moving->mechanics.found.is_on));
   if (const auto told = foretell_heat(setup, *simulation)) {
     fmt::print("                by heat alone {}\n", describe(*told));
     if (const std::string warning = warning_of(*told, setup); !warning.empty())

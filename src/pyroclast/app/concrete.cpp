@@ -52,7 +52,8 @@ constexpr int kBlocksInSpace = 10000;
 constexpr int kBlocksOfEstimate = 2000;
 /// Block size, m, and time step, s, that go together in cases/.
 constexpr double kSizeOfCases = 3e-3, kStepOfCases = 10e-6;
-constexpr double kRateInSpace = 5e-3;  ///< 1/s, as in cases/starter_3d.toml
+constexpr double kRateInSpace = 5e-3;                      ///< 1/s, as in cases/starter_3d.toml
+constexpr std::string_view kModeTwoEnergy = "block size";  ///< of bodies in space
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr const char* kControlled =
     "velocity = \"0.2 mm/s\"\nfastest_velocity = \"8 mm/s\"\nunbalanced_ratio = 1e-4\n"
@@ -282,6 +283,25 @@ std::string filled(const std::map<std::string, std::string>& values) {
   return aligned(text.append(left));
 }
 
+/// Adds what the law of the contacts needs beside strengths, energies and friction.
+void add_law(std::map<std::string, std::string>& v, const Asked& a, const MortarContacts& contacts) {
+  for (const char* key : {"MODE_2_ENERGY", "LAW", "C_RES", "PHI_RES", "DILATION"}) v[key] = "";
+  if (a.is_solid) {
+    v["MODE_2_ENERGY"] = fmt::format(
+        "mode_2_energy = \"{}\" # G_f2 holds at t_b_block_size and goes with the size\n", kModeTwoEnergy);
+    v["LAW"] =
+        fmt::format("law = \"{}\"           # one damage for tension and shear\nsoftening = \"linear\"\n",
+                    first_guess(3).law);
+    v["DILATION"] =
+        "psi = \"0 deg\"  # broken faces do not dilate ...\nu_r = \"0.1 mm\"  # ... over this slip\n";
+  } else {
+    v["C_RES"] =
+        fmt::format("c_res = \"{}\"            # residual cohesion\n", in(contacts.c_res, 1e-6, "MPa"));
+    v["PHI_RES"] = fmt::format("phi_res = \"{}\"           # residual friction angle\n",
+                               in(contacts.phi_res, kDegrees, "deg"));
+  }
+}
+
 /// Adds the parts of a deck that is heated; empty ones for a cold deck.
 void add_hot_parts(std::map<std::string, std::string>& v, const Asked& a, bool is_hot) {
   for (const char* key :
@@ -405,9 +425,7 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"F_T", in(contacts.f_t, 1e-6, "MPa")},
       {"F_CM", in(contacts.f_cm, 1e-6, "MPa")},
       {"C_O", in(contacts.c_o, 1e-6, "MPa")},
-      {"C_RES", in(contacts.c_res, 1e-6, "MPa")},
       {"PHI", in(contacts.phi, kDegrees, "deg")},
-      {"PHI_RES", in(contacts.phi_res, kDegrees, "deg")},
       {"G_F1", quoted(in(contacts.G_f1, 1.0, "N/m"))},
       {"G_F2", quoted(in(contacts.G_f2, 1.0, "N/m"))},
       {"TIME_STEP", in(std::round(1e8 * (a.is_solid ? kStepOfCases * size / first_guess(3).block_size
@@ -426,6 +444,7 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
                       : kControlled},
       {"FRAMES", a.is_solid ? "5e-4" : "1e-4"},
   };
+  add_law(v, a, contacts);
   add_hot_parts(v, a, is_hot);
   if (!is_hot || !a.fire) return filled(v);
   add_fire_parts(v, *a.fire, in(a.strength, 1e-6, "MPa"));
@@ -507,16 +526,27 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
           1e-9 * value_of(root.section("materials").section("aggregate"), "E", unit::stress),
           a.rock->modulus.value, "--aggregate");
   const Section contacts = root.section("contacts").section("mortar_mortar");
+  const FirstGuess& known = first_guess(a.dimension());
+  const std::string law = contacts.text("law", std::string(first_guess(2).law), "");
+  if (law != known.law ||
+      (is_solid && root.section("contacts").text("mode_2_energy", "", "") != kModeTwoEnergy))
+    throw Error(
+        fmt::format("--from \"{}\": its contacts have the law {}, but this program writes {}{}; write its "
+                    "deck and calibrate it anew",
+                    file.string(), law, known.law,
+                    is_solid ? fmt::format(" with mode_2_energy = \"{}\"", kModeTwoEnergy) : ""));
   found.mortar_modulus = value_of(root.section("materials").section("mortar"), "E", unit::stress);
   found.contacts = {.f_t = value_of(contacts, "f_t", unit::stress),
                     .G_f1 = value_of(contacts, "G_f1", unit::fracture_energy),
                     .f_cm = value_of(contacts, "f_cm", unit::stress),
                     .c_o = value_of(contacts, "c_o", unit::stress),
-                    .c_res = value_of(contacts, "c_res", unit::stress),
                     .G_f2 = value_of(contacts, "G_f2", unit::fracture_energy),
-                    .phi = value_of(contacts, "phi", unit::angle),
-                    .phi_res = value_of(contacts, "phi_res", unit::angle)};
-  found.factor = found.contacts.f_t / first_guess(a.dimension()).contacts.f_t;
+                    .phi = value_of(contacts, "phi", unit::angle)};
+  if (!is_solid) {
+    found.contacts.c_res = value_of(contacts, "c_res", unit::stress);
+    found.contacts.phi_res = value_of(contacts, "phi_res", unit::angle);
+  }
+  found.factor = found.contacts.f_t / known.contacts.f_t;
   return found;
 }
 
@@ -565,7 +595,7 @@ vary = "scale"
 log_uniform = [0.4, 2.5]
 
 [parameters.strength]
-keys = {{ "contacts.mortar_mortar.f_t" = 1, "contacts.mortar_mortar.f_cm" = 1, "contacts.mortar_mortar.c_o" = 1, "contacts.mortar_mortar.c_res" = 1, "contacts.mortar_mortar.G_f1" = 1, "contacts.mortar_mortar.G_f2" = 1 }}
+keys = {{ "contacts.mortar_mortar.f_t" = 1, "contacts.mortar_mortar.f_cm" = 1, "contacts.mortar_mortar.c_o" = 1, {8}"contacts.mortar_mortar.G_f1" = 1, "contacts.mortar_mortar.G_f2" = 1 }}
 vary = "scale"
 log_uniform = [0.32, 3.125]
 
@@ -585,7 +615,8 @@ by = "strength"
 )",
       shell_path(fmt::format("{}-calibrate.toml", o.out.stem().string())), a.rock->name, a.modulus * 1e-9,
       a.strength * 1e-6, in_toml(o.out.filename().string()), 0.005 * a.modulus * 1e-9,
-      0.01 * a.strength * 1e-6, in_toml(folder_of_calibration(o)));
+      0.01 * a.strength * 1e-6, in_toml(folder_of_calibration(o)),
+      a.is_solid ? "" : "\"contacts.mortar_mortar.c_res\" = 1, ");
 }
 
 /// Returns the command that writes the deck of a hot test or of a fire again, from the calibrated deck: that

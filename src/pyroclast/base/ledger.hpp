@@ -18,6 +18,7 @@ struct LedgerEntry {
   const char* label;  ///< few words for legends
   const char* meaning;
   double (*value)(const Ledger&);
+  bool is_of_pore_pressure = false;  ///< true for an entry of bodies on whose contacts pore water presses
 };
 
 /// Returns the column of the ledger's error.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "pyroclast/material/concrete.hpp"
@@ -9,14 +10,16 @@ namespace pyroclast {
 
 /// Contacts within mortar, SI. The numbers belong to contacts, not to the concrete.
 struct MortarContacts {
-  double f_t, G_f1, f_cm, c_o, c_res, G_f2;
-  double phi, phi_res;  ///< friction angles, rad
+  double f_t, G_f1, f_cm, c_o, G_f2;
+  double phi;                         ///< friction angle, rad
+  double c_res = 0.0, phi_res = 0.0;  ///< residual ones, of the law `cohesive` alone
 };
 
 /// What is known of a concrete before its calibration: a deck of known strength and stiffness, and how both
 /// go with the numbers of its mortar.
 struct FirstGuess {
   std::string_view source;  ///< where the numbers of the contacts are from
+  std::string_view law;     ///< of the contacts
   MortarContacts contacts;
   double mortar_modulus;         ///< E of the mortar, Pa
   double strength;               ///< f_c with these numbers, Pa
@@ -35,7 +38,12 @@ struct FirstGuess {
   std::optional<double> factor_of(const ContactMaterial& mortar) const;
 };
 
-/// Returns what is known of bodies in the plane or in space, whose stones may part where they touch.
-const FirstGuess& first_guess(int dimension);
+/// Returns the concretes that are known of bodies in the plane or in space, whose stones may part where they
+/// touch: first that which a deck begins with.
+std::span<const FirstGuess> known_concretes(int dimension);
+
+inline const FirstGuess& first_guess(int dimension) {
+  return known_concretes(dimension).front();
+}
 
 }  // namespace pyroclast

@@ -51,6 +51,8 @@ struct BodyProperties {
   /// Index into `contacts` of each interface, for found contacts far from every contact of the interface;
   /// empty where there are none.
   std::vector<int> of_interface = {};
+  /// Pressure of pore water that parts the sides of each contact, Pa; empty where water presses on none.
+  std::vector<double> pore_pressure = {};
 };
 
 /// Returns the properties of a body whose contacts differ by interface alone.
@@ -81,8 +83,9 @@ struct Books {
   /// Parts that a change of properties adds to both through the half step already begun; the next step books
   /// them.
   double begun_property_change = 0.0, begun_mass_scaling = 0.0;
-  double creep_work = 0.0;  ///< work of creep
-  double start = 0.0;       ///< kinetic energy of the velocities at the start
+  double creep_work = 0.0;     ///< work of creep
+  double pore_pressure = 0.0;  ///< work of pore pressures up to their last change
+  double start = 0.0;          ///< kinetic energy of the velocities at the start
 };
 
 /// Body in lanes: layout and state of a model's blocks, with the model's chunks. A body is data alone.
@@ -104,6 +107,8 @@ struct Body {
   double time_step() const { return state.time_step; }
   /// Tells whether zones of this body can creep.
   bool creeps() const { return !creep_strain.empty(); }
+  /// Tells whether water in the pores presses on the contacts of this body.
+  bool has_pore_pressure() const { return !properties.pore_pressure.empty(); }
   const LawTable& law_of(int contact) const {
     return properties.contacts.law(properties.of_contact[contact]);
   }

@@ -32,7 +32,7 @@ struct Dissipation {
 /// ledger's error.
 struct EnergyLedger {
   // put in
-  double loading = 0.0, gravity = 0.0, property_change = 0.0, mass_scaling = 0.0;
+  double loading = 0.0, gravity = 0.0, property_change = 0.0, pore_pressure = 0.0, mass_scaling = 0.0;
   // held
   double zones = 0.0, contacts = 0.0, kinetic = 0.0;
   // lost
@@ -59,6 +59,9 @@ inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
     {"property_change", "energy_property_change_J", LedgerSide::put_in, "change of properties",
      "change of stored and dissipated energy when properties or thermal strains change",
      [](const EnergyLedger& e) { return e.property_change; }},
+    {"pore_pressure", "energy_pore_pressure_J", LedgerSide::put_in, "pore pressure",
+     "work of the pressure of pore water on contacts that open",
+     [](const EnergyLedger& e) { return e.pore_pressure; }, true},
     {"mass_scaling", "energy_mass_scaling_J", LedgerSide::put_in, "mass scaling",
      "change of kinetic energy when scaled masses follow the stiffness",
      [](const EnergyLedger& e) { return e.mass_scaling; }},

@@ -67,7 +67,9 @@ void Mechanics<Dim>::change_properties(Change change) {
   Body<Dim>& body = *body_;
   const EnergyLedger before = totals().energy();
   const double held_before = before.zones + before.contacts + before.dissipated.total();
+  const double pushed_before = totals().work_of_pore_pressure();
   change();
+  body.books.pore_pressure += pushed_before - totals().work_of_pore_pressure();
   Properties<Dim>(body).place();
   if constexpr (Dim == 2)
     if (body.found) FoundContacts(body).follow_properties();
@@ -155,6 +157,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("begun_property_change", body.books.begun_property_change);
   visitor.visit("begun_mass_scaling", body.books.begun_mass_scaling);
   visitor.visit("creep_work", body.books.creep_work);
+  if (body.has_pore_pressure()) visitor.visit("pore_pressure_work", body.books.pore_pressure);
   visitor.visit("start", body.books.start);
   // the stiffness is that of the contact frames at the last change of properties; they have turned since
   visitor.visit_by_chunk("stiffness", body.stiffness, body.layout.chunks.gridpoints, state::at_least(0));

@@ -99,6 +99,8 @@ class Motion {
   virtual void visit_state(StateVisitor& visitor) = 0;
 
   virtual bool creeps() const = 0;  ///< Tells whether zones of this body can creep.
+  /// Tells whether water in the pores presses on the contacts of this body.
+  virtual bool has_pore_pressure() const = 0;
   /// Returns the laws of the contacts, each once, in the order of the interfaces.
   virtual const std::vector<const LawTable*>& laws() const = 0;
   virtual const LawTable& law_of(int contact) const = 0;
@@ -146,6 +148,7 @@ class MotionOf final : public Motion {
   [[nodiscard]] bool break_contact(int contact) override { return mechanics_.break_contact(contact); }
   void visit_state(StateVisitor& visitor) override { mechanics_.visit_state(visitor); }
   bool creeps() const override { return mechanics_.body().creeps(); }
+  bool has_pore_pressure() const override { return mechanics_.body().has_pore_pressure(); }
   const std::vector<const LawTable*>& laws() const override { return mechanics_.body().laws; }
   const LawTable& law_of(int contact) const override { return mechanics_.body().law_of(contact); }
   const std::vector<std::string_view>& dissipations() const override {

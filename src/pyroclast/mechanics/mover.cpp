@@ -44,10 +44,11 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
   const StepPasses<Dim>& passes = body.step.passes;
   const bool measure = pass != Pass::move;
   const bool moves_with_others = pass != Pass::measure && !halo_.is_empty();
-  const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
+  const auto update_faces = [&](State<Dim>& s, int first, int last, bool measured) {
     for_each_law(s, first, last, [&](const PackFunctions<Dim>& law, int begin, int end) {
       law.update(s, begin, end, measured);
     });
+    if (!s.pore_pressure.empty()) passes.add_pore_pressure(s, first, last);
   };
   const auto sweep_through = [&](State<Dim>& s, Worker& worker, const Share::Stride& stride) {
     update_faces(s, stride.faces.first, stride.faces.last, measure);

@@ -13,6 +13,7 @@
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/mechanics/reader.hpp"
 #include "pyroclast/model/item_halo.hpp"
+#include "pyroclast/model/visit_contacts.hpp"
 
 namespace pyroclast {
 
@@ -84,6 +85,7 @@ void Properties<Dim>::place_contact_properties() {
   for (int set = 0; set < sets.size(); ++set)
     if (first[set] >= 0) sets.derive(set, s.contact_constants.data() + first[set]);
   if (!std::ranges::all_of(s.one_set, std::identity())) place_own_constants();
+  place_pore_pressure();
   body_.refresh_views();
 }
 
@@ -141,6 +143,17 @@ void Properties<Dim>::place_own_constants() {
     body_.properties.contacts.derive(body_.properties.of_contact[c], constants.data());
     Line* const line = lines_of(body_.layout, s.own_constants, s.first_own_constant, c, count(pack));
     body_.law_of_pack(pack).numbers_of(constants.data(), line->number + slot % kLanes, kLanes);
+  }
+}
+
+template <int Dim>
+void Properties<Dim>::place_pore_pressure() {
+  const std::vector<double>& pressure = body_.properties.pore_pressure;
+  auto& lines = body_.arrays.pore_pressure;
+  if (!pressure.empty() && lines.empty()) lines = body_.template made<Line>(body_.layout.points.size());
+  for (std::size_t c = 0; c < pressure.size(); ++c) {
+    const int slot = body_.layout.contact_slot[c];
+    lines[slot / kLanes].number[slot % kLanes] = pressure[c];
   }
 }
 
@@ -234,6 +247,8 @@ void Properties<Dim>::visit_state(StateVisitor& visitor) {
       for (int z = body_.model.block_zones[b]; z < body_.model.block_zones[b + 1]; ++z)
         body_.properties.zones[z] = zones.at(by_block ? b : z);
   visit_contacts_sets(visitor);
+  if (body_.has_pore_pressure())
+    visit_contacts(visitor, "pore_pressure", body_.model, body_.properties.pore_pressure, state::number());
   if (visitor.replaces()) place();
 }
 

@@ -29,6 +29,7 @@ class Properties {
   void place_contact_properties();
   std::vector<int> find_sets_of_faces();
   void place_own_constants();
+  void place_pore_pressure();
   void visit_contacts_sets(StateVisitor& visitor);
   std::vector<ContactProperties> visit_sets_of_interfaces(StateVisitor& visitor);
   void add_set(const StateVisitor& visitor, const LawTable& law, std::span<const int> choices,

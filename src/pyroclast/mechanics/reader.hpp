@@ -17,7 +17,7 @@ struct ContactState {
   std::vector<double> losses;     ///< losses since the start, in the order of `law->losses`
   double opening = 0.0;           ///< u_n, m
   Vec<2> tangential_jump{};       ///< u_s along the tangents, m; in 2D the second is 0
-  double normal_traction = 0.0;   ///< Pa, tension positive
+  double normal_traction = 0.0;   ///< of the law, Pa, tension positive; pore water pushes beside it
   Vec<2> shear_traction{};        ///< traction along the tangents, Pa
   double stored = 0.0;            ///< J/m²
 

@@ -138,6 +138,9 @@ struct StateArrays {
   Array<Line> own_constants;
   Array<int> first_own_constant;  ///< first line of each pack of faces, and of one more
 
+  /// Pressure of pore water that parts the sides of the points of each pack, Pa; empty where there is none.
+  Array<Line> pore_pressure;
+
   Array<int> constraints_of_bundle;  ///< -1 for a bundle that nothing holds, drives or loads now
   Array<BundleConstraints> constraints;
   Array<ConstraintPack<Dim>> constraint_packs;
@@ -182,6 +185,7 @@ struct StateArrays {
     f(ArrayInfo{"one_set", Per::face_pack, Touched::all}, s.one_set...);
     f(ArrayInfo{"own_constants", Per::entry, Touched::all}, s.own_constants...);
     f(ArrayInfo{"first_own_constant", Per::face_pack_end, Touched::all}, s.first_own_constant...);
+    f(ArrayInfo{"pore_pressure", Per::point_pack, Touched::all}, s.pore_pressure...);
     f(ArrayInfo{"constraints_of_bundle", Per::bundle, Touched::all, Touched::none, Lasts::kept},
       s.constraints_of_bundle...);
     f(ArrayInfo{"constraints", Per::entry, Touched::all, Touched::all, Lasts::kept}, s.constraints...);
@@ -273,6 +277,8 @@ struct StepPasses {
   void (*move_tied_parts)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Computes `State::stiffness`; leaves contact and corner forces unset until the next sweep.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
+  /// Adds the pressure of pore water to the forces of the contact points of packs of faces.
+  void (*add_pore_pressure)(State<Dim>&, int first, int last);
   // Found contacts, see FoundContactForces; null in 3D.
   void (*update_found)(State<Dim>&, int first, int last) = nullptr;
   double (*way_of_found)(const State<Dim>&, int first, int last) = nullptr;

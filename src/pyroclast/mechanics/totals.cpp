@@ -156,7 +156,18 @@ EnergyLedger Totals<Dim>::energies() const {
     e.gravity = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
       return body_.gravity_mass[g] * dot(body_.state.gravity, read_.displacement_of_force(g));
     });
+  e.pore_pressure = body_.books.pore_pressure + work_of_pore_pressure();
   return e;
+}
+
+template <int Dim>
+double Totals<Dim>::work_of_pore_pressure() const {
+  if (!body_.has_pore_pressure()) return 0.0;
+  const auto& contacts = body_.layout.contacts_by_chunk;
+  return chunked_sum(body_.layout.chunks.contacts, [&](int i) {
+    const int c = contacts[i];
+    return body_.properties.pore_pressure[c] * body_.model.contacts[c].area * read_.opening(c);
+  });
 }
 
 template <int Dim>

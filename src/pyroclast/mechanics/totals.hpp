@@ -30,6 +30,8 @@ class Totals {
   /// half m v(t - dt/2) v(t + dt/2). With it, central differences conserve the sum of energies exactly in a
   /// linear body, so the ledger's error comes from the contacts.
   EnergyLedger energy() const;
+  /// Returns the work of the present pore pressures on the present openings, J.
+  double work_of_pore_pressure() const;
   /// Returns the mean unbalanced force over the mean force that zones, contacts and gravity apply to the
   /// gridpoints. An applied force below that of a strain of 1e-10 counts as that force: so a body without
   /// load is at rest too.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "pyroclast/base/exp.hpp"
 #include "pyroclast/base/log.hpp"
 
@@ -41,6 +43,11 @@ inline WithSlope log(const WithSlope& x) {
 inline WithSlope power(const WithSlope& x, double y) {
   const double value = power(x.value, y);
   return {value, x.value == 0.0 ? 0.0 : y * value / x.value * x.slope};
+}
+
+inline WithSlope sqrt(const WithSlope& x) {
+  const double value = std::sqrt(x.value);
+  return {value, value == 0.0 ? 0.0 : 0.5 / value * x.slope};
 }
 
 }  // namespace pyroclast

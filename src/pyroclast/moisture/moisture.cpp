@@ -19,6 +19,8 @@ constexpr double kTolerance = 1e-6;     ///< of the balance of a cell in a step,
 constexpr double kLargestChange = 1.0;  ///< of ln p in an iteration
 constexpr double kLeastStep = 1e-4;     ///< s
 constexpr double kGrowth = 1.5;         ///< of steps, where one converged
+/// Share of a cell's water that a crack takes at most where it opens.
+constexpr double kMostTaken = 0.1;
 
 /// Flow from one side of a face to the other, kg/s, and its derivatives by ln p of both sides.
 struct Flow {
@@ -44,24 +46,32 @@ struct Side {
   double length;        ///< to the face, m
 };
 
+/// Returns the side that a phase comes from.
+int upwind(const WithSlope& a, const WithSlope& b) {
+  return a.value >= b.value ? 0 : 1;
+}
+
+void add_vapour(Flow& flow, double conductance, const Side& a, const Side& b) {
+  const auto &wa = a.water, &wb = b.water;
+  const int from = upwind(a.pressure, b.pressure);
+  const WithSlope& mobility = from == 0 ? wa.vapour_mobility : wb.vapour_mobility;
+  flow.add(conductance * 0.5 * (wa.vapour_density.value + wb.vapour_density.value), mobility, from,
+           a.pressure, b.pressure);
+  const double by_density = 0.5 * conductance * mobility.value * (a.pressure.value - b.pressure.value);
+  flow.by[0] += by_density * wa.vapour_density.slope;
+  flow.by[1] += by_density * wb.vapour_density.slope;
+}
+
 Flow flow_between(double area, const Side& a, const Side& b) {
   Flow flow;
   const double conductance = area / (a.length / a.permeability + b.length / b.permeability);
-  const auto upwind = [&](const WithSlope& from, const WithSlope& to) {
-    return from.value >= to.value ? 0 : 1;
-  };
   const auto& [wa, pa, ka, la] = a;
   const auto& [wb, pb, kb, lb] = b;
   const int from_liquid = upwind(wa.liquid_pressure, wb.liquid_pressure);
   flow.add(conductance, from_liquid == 0 ? wa.liquid_mobility : wb.liquid_mobility, from_liquid,
            wa.liquid_pressure, wb.liquid_pressure);
-  const int from_vapour = upwind(pa, pb);
-  const WithSlope& mobility = from_vapour == 0 ? wa.vapour_mobility : wb.vapour_mobility;
-  flow.add(conductance * 0.5 * (wa.vapour_density.value + wb.vapour_density.value), mobility, from_vapour, pa,
-           pb);
-  const double drop = pa.value - pb.value, by_density = 0.5 * conductance * mobility.value * drop;
-  flow.by[0] += by_density * wa.vapour_density.slope;
-  flow.by[1] += by_density * wb.vapour_density.slope;
+  add_vapour(flow, conductance, a, b);
+  const double drop = pa.value - pb.value;
   const double da = wa.diffusion.value, db = wb.diffusion.value, both = la * db + lb * da;
   if (both > 0.0) {
     flow.add(area * da * db / both, WithSlope(1.0), 0, pa, pb);
@@ -84,16 +94,58 @@ Moisture::Moisture(MoistureMesh mesh, std::vector<std::optional<PoreMaterial>> m
     if (material) material->check();
   conditions_.resize(mesh_.outer_faces.size());
   surface_mobility_.resize(mesh_.outer_faces.size());
+  make_links();
+}
+
+bool Moisture::opens(int outer_face) const {
+  const auto& condition = conditions_[outer_face];
+  const auto* air = condition ? std::get_if<MoistAir>(&*condition) : nullptr;
+  return condition && !(air && air->coefficient == 0.0);
+}
+
+/// Lists the nodes and the ways between them, for the cracks that the state has.
+void Moisture::make_links() {
+  const auto& cracks = state_.cracks;
+  crack_at_.assign(mesh_.faces.size(), -1);
+  volume_ = mesh_.volume;
+  measured_over_ = mesh_.volume;
+  for (std::size_t i = 0; i < cracks.size(); ++i) {
+    const CellFace& face = mesh_.faces[cracks[i].face];
+    crack_at_[cracks[i].face] = static_cast<int>(i);
+    volume_.push_back(face.area * cracks[i].width);
+    measured_over_.push_back(0.5 * (mesh_.volume[face.cells[0]] + mesh_.volume[face.cells[1]]));
+  }
+  links_.clear();
+  const int first_crack = mesh_.cell_count();
+  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+    const CellFace& face = mesh_.faces[f];
+    if (crack_at_[f] < 0) {
+      links_.push_back({face.cells, face.area, face.lengths});
+      continue;
+    }
+    for (int side = 0; side < 2; ++side)
+      links_.push_back(
+          {{face.cells[side], first_crack + crack_at_[f]}, face.area, {face.lengths[side], 0.0}});
+  }
+  std::vector<bool> open;
+  for (int f = 0; f < std::ssize(conditions_); ++f) open.push_back(opens(f));
+  CrackNetwork network = crack_network(mesh_, cracks, open, parameters_.roughness);
+  for (const CrackConduit& conduit : network.conduits)
+    links_.push_back({{first_crack + conduit.cracks[0], first_crack + conduit.cracks[1]},
+                      conduit.conductance,
+                      {0.0, 0.0},
+                      true});
+  mouths_ = std::move(network.mouths);
   make_pattern();
 }
 
 void Moisture::make_pattern() {
-  const int cells = mesh_.cell_count();
-  std::vector<std::vector<int>> rows(cells);
-  for (int c = 0; c < cells; ++c) rows[c].push_back(c);
-  for (const CellFace& face : mesh_.faces) {
-    rows[face.cells[0]].push_back(face.cells[1]);
-    rows[face.cells[1]].push_back(face.cells[0]);
+  const int nodes = node_count();
+  std::vector<std::vector<int>> rows(nodes);
+  for (int n = 0; n < nodes; ++n) rows[n].push_back(n);
+  for (const Link& link : links_) {
+    rows[link.nodes[0]].push_back(link.nodes[1]);
+    rows[link.nodes[1]].push_back(link.nodes[0]);
   }
   std::vector<int> begin{0}, all;
   for (auto& column : rows) {
@@ -106,13 +158,21 @@ void Moisture::make_pattern() {
     const auto& of = rows[column];
     return begin[column] + static_cast<int>(std::ranges::lower_bound(of, row) - of.begin());
   };
-  for (int c = 0; c < cells; ++c) diagonal_.push_back(entry(c, c));
-  for (const CellFace& face : mesh_.faces) {
-    const auto [a, b] = face.cells;
-    slots_.push_back({{diagonal_[a], diagonal_[b]}, {entry(b, a), entry(a, b)}});
+  diagonal_.clear();
+  for (int n = 0; n < nodes; ++n) diagonal_.push_back(entry(n, n));
+  for (Link& link : links_) {
+    const auto [a, b] = link.nodes;
+    link.own = {diagonal_[a], diagonal_[b]};
+    link.other = {entry(b, a), entry(a, b)};
   }
   entry_count_ = all.size();
-  if (cells > 0) solver_.emplace(std::move(begin), std::move(all));
+  solver_.reset();
+  if (nodes > 0) solver_.emplace(std::move(begin), std::move(all));
+}
+
+void Moisture::go_on_from(MoistureState state) {
+  state_ = std::move(state);
+  make_links();
 }
 
 void Moisture::apply(const std::vector<int>& outer_faces, const MoistureCondition& condition) {
@@ -120,10 +180,79 @@ void Moisture::apply(const std::vector<int>& outer_faces, const MoistureConditio
     require(air->coefficient >= 0.0, "moisture", "the coefficient of the air", air->coefficient,
             "0 m/s or more");
   for (const int face : outer_faces) conditions_.at(face) = condition;
+  if (!state_.cracks.empty()) make_links();  // cracks open to the outside there
 }
 
 PoreConditions Moisture::conditions(int cell) const {
   return {pores(cell), state_.temperature[cell], state_.highest_temperature[cell]};
+}
+
+/// Returns the conditions in a crack, which lie between those of the cells beside it.
+PoreConditions Moisture::crack_conditions(int face, const std::vector<double>& temperature) const {
+  const auto [a, b] = mesh_.faces[face].cells;
+  const double mean = 0.5 * (temperature[a] + temperature[b]);
+  return {pores(a), mean, mean};
+}
+
+/// Returns the part of one side in what flows through a face, from 0 to 1.
+double Moisture::share_of_side(int face, int side) const {
+  const CellFace& f = mesh_.faces[face];
+  const auto conductance = [&](int of) { return conditions(f.cells[of]).permeability / f.lengths[of]; };
+  const double here = conductance(side), there = conductance(1 - side);
+  return here / (here + there);
+}
+
+double Moisture::face_pressure(int face) const {
+  if (const int crack = crack_at_[face]; crack >= 0) return state_.crack_pressure[crack];
+  const auto [a, b] = mesh_.faces[face].cells;
+  const double share = share_of_side(face, 0);
+  return share * state_.pressure[a] + (1.0 - share) * state_.pressure[b];
+}
+
+/// Puts water into a cell, kg; less than 0 takes it out.
+void Moisture::add_to_cell(int cell, double water) {
+  state_.content[cell] += water / mesh_.volume[cell];
+  state_.pressure[cell] = pressure_of_content(conditions(cell), state_.content[cell], state_.pressure[cell]);
+}
+
+void Moisture::set_cracks(std::vector<OpenFace> cracks) {
+  std::vector<double> water, guess;
+  std::vector<bool> stays(state_.cracks.size());
+  for (const OpenFace& crack : cracks) {
+    const CellFace& face = mesh_.faces.at(crack.face);
+    guess.push_back(face_pressure(crack.face));
+    if (const int before = crack_at_[crack.face]; before >= 0) {
+      stays[before] = true;
+      water.push_back(state_.crack_water[before]);
+      continue;
+    }
+    const PoreConditions at = crack_conditions(crack.face, state_.temperature);
+    const double vapour = face.area * crack.width * vapour_density(at, guess.back());
+    double taken = 0.0;
+    for (const int cell : face.cells) {
+      const double most = kMostTaken * mesh_.volume[cell] * state_.content[cell];
+      const double part = std::min(0.5 * vapour, most);
+      add_to_cell(cell, -part);
+      taken += part;
+    }
+    water.push_back(taken);
+  }
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    if (stays[i]) continue;
+    const int face = state_.cracks[i].face;
+    for (int side = 0; side < 2; ++side)
+      add_to_cell(mesh_.faces[face].cells[side], share_of_side(face, side) * state_.crack_water[i]);
+  }
+  state_.cracks = std::move(cracks);
+  state_.crack_water = std::move(water);
+  state_.crack_pressure.clear();
+  for (std::size_t i = 0; i < state_.cracks.size(); ++i) {
+    const OpenFace& crack = state_.cracks[i];
+    const double content = state_.crack_water[i] / (mesh_.faces[crack.face].area * crack.width);
+    state_.crack_pressure.push_back(pressure_of_content(crack_conditions(crack.face, state_.temperature),
+                                                        content, guess[i], crack_water<WithSlope>));
+  }
+  make_links();
 }
 
 void Moisture::start(double temperature) {
@@ -160,6 +289,7 @@ void Moisture::start_with_pressure(double pressure, double temperature) {
 double Moisture::stored() const {
   double sum = 0.0;
   for (int c = 0; c < mesh_.cell_count(); ++c) sum += mesh_.volume[c] * state_.content[c];
+  for (const double water : state_.crack_water) sum += water;
   return sum;
 }
 
@@ -167,11 +297,8 @@ double Moisture::imbalance() const {
   return stored() - (state_.ledger.at_start + state_.ledger.released - state_.ledger.left);
 }
 
-std::vector<double> Moisture::saturation() const {
-  std::vector<double> found;
-  for (int c = 0; c < mesh_.cell_count(); ++c)
-    found.push_back(pore_water(conditions(c), state_.pressure[c]).saturation);
-  return found;
+double Moisture::saturation(int cell) const {
+  return pore_water(conditions(cell), state_.pressure[cell]).saturation;
 }
 
 std::vector<double> Moisture::pressure_ratio() const {
@@ -212,9 +339,9 @@ void Moisture::advance(double duration, const std::vector<double>& temperature) 
 
 void Moisture::begin_trial(const std::vector<double>& temperature) {
   at_.clear();
-  target_.resize(temperature.size());
-  pressure_.resize(temperature.size());
-  water_.resize(temperature.size());
+  target_.resize(volume_.size());
+  pressure_.resize(volume_.size());
+  water_.resize(volume_.size());
   for (int c = 0; c < mesh_.cell_count(); ++c) {
     const double highest = std::max(state_.highest_temperature[c], temperature[c]);
     at_.emplace_back(pores(c), temperature[c], highest);
@@ -222,6 +349,14 @@ void Moisture::begin_trial(const std::vector<double>& temperature) {
                  pores(c).cement * (dehydrated(highest) - dehydrated(state_.highest_temperature[c]));
     pressure_[c] =
         state_.pressure[c] * (at_[c].saturation_pressure / water::saturation_pressure(state_.temperature[c]));
+  }
+  for (std::size_t i = 0; i < state_.cracks.size(); ++i) {
+    const int face = state_.cracks[i].face, node = mesh_.cell_count() + static_cast<int>(i);
+    at_.push_back(crack_conditions(face, temperature));
+    target_[node] = state_.crack_water[i] / volume_[node];
+    pressure_[node] =
+        state_.crack_pressure[i] *
+        (at_[node].saturation_pressure / crack_conditions(face, state_.temperature).saturation_pressure);
   }
   for (std::size_t f = 0; f < mesh_.outer_faces.size(); ++f) {
     const int c = mesh_.outer_faces[f].cell;
@@ -231,22 +366,25 @@ void Moisture::begin_trial(const std::vector<double>& temperature) {
   }
 }
 
-/// Adds the flows through all faces to the cells' outflow, kg/s, and their derivatives to the matrix. Returns
+/// Adds the flows through all faces to the nodes' outflow, kg/s, and their derivatives to the matrix. Returns
 /// the flow out of the body, kg/s.
 double Moisture::flow_out(double time) {
-  const auto side = [&](int cell, double length) {
-    return Side{water_[cell], {pressure_[cell], pressure_[cell]}, at_[cell].permeability, length};
+  const auto side = [&](int node, double length) {
+    return Side{water_[node], {pressure_[node], pressure_[node]}, at_[node].permeability, length};
   };
-  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
-    const CellFace& face = mesh_.faces[f];
-    const auto [a, b] = face.cells;
-    const Flow flow = flow_between(face.area, side(a, face.lengths[0]), side(b, face.lengths[1]));
+  for (const Link& link : links_) {
+    const auto [a, b] = link.nodes;
+    Flow flow;
+    if (link.is_conduit)
+      add_vapour(flow, link.area, side(a, 0.0), side(b, 0.0));
+    else
+      flow = flow_between(link.area, side(a, link.lengths[0]), side(b, link.lengths[1]));
     outflow_[a] += flow.value;
     outflow_[b] -= flow.value;
-    entries_[slots_[f].own[0]] += flow.by[0];
-    entries_[slots_[f].other[0]] -= flow.by[0];
-    entries_[slots_[f].own[1]] -= flow.by[1];
-    entries_[slots_[f].other[1]] += flow.by[1];
+    entries_[link.own[0]] += flow.by[0];
+    entries_[link.other[0]] -= flow.by[0];
+    entries_[link.own[1]] -= flow.by[1];
+    entries_[link.other[1]] += flow.by[1];
   }
   double left = 0.0;
   for (std::size_t f = 0; f < mesh_.outer_faces.size(); ++f) {
@@ -273,46 +411,102 @@ double Moisture::flow_out(double time) {
     entries_[diagonal_[c]] += flow.slope;
     left += flow.value;
   }
+  return left + flow_out_of_mouths(time);
+}
+
+/// Adds what leaves through the mouths of cracks, as flow_out does.
+double Moisture::flow_out_of_mouths(double time) {
+  double left = 0.0;
+  for (const CrackMouth& mouth : mouths_) {
+    const int node = mesh_.cell_count() + mouth.crack;
+    const WithSlope outside =
+        std::visit(Overloaded{[&](const MoistAir& air) { return air.vapour_density(time) * at_[node].gas; },
+                              [&](const GivenPressure& given) { return given.pressure(time); }},
+                   *conditions_[mouth.outer_face]);
+    const PoreWater<WithSlope> there = crack_water(at_[node], outside);
+    Flow flow;
+    add_vapour(flow, mouth.conductance, {water_[node], {pressure_[node], pressure_[node]}, 0.0, 0.0},
+               {there, outside, 0.0, 0.0});
+    outflow_[node] += flow.value;
+    entries_[diagonal_[node]] += flow.by[0];
+    left += flow.value;
+  }
   return left;
+}
+
+/// Computes the water of all nodes and the system of equations of a step. Returns the largest amount by which
+/// a balance is off, kg/m3.
+double Moisture::balance(double step) {
+  const int cells = mesh_.cell_count();
+  for (int n = 0; n < node_count(); ++n) {
+    const WithSlope pressure(pressure_[n], pressure_[n]);
+    water_[n] = n < cells ? pore_water(at_[n], pressure) : crack_water(at_[n], pressure);
+    entries_[diagonal_[n]] = volume_[n] / step * water_[n].content.slope;
+  }
+  left_ = flow_out(state_.time + step);
+  double worst = 0.0;
+  step_.resize(volume_.size());
+  for (int n = 0; n < node_count(); ++n) {
+    const double off = volume_[n] / step * (water_[n].content.value - target_[n]) + outflow_[n];
+    step_[n] = -off;
+    worst = std::max(worst, std::abs(off) * step / measured_over_[n]);
+  }
+  return worst;
+}
+
+/// Books the flows of a step that converged. Water is what they make of the contents, and pressures follow.
+void Moisture::end_step(double step, const std::vector<double>& temperature) {
+  double released = 0.0;
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    released += mesh_.volume[c] * (target_[c] - state_.content[c]);
+    state_.content[c] = target_[c] - step / mesh_.volume[c] * outflow_[c];
+    state_.pressure[c] = pressure_of_content(at_[c], state_.content[c], pressure_[c]);
+    state_.temperature[c] = temperature[c];
+    state_.highest_temperature[c] = std::max(state_.highest_temperature[c], temperature[c]);
+  }
+  for (std::size_t i = 0; i < state_.cracks.size(); ++i) {
+    const int node = mesh_.cell_count() + static_cast<int>(i);
+    state_.crack_water[i] -= step * outflow_[node];
+    state_.crack_pressure[i] = pressure_of_content(at_[node], state_.crack_water[i] / volume_[node],
+                                                   pressure_[node], crack_water<WithSlope>);
+  }
+  state_.ledger.released += released;
+  state_.ledger.left += step * left_;
+  state_.time += step;
+  ++state_.steps;
+}
+
+/// Tells whether the flows of a step leave some water in each crack: a crack holds little.
+bool Moisture::leaves_water_in_cracks(double step) const {
+  for (std::size_t i = 0; i < state_.cracks.size(); ++i)
+    if (!(state_.crack_water[i] > step * outflow_[mesh_.volume.size() + i])) return false;
+  return true;
+}
+
+/// Changes pressures by an iteration. In a crack that comes to saturation from either side the search goes on
+/// at saturation, where its content rises most steeply: from there Newton's method cannot run back and forth.
+void Moisture::change_pressures() {
+  for (int n = 0; n < node_count(); ++n) {
+    const double before = pressure_[n], saturated = at_[n].saturation_pressure;
+    pressure_[n] *= exp(std::clamp(step_[n], -kLargestChange, kLargestChange));
+    if (n >= mesh_.cell_count() && (before - saturated) * (pressure_[n] - saturated) < 0.0)
+      pressure_[n] = saturated;
+  }
 }
 
 bool Moisture::try_step(double step, const std::vector<double>& temperature) {
   begin_trial(temperature);
-  const int cells = mesh_.cell_count();
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     ++state_.iterations;
     entries_.assign(entry_count_, 0.0);
-    outflow_.assign(cells, 0.0);
-    for (int c = 0; c < cells; ++c) {
-      water_[c] = pore_water(at_[c], WithSlope(pressure_[c], pressure_[c]));
-      entries_[diagonal_[c]] = mesh_.volume[c] / step * water_[c].content.slope;
-    }
-    const double left = flow_out(state_.time + step);
-    double worst = 0.0;
-    step_.resize(cells);
-    for (int c = 0; c < cells; ++c) {
-      const double off = mesh_.volume[c] / step * (water_[c].content.value - target_[c]) + outflow_[c];
-      step_[c] = -off;
-      worst = std::max(worst, std::abs(off) * step / mesh_.volume[c]);
-    }
-    if (worst < kTolerance) {
-      double released = 0.0;
-      for (int c = 0; c < cells; ++c) {
-        released += mesh_.volume[c] * (target_[c] - state_.content[c]);
-        state_.content[c] = target_[c] - step / mesh_.volume[c] * outflow_[c];
-        state_.pressure[c] = pressure_of_content(at_[c], state_.content[c], pressure_[c]);
-        state_.temperature[c] = temperature[c];
-        state_.highest_temperature[c] = std::max(state_.highest_temperature[c], temperature[c]);
-      }
-      state_.ledger.released += released;
-      state_.ledger.left += step * left;
-      state_.time += step;
-      ++state_.steps;
+    outflow_.assign(volume_.size(), 0.0);
+    const double worst = balance(step);
+    if (worst < kTolerance && leaves_water_in_cracks(step)) {
+      end_step(step, temperature);
       return true;
     }
     if (!std::isfinite(worst) || !solver_->solve(entries_, step_)) return false;
-    for (int c = 0; c < cells; ++c)
-      pressure_[c] *= exp(std::clamp(step_[c], -kLargestChange, kLargestChange));
+    change_pressures();
   }
   return false;
 }

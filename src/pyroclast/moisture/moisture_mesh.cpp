@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "pyroclast/model/sets.hpp"
+#include "pyroclast/thermal/thermal_mesh.hpp"
 
 namespace pyroclast {
 
@@ -47,6 +50,50 @@ CellFace cell_face(const ModelOf<Dim>& model, int face, std::array<int, 2> cells
   return {cells, 0.5 * (norm(vector) + area_across), {share * length, (1.0 - share) * length}};
 }
 
+/// Numbers the ends of faces, which faces of several blocks share: corners in the plane, edges in space.
+template <int Dim>
+class EndNumbers {
+ public:
+  EndNumbers(const ModelOf<Dim>& model, const std::vector<bool>& takes_part)
+      : corner_(join_through_contacts(model, takes_part, {}).of_gridpoint) {}
+
+  /// Returns the number of the edge between two gridpoints; in the plane that of the first one's corner.
+  int of(int g, int other) {
+    if constexpr (Dim == 2) return corner_[g];
+    const auto next = static_cast<int>(number_.size());
+    return number_.try_emplace(std::minmax({corner_[g], corner_[other]}), next).first->second;
+  }
+
+ private:
+  std::vector<int> corner_;
+  std::map<std::pair<int, int>, int> number_;
+};
+
+/// Adds the ends of a face to a mesh.
+template <int Dim>
+void add_ends(const ModelOf<Dim>& model, int face, EndNumbers<Dim>& numbers, MoistureMesh& mesh) {
+  const int first = model.face_contacts[face], count = model.face_contacts[face + 1] - first;
+  const auto corner = [&](int i) { return model.position[model.contacts[first + i % count].a]; };
+  Vec<Dim> middle;
+  for (int i = 0; i < count; ++i) middle += corner(i) * (1.0 / count);
+  CellFace& of = mesh.faces.back();
+  of.first_end = static_cast<int>(mesh.ends.size());
+  of.end_count = count;
+  for (int i = 0; i < count; ++i) {
+    const int here = first + i, next = Dim == 2 ? here : first + (i + 1) % count;
+    FaceEnd end{numbers.of(model.contacts[here].a, model.contacts[next].a),
+                model.thickness,
+                norm(corner(i) - middle),
+                {here, next}};
+    if constexpr (Dim == 3) {
+      const Vec<3> edge = corner(i + 1) - corner(i);
+      end.breadth = norm(edge);
+      end.distance = norm((corner(i) + corner(i + 1)) * 0.5 - middle);
+    }
+    mesh.ends.push_back(end);
+  }
+}
+
 }  // namespace
 
 template <int Dim>
@@ -66,16 +113,23 @@ MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& g
   std::vector<Vec<Dim>> centroid;
   for (const Vec<3>& at : block_centroids(model)) centroid.push_back(resized<Dim>(at));
   const std::vector<int> block_of = gridpoint_blocks(model);
+  EndNumbers<Dim> numbers(model, takes_part);
+  mesh.cell_face.assign(model.face_count(), -1);
   for (int face = 0; face < model.face_count(); ++face) {
     const Contact<Dim>& first = model.contacts[model.face_contacts[face]];
     const int a = block_of[first.a], b = block_of[first.b];
     const std::array<int, 2> cells{mesh.cell_of_block[a], mesh.cell_of_block[b]};
     if (cells[0] < 0 || cells[1] < 0) continue;
+    mesh.cell_face[face] = static_cast<int>(mesh.faces.size());
     mesh.faces.push_back(cell_face(model, face, cells, centroid[a], centroid[b]));
+    add_ends(model, face, numbers, mesh);
   }
   for (const OutlineFace<Dim>& face : outer) {
     const int block = block_of[face.gridpoints[0]], cell = mesh.cell_of_block[block];
     if (cell < 0) continue;
+    for (int i = 0; i < Dim; ++i)
+      mesh.outer_edges.push_back({numbers.of(face.gridpoints[i], face.gridpoints[(i + 1) % Dim]),
+                                  static_cast<int>(mesh.outer_faces.size())});
     mesh.outer_faces.push_back({cell, face.area, std::abs(dot(face.normal, face.centre - centroid[block]))});
   }
   return mesh;

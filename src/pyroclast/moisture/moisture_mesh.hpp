@@ -10,15 +10,24 @@ namespace pyroclast {
 
 /// Face through which water goes from one cell to another.
 ///
-/// Its transmissibility is area / (lengths[0] / K_0 + lengths[1] / K_1), with the lengths along the line of the
-/// cells' centroids. It is above zero for any cells. The area is the mean of that of the face and that across
-/// this line: of the "orthogonal" and the "minimum" correction (Jasak 1996). Random cells in the plane, in
-/// space, and in space with short edges merged are 0.0, 0.2 and 1.8 % more open than the material by the
-/// first, and 2.2, 0.9 and 0.9 % tighter by the second.
+/// Its transmissibility is area / (lengths[0] / K_0 + lengths[1] / K_1), with the lengths along the line of
+/// the cells' centroids. It is above zero for any cells. The area is the mean of that of the face and that
+/// across this line: of the "orthogonal" and the "minimum" correction (Jasak 1996). Random cells in the
+/// plane, in space, and in space with short edges merged are 0.0, 0.2 and 1.8 % more open than the material
+/// by the first, and 2.2, 0.9 and 0.9 % tighter by the second.
 struct CellFace {
   std::array<int, 2> cells;
-  double area;                    ///< m2, see above; a bent face counts as a plane
-  std::array<double, 2> lengths;  ///< along this line, from each centroid to the face, m
+  double area;                       ///< m2, see above; a bent face counts as a plane
+  std::array<double, 2> lengths;     ///< along this line, from each centroid to the face, m
+  int first_end = 0, end_count = 0;  ///< ends in MoistureMesh::ends
+};
+
+/// End of a face: its two corners in the plane, its edges in space.
+struct FaceEnd {
+  int edge;                     ///< number that faces with a common end share
+  double breadth;               ///< thickness of the body, or length of the edge, m
+  double distance;              ///< from the middle of the face, m
+  std::array<int, 2> contacts;  ///< contact points of the model there, in the plane twice the same
 };
 
 /// Face through which water leaves the body.
@@ -36,7 +45,10 @@ struct MoistureMesh {
   std::vector<int> material;       ///< of each cell, index into material_names of the model
   std::vector<int> cell_of_block;  ///< -1: none
   std::vector<CellFace> faces;
-  std::vector<OuterFace> outer_faces;  ///< as `outline` orders them, those of blocks with a cell
+  std::vector<OuterFace> outer_faces;           ///< as `outline` orders them, those of blocks with a cell
+  std::vector<FaceEnd> ends;                    ///< of each face in turn
+  std::vector<std::array<int, 2>> outer_edges;  ///< number of an edge on the outline, and an outer face there
+  std::vector<int> cell_face;                   ///< of each face of the model, index into `faces`; -1: none
 
   int cell_count() const { return static_cast<int>(volume.size()); }
 };

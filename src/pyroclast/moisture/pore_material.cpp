@@ -7,6 +7,20 @@
 
 namespace pyroclast {
 
+namespace {
+
+/// Returns the surface tension of water over that far from its critical point.
+double surface_tension(double temperature) {
+  return power(1.0 - std::min(temperature, water::kFrozen) / water::kCritical, 1.26);
+}
+
+double surface_tension_at_20_degC() {
+  static const double value = surface_tension(kReferenceTemperature);
+  return value;
+}
+
+}  // namespace
+
 void PoreMaterial::check() const {
   const auto needed = [](bool allowed, const char* quantity, double value, const char* wanted) {
     require(allowed, "pores", quantity, value, wanted);
@@ -31,14 +45,13 @@ PoreConditions::PoreConditions(const PoreMaterial& its_material, double its_temp
       temperature(its_temperature),
       saturation_pressure(water::saturation_pressure(temperature)),
       liquid_density(water::liquid_density(temperature)),
-      entry_pressure(its_material.entry_pressure *
-                     power(1.0 - std::min(temperature, water::kFrozen) / water::kCritical, 1.26) /
-                     power(1.0 - kReferenceTemperature / water::kCritical, 1.26)),
+      entry_pressure(its_material.entry_pressure * surface_tension(temperature) /
+                     surface_tension_at_20_degC()),
       liquid_viscosity(water::liquid_viscosity(temperature)),
       vapour_viscosity(water::vapour_viscosity(temperature)),
       gas(water::kGasConstant * (temperature + 273.15)),
       compressibility_slope(water::compressibility_slope(temperature)),
-      permeability(its_material.permeability * its_material.permeability_ratio(highest_temperature)),
+      permeability(its_material.permeability_at(highest_temperature)),
       diffusion(its_material.tortuosity * its_material.porosity *
                 water::diffusivity_times_pressure(temperature) / gas) {}
 
@@ -49,14 +62,14 @@ double pressure_of_saturation(const PoreConditions& at, double saturation) {
   return at.saturation_pressure * exp(-suction / (at.liquid_density * at.gas));
 }
 
-double pressure_of_content(const PoreConditions& at, double content, double guess) {
+double pressure_of_content(const PoreConditions& at, double content, double guess, WaterAt* water_at) {
   // Newton's method in ln p within a bracket, which it halves where a step leaves it: content rises with p.
   double low = -40.0, high = 40.0;  // ln of p over the saturation pressure
   double y = std::clamp(log(guess / at.saturation_pressure), low, high);
   double best = y, least = -1.0;
   for (int trial = 0; trial < 200 && low < high; ++trial) {
     const double p = at.saturation_pressure * exp(y);
-    const WithSlope found = pore_water(at, WithSlope(p, p)).content;
+    const WithSlope found = water_at(at, WithSlope(p, p)).content;
     const double off = found.value - content;
     if (least < 0.0 || std::abs(off) < least) {
       least = std::abs(off);

@@ -19,6 +19,10 @@ struct PoreMaterial {
   double compliance = 1e-8;
   double tortuosity = 0.33;  ///< of the diffusion of vapour
 
+  /// Returns the permeability of pores that have been this hot, m2.
+  double permeability_at(double highest_temperature) const {
+    return permeability * permeability_ratio(highest_temperature);
+  }
   /// Throws Error naming the number that is out of range.
   void check() const;
 };
@@ -56,6 +60,14 @@ struct PoreWater {
   Real diffusion;        ///< mass flow by diffusion for a pressure gradient of 1, kg/(m s Pa)
 };
 
+/// Returns the density of vapour at a pressure, Pa, kg/m3.
+template <class Real>
+Real vapour_density(const PoreConditions& at, const Real& pressure) {
+  Real z = Real(1.0) - pressure * Real(at.compressibility_slope);
+  if (value_of(z) < water::kLeastCompressibility) z = water::kLeastCompressibility;
+  return pressure / (z * Real(at.gas));
+}
+
 /// Computes the water at a vapour pressure, Pa: liquid and vapour in equilibrium (Kelvin), van Genuchten's
 /// retention (1980) with Mualem's (1976) relative permeability of the liquid and that of Parker, Lenhard and
 /// Kuppusamy (1987) of the vapour. Real: double, or WithSlope for derivatives.
@@ -63,11 +75,10 @@ template <class Real>
 PoreWater<Real> pore_water(const PoreConditions& at, const Real& pressure) {
   using pyroclast::log;
   using pyroclast::power;
+  using std::sqrt;
   const PoreMaterial& m = *at.material;
   PoreWater<Real> w;
-  Real z = Real(1.0) - pressure * Real(at.compressibility_slope);
-  if (value_of(z) < water::kLeastCompressibility) z = water::kLeastCompressibility;
-  w.vapour_density = pressure / (z * Real(at.gas));
+  w.vapour_density = vapour_density(at, pressure);
   if (value_of(pressure) >= at.saturation_pressure) {
     const Real beyond = pressure - Real(at.saturation_pressure);
     w.content = Real(m.porosity * at.liquid_density) * (Real(1.0) + Real(m.compliance) * beyond);
@@ -86,10 +97,9 @@ PoreWater<Real> pore_water(const PoreConditions& at, const Real& pressure) {
   const Real gaseous = Real(1.0) - w.saturation;
   w.content = Real(m.porosity) * (Real(at.liquid_density) * w.saturation + gaseous * w.vapour_density);
   w.liquid_pressure = pressure - suction;
-  const Real inner = Real(1.0) - power(dry, 1.0 / n);
-  w.liquid_mobility =
-      power(w.saturation, 0.5) * inner * inner * Real(at.liquid_density / at.liquid_viscosity);
-  w.vapour_mobility = power(gaseous, 0.5) * power(dry, 2.0 / n) * Real(1.0 / at.vapour_viscosity);
+  const Real outer = power(dry, 1.0 / n), inner = Real(1.0) - outer;
+  w.liquid_mobility = sqrt(w.saturation) * inner * inner * Real(at.liquid_density / at.liquid_viscosity);
+  w.vapour_mobility = sqrt(gaseous) * outer * outer * Real(1.0 / at.vapour_viscosity);
   Real at_least = pressure;
   if (value_of(at_least) < water::kAtmosphere) at_least = water::kAtmosphere;
   w.diffusion = Real(at.diffusion) * gaseous / at_least;
@@ -99,8 +109,13 @@ PoreWater<Real> pore_water(const PoreConditions& at, const Real& pressure) {
 /// Returns the vapour pressure, Pa, at which pores are so full. saturation: above 0, at most 1.
 double pressure_of_saturation(const PoreConditions& at, double saturation);
 
+/// Function that computes water at a vapour pressure; its content rises with the pressure.
+using WaterAt = PoreWater<WithSlope>(const PoreConditions& at, const WithSlope& pressure);
+
 /// Returns the vapour pressure, Pa, at which the material holds so much water, kg/m3, above 0. The search
 /// begins at `guess`; the content is met to rounding.
-double pressure_of_content(const PoreConditions& at, double content, double guess);
+/// \param water_at  pore_water, or crack_water for a crack
+double pressure_of_content(const PoreConditions& at, double content, double guess,
+                           WaterAt* water_at = pore_water<WithSlope>);
 
 }  // namespace pyroclast

@@ -93,6 +93,8 @@ constexpr auto kFigures = std::to_array<const char*>({
     "thrust",
     "total_strain",
     "watch",
+    "water",
+    "water_profile",
 });
 /// Names of figures that are the same however far a run has come.
 constexpr auto kFiguresOfInputs = std::to_array<const char*>({"gradation", "morphology", "properties"});

@@ -1,13 +1,13 @@
 #include "pyroclast/setup/read_moisture.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/log.hpp"
 #include "pyroclast/material/curve_catalogue.hpp"
 #include "pyroclast/setup/read_faces.hpp"
 
@@ -59,9 +59,7 @@ PoreMaterial pores_of(PoreClass of) {
 Curve growing_permeability(const Interval& range) {
   return Curve::function(
       "10^(0.008 (T - 20 degC)), at most 1e4",
-      [](double t) {
-        return std::min(kLargestGrowth, std::pow(10.0, kDecades * (t - kReferenceTemperature)));
-      },
+      [](double t) { return std::min(kLargestGrowth, power(10.0, kDecades * (t - kReferenceTemperature))); },
       {std::min(range.lower, kReferenceTemperature), std::max(range.upper, kHottest)}, temperature_axis(),
       {});
 }
@@ -194,12 +192,41 @@ std::vector<MoistureBoundaryCondition> read_water_boundaries(const Section& mois
   return boundaries;
 }
 
+/// Reads how water and the motion of the body act on each other.
+void read_coupling(const Section& s, bool moves, MoistureConditions& conditions) {
+  PoreCoupling& coupling = conditions.coupling;
+  coupling.acts = s.choice<PressureActs>(
+      "acts",
+      {{"no", PressureActs::no, "nothing bears the pressure of pore water"},
+       {"zones", PressureActs::zones, "blocks do: they swell"},
+       {"all", PressureActs::all, "blocks do, and contacts, whose sides it parts"}},
+      coupling.acts, "what bears the pressure of pore water, where a stage moves the body");
+  coupling.biot =
+      s.number("biot", Range::between(0.0, 1.0), coupling.biot,
+               "share of the pressure that zones and intact contacts bear; open ones bear all of it");
+  coupling.exchange_pressure = s.quantity("exchange_pressure", unit::stress,
+                                          Range::positive().usually(1e4, 1e6), coupling.exchange_pressure,
+                                          "change of a pore pressure from one exchange to the next, about");
+  coupling.crack_width =
+      s.quantity("crack_width", unit::length, Range::positive().usually(1e-6, 1e-4), coupling.crack_width,
+                 "mean opening of a face from which it drains as a crack");
+  conditions.parameters.roughness =
+      s.number("roughness", Range{.lower = 1.0}.usually(1.0, 5.0), conditions.parameters.roughness,
+               "of the walls of cracks: they pass vapour as smooth ones do, over this number");
+  if (!moves)
+    for (const char* key : {"acts", "biot", "exchange_pressure", "crack_width", "roughness"})
+      if (s.has(key)) s.error(key, "has no meaning: no stage moves the body");
+  if (coupling.acts == PressureActs::no)
+    for (const char* key : {"biot", "exchange_pressure"})
+      if (s.has(key)) s.error(key, "has no meaning beside acts = \"no\"");
+}
+
 }  // namespace
 
 std::optional<MoistureConditions> read_moisture(const Section& root,
                                                 const specimen::SpecimenParameters& specimen,
                                                 const DeckSpace& space, const HeatConditions& heat,
-                                                CurveReader& time_curves, CurveReader& curves) {
+                                                bool moves, CurveReader& time_curves, CurveReader& curves) {
   const auto s = root.optional_section(
       "moisture", "water in the pores, which heat drives; without this table there is none");
   if (!s) {
@@ -214,6 +241,7 @@ std::optional<MoistureConditions> read_moisture(const Section& root,
       s->quantity("largest_step", unit::time, Range::positive().usually(0.1, 60.0),
                   conditions.parameters.largest_step, "of the water's solver");
   conditions.boundaries = read_water_boundaries(*s, space, time_curves);
+  read_coupling(*s, moves, conditions);
   conditions.pores = read_phases(root, specimen, curves);
   if (s->ok() && conditions.boundaries.empty())
     s->warn("boundaries", "are none: no water leaves the specimen");

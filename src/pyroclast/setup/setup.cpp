@@ -519,7 +519,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   curves.set_cure(
       [&](const Interval& given) { return cure_of_short_curve(setup.heat, setup.temperatures, given); });
   if (!setup.heat.uniform) setup.heat.cracks = read_crack_heat(root, curves);
-  setup.heat.moisture = read_moisture(root, setup.specimen, space, setup.heat, time_curves, curves);
+  setup.heat.moisture =
+      read_moisture(root, setup.specimen, space, setup.heat, read.any_moves, time_curves, curves);
   if (root.ok()) check_sides(root, setup);
   if (read.any_moves)
     read_moving(

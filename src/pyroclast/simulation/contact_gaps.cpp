@@ -20,6 +20,11 @@ const std::vector<int>& contacts_of(const Model& model, const StatedGap& gap) {
 
 }  // namespace
 
+double damage_in_tension(const Motion& motion, int contact) {
+  return std::max(motion.read().remembered(contact, Remembers::tension_damage),
+                  motion.read().remembered(contact, Remembers::mixed_damage));
+}
+
 std::vector<ContactGap> contact_gaps(const Model& model, const std::vector<StatedGap>& stated,
                                      const Motion* motion) {
   std::vector<ContactGap> gaps(model.contact_count());
@@ -35,8 +40,7 @@ std::vector<ContactGap> contact_gaps(const Model& model, const std::vector<State
   if (motion == nullptr) return gaps;
   for (int i = 0; i < model.contact_count(); ++i) {
     gaps[i].opening += std::max(motion->read().opening(i), 0.0);
-    for (const auto damage : {Remembers::tension_damage, Remembers::mixed_damage})
-      gaps[i].damage = std::max(gaps[i].damage, motion->read().remembered(i, damage));
+    gaps[i].damage = std::max(gaps[i].damage, damage_in_tension(*motion, i));
   }
   return gaps;
 }

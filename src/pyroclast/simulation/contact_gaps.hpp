@@ -16,8 +16,11 @@ struct StatedGap {
   std::string place;     ///< place that states the gap, for messages
 };
 
+/// Returns the damage of a contact in tension or mixed mode, 0 to 1; 0 where its law knows none.
+double damage_in_tension(const Motion& motion, int contact);
+
 /// Returns the gap of each contact of a body for heat, from the stated gaps and the present damage and
-/// opening. The damage is the damage in tension or mixed mode.
+/// opening.
 /// \param motion  null where nothing moves
 ///
 /// Throws Error, with the gap's place, when its set is missing, or holds a contact that another gap has.

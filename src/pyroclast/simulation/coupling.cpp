@@ -28,11 +28,16 @@ Elasticity elasticity_of(const Model& model) {
   });
 }
 
-/// \param hottest  highest temperature so far, °C
+/// \param hottest        highest temperature so far, °C
+/// \param pore_pressure  pressure of pore water times Biot's coefficient, Pa. A free strain stands for it
+///                       (Terzaghi, Biot): in space and in plane stress alike p (1 - 2 nu) / E.
 ZoneProperties zone_at(const ConcreteMaterials& materials, Elasticity elasticity,
-                       const BlockMaterial& material, double temperature, double hottest) {
-  return elasticity(material.young_at(temperature, materials.property_temperature(temperature, hottest)),
-                    material.poisson, material.free_strain(temperature, hottest));
+                       const BlockMaterial& material, double temperature, double hottest,
+                       double pore_pressure = 0.0) {
+  const double young = material.young_at(temperature, materials.property_temperature(temperature, hottest));
+  double strain = material.free_strain(temperature, hottest);
+  if (pore_pressure != 0.0) strain += pore_pressure * (1.0 - 2.0 * material.poisson) / young;
+  return elasticity(young, material.poisson, strain);
 }
 
 /// Finds the creep of each zone; none where nothing creeps.
@@ -176,11 +181,12 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
 
 BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
-                             BodyProperties memory) {
+                             const PorePressures* water, BodyProperties memory) {
   const std::vector<int> zone_materials = materials_of_zones(model);
   BodyProperties p = std::move(memory);
+  p.pore_pressure = water ? water->of_contacts : std::vector<double>();
   find_creep_increments(zone_materials, materials, field, before, p.creep);
-  if (field.is_uniform() && before.stress_free_zones().empty()) {
+  if (field.is_uniform() && before.stress_free_zones().empty() && !water) {
     BodyProperties even = properties_at_one_temperature(model, zone_materials, materials, field.mean(),
                                                         before.of_body(field.mean()));
     even.creep = std::move(p.creep);
@@ -189,10 +195,12 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
   const Elasticity elasticity = elasticity_of(model);
   p.zones.clear();
   p.zones.reserve(zone_materials.size());
+  const std::vector<int> blocks = water ? zone_blocks(model) : std::vector<int>();
   for (int z = 0; z < model.zone_count(); ++z) {
     const double now = field.zones()[z];
     const BlockMaterial& material = materials.block_materials[zone_materials[z]];
-    p.zones.push_back(zone_at(materials, elasticity, material, now, before.of_zone(z, now)));
+    p.zones.push_back(zone_at(materials, elasticity, material, now, before.of_zone(z, now),
+                              water ? water->of_blocks[blocks[z]] : 0.0));
     if (!before.stress_free_zones().empty() && !material.is_of_bearing)
       p.zones.back().thermal_strain -= material.thermal_strain(before.stress_free_zones()[z]);
   }

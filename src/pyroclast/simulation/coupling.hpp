@@ -59,12 +59,19 @@ class HottestTemperatures {
   std::vector<double> stress_free_zones_;
 };
 
+/// Pressures of pore water as the body bears them.
+struct PorePressures {
+  std::vector<double> of_blocks;    ///< times Biot's coefficient, Pa, of each block
+  std::vector<double> of_contacts;  ///< times that of the contact, Pa, of each; empty: on none
+};
+
 /// Returns the parameters of every zone and contact at the field's temperatures, and the creep of zones on
 /// their way there. Throws Error when a property is not defined at one of the temperatures.
 /// \param before  highest temperatures at the exchanges so far
-/// \param memory  properties whose memory is used again
+/// \param water   pressures of pore water, which widen zones as free strain does and part contacts; null:
+/// none \param memory  properties whose memory is used again
 BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
-                             BodyProperties memory = {});
+                             const PorePressures* water = nullptr, BodyProperties memory = {});
 
 }  // namespace pyroclast

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/simulation/contact_gaps.hpp"
 
 namespace pyroclast {
 
@@ -13,6 +14,13 @@ namespace {
 
 /// Halvings of the range in which a humidity is searched for.
 constexpr int kHalvings = 60;
+
+/// Largest factor by which a crack widens or narrows at once for the water.
+constexpr double kWiderAtOnce = 2.0;
+/// Width beyond which a crack passes no more, m: its pressure is that of the outside long before.
+constexpr double kWidest = 1e-3;
+/// Factor from one interval between exchanges to the next, and the shortest interval, s.
+constexpr double kLonger = 2.0, kShortest = 0.05;
 
 constexpr StateRule kAmounts = state::within(0.0, 1e12);  // kg/m3, Pa
 
@@ -62,7 +70,7 @@ void require_one_process(int ranks) {
 MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial>& block_materials,
                              const SpecimenNumbers& numbers, const MoistureConditions& conditions,
                              double temperature)
-    : model_(model), zone_volumes_(model.zone_volumes()) {
+    : model_(model), coupling_(conditions.coupling), zone_volumes_(model.zone_volumes()) {
   require_one_process(model.ranks().count());
   std::vector<std::optional<PoreMaterial>> pores(block_materials.size());
   std::vector<bool> takes_part(block_materials.size());
@@ -72,6 +80,7 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
                    ? pores_of_matrix(stated.material, 1.0 - numbers.fraction[m], model.dimension())
                    : stated.material;
     takes_part[m] = true;
+    is_matrix_.push_back(stated.of_concrete);
     if (!(pores[m]->porosity < 1.0))
       throw Error(
           fmt::format("materials.{}.moisture.porosity: the concrete's cannot all be in {:.3g} of its "
@@ -82,10 +91,20 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
     const ZoneGeometry<Dim> geometry = zone_geometry(of_dimension);
     const auto faces = outline(of_dimension, geometry, takes_part);
     moisture_.emplace(moisture_mesh(of_dimension, geometry, takes_part, faces), pores, conditions.parameters);
+    face_contacts_.assign(of_dimension.face_contacts.begin(), of_dimension.face_contacts.end());
     apply_water(of_dimension, faces, conditions.boundaries, *moisture_);
   });
+  for (std::size_t f = 0; f < mesh().cell_face.size(); ++f)
+    if (mesh().cell_face[f] >= 0) face_of_.push_back(static_cast<int>(f));
+  seen_opening_.resize(face_of_.size());
   start(conditions, block_materials, numbers.fraction, temperature);
-  saturation_ = moisture_->saturation();
+  see_state();
+}
+
+/// Takes over what follows from the state of the water.
+void MoistureField::see_state() {
+  face_pressure_.clear();
+  for (int f = 0; f < std::ssize(face_of_); ++f) face_pressure_.push_back(gauge(moisture_->face_pressure(f)));
 }
 
 void MoistureField::start(const MoistureConditions& conditions,
@@ -134,16 +153,112 @@ std::vector<double> MoistureField::temperatures_of_cells(const TemperatureField&
 void MoistureField::follow(const TemperatureField& temperatures) {
   const double duration = temperatures.time() - moisture_->state().time;
   if (!(duration > 0.0)) return;
+  const std::vector<double> before = water().state().pressure;
   moisture_->advance(duration, temperatures_of_cells(temperatures));
-  saturation_ = moisture_->saturation();
+  see_state();
+  if (coupling_.acts == PressureActs::no) return;
+  double change = 0.0;
+  for (std::size_t c = 0; c < before.size(); ++c)
+    change = std::max(change, std::abs(gauge(water().state().pressure[c]) - gauge(before[c])));
+  interval_ *= kLonger;
+  if (change > 0.0) interval_ = std::min(interval_, duration * coupling_.exchange_pressure / change);
+  interval_ = std::max(interval_, kShortest);
+}
+
+void MoistureField::hurry() {
+  interval_ = kShortest;
+}
+
+/// Returns the mean opening of a face of the mesh, m, where points that press count as closed.
+/// \param of_contacts  openings of its contacts, out
+double MoistureField::opening(const Motion& motion, int face, std::vector<double>* of_contacts) const {
+  double area = 0.0, sum = 0.0;
+  if (of_contacts) of_contacts->clear();
+  for (int c = face_contacts_[face_of_[face]]; c < face_contacts_[face_of_[face] + 1]; ++c) {
+    const double open = std::max(0.0, motion.read().opening(c)), of_contact = model_.joint(c).area;
+    if (of_contacts) of_contacts->push_back(open);
+    area += of_contact;
+    sum += of_contact * open;
+  }
+  return sum / area;
+}
+
+void MoistureField::show_cracks(const Motion& motion) {
+  std::vector<double> before(face_of_.size()), openings;
+  for (const OpenFace& crack : water().state().cracks) before[crack.face] = crack.width;
+  std::vector<OpenFace> cracks;
+  for (int f = 0; f < std::ssize(face_of_); ++f) {
+    const double opens = seen_opening_[f] = opening(motion, f, &openings);
+    const double last = std::max(before[f], coupling_.crack_width);
+    const double width = std::clamp(std::min(opens, kWidest), last / kWiderAtOnce, last * kWiderAtOnce);
+    if (width < coupling_.crack_width || (before[f] == 0.0 && opens < coupling_.crack_width)) continue;
+    OpenFace crack{f, width, {}};
+    const CellFace& face = mesh().faces[f];
+    const int first = face_contacts_[face_of_[f]];
+    for (int e = face.first_end; e < face.first_end + face.end_count; ++e) {
+      const auto [a, b] = mesh().ends[e].contacts;
+      const double there = 0.5 * (openings[a - first] + openings[b - first]);
+      crack.at_ends.push_back(opens > 0.0 ? there * (width / opens) : 0.0);
+    }
+    cracks.push_back(std::move(crack));
+  }
+  if (cracks.empty() && water().state().cracks.empty()) return;
+  moisture_->set_cracks(std::move(cracks));
+  see_state();
+}
+
+bool MoistureField::is_outrun_by_cracks(const Motion& motion) const {
+  if (coupling_.acts != PressureActs::all) return false;
+  for (int f = 0; f < std::ssize(face_of_); ++f)
+    if (face_pressure_[f] > 0.0 &&
+        opening(motion, f) > kWiderAtOnce * std::max(seen_opening_[f], coupling_.crack_width))
+      return true;
+  return false;
+}
+
+std::optional<PorePressures> MoistureField::pressures(const Motion* motion) const {
+  if (coupling_.acts == PressureActs::no) return std::nullopt;
+  PorePressures found;
+  for (int b = 0; b < model_.block_count(); ++b) found.of_blocks.push_back(coupling_.biot * pore_pressure(b));
+  if (coupling_.acts == PressureActs::zones) return found;
+  found.of_contacts.resize(model_.contact_count());
+  for (int f = 0; f < std::ssize(face_of_); ++f)
+    for (int c = face_contacts_[face_of_[f]]; c < face_contacts_[face_of_[f] + 1]; ++c) {
+      const double damage = motion ? damage_in_tension(*motion, c) : 0.0;
+      found.of_contacts[c] = (coupling_.biot + (1.0 - coupling_.biot) * damage) * face_pressure_[f];
+    }
+  return found;
+}
+
+int MoistureField::pocket_blocks() const {
+  const auto is_matrix = [&](int cell) { return is_matrix_[mesh().material[cell]]; };
+  std::vector<bool> drains(mesh().volume.size());
+  for (std::size_t f = 0; f < mesh().outer_faces.size(); ++f)
+    if (water().opens(static_cast<int>(f))) drains[mesh().outer_faces[f].cell] = true;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const CellFace& face : mesh().faces) {
+      const auto [a, b] = face.cells;
+      if (drains[a] == drains[b] || !is_matrix(a) || !is_matrix(b)) continue;
+      drains[a] = drains[b] = grows = true;
+    }
+  }
+  int pockets = 0;
+  for (int c = 0; c < mesh().cell_count(); ++c) pockets += is_matrix(c) && !drains[c] ? 1 : 0;
+  return pockets;
 }
 
 double MoistureField::pore_pressure(int block) const {
-  return std::max(0.0, of_block(water().state().pressure, block) - water::kAtmosphere);
+  return gauge(of_block(water().state().pressure, block));
+}
+
+double MoistureField::contact_pressure(int contact) const {
+  const int face = mesh().cell_face[model_.joint(contact).face];
+  return face < 0 ? 0.0 : face_pressure_[face];
 }
 
 double MoistureField::largest_pore_pressure() const {
-  return std::max(0.0, std::ranges::max(water().state().pressure) - water::kAtmosphere);
+  return gauge(std::ranges::max(water().state().pressure));
 }
 
 double MoistureField::largest_pressure_ratio() const {
@@ -165,9 +280,39 @@ void MoistureField::visit_state(StateVisitor& visitor) {
   visitor.visit("steps", s.steps, state::count());
   visitor.visit("retries", s.retries, state::count());
   visitor.visit("iterations", s.iterations, state::count());
+  visit_cracks(visitor, s);
+  visitor.visit("seen_opening", seen_opening_, state::at_least(0.0).of(seen_opening_.size()));
+  visitor.visit("interval", interval_, state::number());
   if (!visitor.replaces()) return;
   moisture_->go_on_from(std::move(s));
-  saturation_ = moisture_->saturation();
+  see_state();
+}
+
+void MoistureField::visit_cracks(StateVisitor& visitor, MoistureState& s) const {
+  std::vector<int> faces;
+  std::vector<double> widths, at_ends;
+  for (const OpenFace& crack : s.cracks) {
+    faces.push_back(crack.face);
+    widths.push_back(crack.width);
+    at_ends.insert(at_ends.end(), crack.at_ends.begin(), crack.at_ends.end());
+  }
+  visitor.visit("cracks", faces, state::index(face_of_.size()));
+  visitor.visit("crack_widths", widths, state::within(0.0, 1.0).of(faces.size()));
+  std::size_t ends = 0;
+  for (const int face : faces) ends += mesh().faces[face].end_count;
+  visitor.visit("crack_ends", at_ends, state::within(0.0, 1e6).of(ends));
+  visitor.visit("crack_water", s.crack_water, kAmounts.of(faces.size()));
+  visitor.visit("crack_pressure", s.crack_pressure, kAmounts.of(faces.size()));
+  if (!visitor.replaces()) return;
+  s.cracks.clear();
+  auto end = at_ends.begin();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    visitor.require(widths[i] > 0.0 && (i == 0 || faces[i] > faces[i - 1]), "cracks",
+                    "must come by ascending face, and stand open");
+    const int count = mesh().faces[faces[i]].end_count;
+    s.cracks.push_back({faces[i], widths[i], {end, end + count}});
+    end += count;
+  }
 }
 
 }  // namespace pyroclast

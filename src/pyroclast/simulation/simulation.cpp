@@ -33,12 +33,13 @@ TemperatureField make_field(const Model& model, const std::vector<BlockMaterial>
 
 std::unique_ptr<Motion> make_motion_at(const Model& model, const ConcreteMaterials& materials,
                                        const TemperatureField& field, const HottestTemperatures& hottest,
-                                       const MechanicsParameters& parameters,
+                                       const PorePressures* water, const MechanicsParameters& parameters,
                                        const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
   for (const auto& material : materials.block_materials)
     densities.push_back(material.density(kReferenceTemperature));
-  return make_motion(model, densities, properties_at(model, materials, field, hottest), parameters, team);
+  return make_motion(model, densities, properties_at(model, materials, field, hottest, water), parameters,
+                     team);
 }
 
 std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
@@ -125,7 +126,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
   if (!moving) {
     materials_.block_materials = block_materials;
     for (const RecordParameters& record : records) records_.emplace_back(*model_, false, record);
-    show_cracks_to_heat();
+    show_cracks();
     return;
   }
   materials_ = make_materials(block_materials, *moving, numbers_);
@@ -133,7 +134,9 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
   if (moving->stress_free && moving->stress_free->is_field())
     stress_free = stress_free_gridpoints(*moving->stress_free, *model_, numbers_.mean_size);
   hottest_ = HottestTemperatures(*model_, materials_, field_, stress_free);
-  motion_ = make_motion_at(*model_, materials_, field_, hottest_, moving->mechanics, team_);
+  const auto water = moisture_ ? moisture_->pressures(nullptr) : std::nullopt;
+  motion_ = make_motion_at(*model_, materials_, field_, hottest_, water ? &*water : nullptr,
+                           moving->mechanics, team_);
   for (const specimen::Notch& notch : body.notches)
     if (const auto parted = model_->contact_sets.find(notch.name); parted != model_->contact_sets.end())
       for (int contact : parted->second)
@@ -142,7 +145,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
           refuse_slit(notch, model_->interface_names[interface], materials_.contacts[interface].law->name);
         }
   begin_moving(moving->velocities);
-  show_cracks_to_heat();
+  show_cracks();
   supports_ = std::make_unique<Supports>(*model_);
   for (const PlaneOfSymmetry& plane : model_->symmetry) drive(plane.set(), plane.component, 0.0);
   loads_ = std::make_unique<Loads>(*motion_, body_size());
@@ -211,11 +214,18 @@ const char* Simulation::coupling_of_heat() const {
                               : "one-way: the body follows its temperatures, and cracks do not hinder heat";
 }
 
-void Simulation::show_cracks_to_heat() {
+void Simulation::show_cracks() {
+  if (moisture_ && moves()) moisture_->show_cracks(*motion_);
   if (!cracks_hinder_heat()) return;
   auto gaps = contact_gaps(*model_, heat_.cracks->gaps, motion_.get());
   if (model_->ranks().count() > 1) gaps = of_owners(*model_, gaps);
   field_.set_gaps(std::move(gaps));
+}
+
+bool Simulation::cracks_outrun_water() {
+  if (!moisture_ || !moisture_->is_outrun_by_cracks(*motion_)) return false;
+  moisture_->hurry();
+  return true;
 }
 
 void Simulation::follow_heat() {
@@ -223,16 +233,17 @@ void Simulation::follow_heat() {
   if (moisture_) moisture_->follow(field_);
 }
 
-void Simulation::set_materials(ConcreteMaterials materials) {
-  motion_->set_properties(properties_at(*model_, materials, field_, hottest_));
-  materials_ = std::move(materials);
+/// Hands the properties of materials to the mechanics, at the temperatures and pore pressures that there are.
+void Simulation::hand_over(const ConcreteMaterials& materials) {
+  const auto water = moisture_ ? moisture_->pressures(motion_.get()) : std::nullopt;
+  earlier_ = motion_->set_properties(properties_at(*model_, materials, field_, hottest_,
+                                                   water ? &*water : nullptr, std::exchange(earlier_, {})));
   hottest_.note_exchange(field_);
 }
 
-void Simulation::hand_over() {
-  earlier_ = motion_->set_properties(
-      properties_at(*model_, materials_, field_, hottest_, std::exchange(earlier_, {})));
-  hottest_.note_exchange(field_);
+void Simulation::set_materials(ConcreteMaterials materials) {
+  hand_over(materials);
+  materials_ = std::move(materials);
 }
 
 void Simulation::visit_state(StateVisitor& visitor) {

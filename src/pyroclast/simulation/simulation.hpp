@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -94,10 +95,17 @@ class Simulation {
   bool cracks_hinder_heat() const { return heat_.cracks.has_value(); }
   /// Describes in words how heat and motion act on each other.
   const char* coupling_of_heat() const;
-  /// Hands the present gap of each contact to the heat solver, where cracks hinder heat. Called before heat
-  /// flows, at each exchange of temperatures.
   void begin_moving(const std::vector<StartVelocity>& velocities);
-  void show_cracks_to_heat();
+  /// Hands the present gap of each contact to the heat solver, where cracks hinder heat, and the cracks to
+  /// the water that they drain. Called before heat flows, at each exchange of temperatures.
+  void show_cracks();
+  /// Tells whether cracks under pressure have widened so far that the water must be asked what it does; then
+  /// the next exchange comes soon.
+  bool cracks_outrun_water();
+  /// Returns the time of the next exchange that the water asks for, s of heating.
+  double next_exchange_of_water() const {
+    return moisture_ ? moisture_->next_exchange() : std::numeric_limits<double>::infinity();
+  }
 
   /// Tells whether the body moves.
   bool moves() const { return motion_ != nullptr; }
@@ -134,7 +142,7 @@ class Simulation {
   void follow_heat();
   /// Makes an exchange: hands the field's temperatures over to the mechanics, see Mechanics::set_properties.
   /// Zones that creep do so from now until the next look of the run.
-  void hand_over();
+  void hand_over() { hand_over(materials_); }
   /// Notes that the field came to temperatures that an exchange will hand over later; the losses by heat
   /// count them already.
   void see_temperatures() { hottest_.note_field(field_); }
@@ -147,6 +155,8 @@ class Simulation {
   void visit_state(StateVisitor& visitor);
 
  private:
+  void hand_over(const ConcreteMaterials& materials);
+
   std::shared_ptr<Team> team_;
   std::optional<MadeSpecimen> specimen_;
   std::shared_ptr<const SpecimenTold> told_;

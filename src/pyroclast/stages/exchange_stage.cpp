@@ -216,9 +216,11 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   tell_water(history, rows, report);
   if (r.not_converged > 0)
     report.warnings.push_back(
-        fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "
+        fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles{} "
                     "(worst unbalanced ratio {:.1e}); history.csv flags them",
-                    r.not_converged, r.exchanges, r.worst_ratio));
+                    r.not_converged, r.exchanges,
+                    history.has("energy_pore_pressure_J") ? ", or ended as pore water widened a crack" : "",
+                    r.worst_ratio));
   return report;
 }
 

@@ -46,8 +46,9 @@ void Expose::begin_change(Simulation& simulation) {
 
 bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
   if (!flow_.flows()) {
-    simulation.show_cracks_to_heat();
-    flow_.begin(coupling().increment, earliest({began_ + keys_.duration, next_frame_}));
+    simulation.show_cracks();
+    flow_.begin(coupling().increment,
+                earliest({began_ + keys_.duration, next_frame_, simulation.next_exchange_of_water()}));
   }
   if (!flow_.advance(simulation.field())) return false;
   simulation.follow_heat();

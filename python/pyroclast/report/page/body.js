@@ -120,6 +120,7 @@ export class Body {
     const a = this.arrays,
       all = [["material", "material"]];
     if (a.temperature) all.push(["temperature", "temperature [°C]"]);
+    if (a.pore_pressure) all.push(["pore_pressure", "pore pressure [MPa]"], ["saturation", "saturation [–]"]);
     if (a.stress_y)
       all.push(
         ["stress_y", "vertical stress [MPa]"],

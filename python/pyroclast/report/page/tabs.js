@@ -14,6 +14,7 @@ export class Tabs {
       bar = $("tabs");
     const isEmpty = {
       heat: !this.drawsHeat(),
+      water: !this.course.quantity("water_held"),
       energies: !this.course.about.energy_out.length,
       convergence: !this.course.has("unbalanced_ratio"),
     };
@@ -21,6 +22,7 @@ export class Tabs {
       energies: () => this.drawEnergies(),
       cracks: () => this.drawCracks(),
       heat: () => this.drawHeat(),
+      water: () => this.drawWater(),
       properties: () => this.drawProperties(),
       convergence: () => this.drawConvergence(),
     };
@@ -172,11 +174,12 @@ export class Tabs {
     return this.course.has("heating_time_s") && Math.max(...t.filter(isFinite)) - Math.min(...t.filter(isFinite)) > 1;
   }
 
-  drawHeat() {
+  // Draws quantities over the time of heating, those that the run has, and those of probes by the start of their ids.
+  drawOverMinutes(place, title, yLabel, ids, ofProbes) {
     const {course} = this,
       colours = ["var(--ink)", ...COLOURS],
-      probes = course.about.quantities.map((q) => q.id).filter((id) => id.startsWith("probe "));
-    const series = ["temperature", "temperature_min", "temperature_max", "gas", ...probes]
+      probes = course.about.quantities.map((q) => q.id).filter((id) => ofProbes && id.startsWith(ofProbes));
+    const series = [...ids, ...probes]
       .filter((id) => course.quantity(id))
       .map((id, k) => ({
         name: course.quantity(id).label,
@@ -184,7 +187,17 @@ export class Tabs {
         colour: id === "gas" ? "var(--faint)" : colours[k % 6],
         dash: id === "gas" ? DASHES[1] : DASHES[Math.floor(k / 6) % 4],
       }));
-    this.draw("heat", "temperatures", {}, {...course.over("minutes"), yLabel: "temperature [°C]", series});
+    this.draw(place, title, {}, {...course.over("minutes"), yLabel, series});
+  }
+
+  drawHeat() {
+    const ids = ["temperature", "temperature_min", "temperature_max", "gas"];
+    this.drawOverMinutes("heat", "temperatures", "temperature [°C]", ids, "probe ");
+  }
+
+  drawWater() {
+    this.drawOverMinutes("pore_pressures", "pore pressures", "pore pressure [MPa]", ["water_largest_pressure"], "pore ");
+    this.drawOverMinutes("water", "water", "water [kg]", ["water_held", "water_left", "water_released"]);
   }
 
   // Panels whose cursor is the greatest temperature of the row.

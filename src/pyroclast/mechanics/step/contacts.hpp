@@ -34,12 +34,93 @@ struct ContactForces {
   }
 };
 
+/// Directions of the faces of a pack.
+template <int Dim, class Set>
+struct FaceFrames {
+  using R = Packs<Dim, Set>;
+  using Real = typename R::Real;
+  using Vector = typename R::Vector;
+
+  struct Frame {
+    Vector normal;
+    std::array<Vector, Dim - 1> tangents;
+    Real edge;  ///< length of the edge that turns the frame, m; finite kinematics only
+
+    /// Returns the force on both sides of the first point of the faces that keeps moments in balance where
+    /// the frame turns with the edge; the second point gets the opposite one. The components of a jump turn
+    /// with the frame, and these forces do the work of the tractions on that part: each is minus the
+    /// tractions times the derivatives of the jump's components by the position of a gridpoint. \param
+    /// turning  sum over the points of area (shear traction opening - normal traction tangential jump)
+    Vector turning_force(const Real& turning) const { return normal * (0.5 * turning / edge); }
+  };
+
+  template <Kinematics kKinematics>
+  static Frame of(const State<Dim>& s, int pack) {
+    Frame frame;
+    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[pack].tangent[t]);
+    if constexpr (kKinematics == Kinematics::finite) {
+      // mean edge of the two sides
+      const PointPack* const point = &s.layout.points[s.layout.first_point_of(pack)];
+      const auto at = [&](const std::array<int, kLanes>& offset) {
+        return R::gather(s.gathered_position, offset) + R::gather(s.displacement, offset);
+      };
+      const Vector edge = ((at(point[1].a) - at(point[0].a)) + (at(point[1].b) - at(point[0].b))) * Real(0.5);
+      frame.edge = norm(edge);
+      const Vector t = edge * (1.0 / frame.edge);
+      frame.tangents[0] = t;
+    }
+    if constexpr (Dim == 2)
+      frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
+    else
+      frame.normal = cross(frame.tangents[0], frame.tangents[1]);
+    return frame;
+  }
+};
+
+/// Pressure of pore water between the sides of contact points. It parts them by a traction that no jump
+/// changes, beside that of the law.
+template <int Dim, class Set>
+struct PorePressure {
+  using R = Packs<Dim, Set>;
+  using Real = typename R::Real;
+
+  /// Implements StepPasses::add_pore_pressure.
+  static void add(State<Dim>& s, int first, int last) {
+    with_kinematics(s, [&](auto kinematics) { add_to<kinematics()>(s, first, last); });
+  }
+
+ private:
+  template <Kinematics kKinematics>
+  [[gnu::flatten, gnu::noinline]] static void add_to(State<Dim>& __restrict s, int first_pack,
+                                                     int last_pack) {
+    const auto put = [](const auto& more, Vec<Dim>* to) { R::store(R::load(to) + more, to); };
+    for (int pack = first_pack; pack < last_pack; ++pack) {
+      const auto frame = FaceFrames<Dim, Set>::template of<kKinematics>(s, pack);
+      const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
+      Real turning = 0.0;
+      for (int at = first; at < last; ++at) {
+        const PointPack& point = s.layout.points[at];
+        const Real force = Real::load(s.pore_pressure[at].number) * Real::load(point.area);
+        put(frame.normal * -force, &s.contact_force[slot_of(at, 0)]);
+        if constexpr (kKinematics == Kinematics::finite)
+          turning += force * dot(R::gather_differences(s.displacement, point.b, point.a), frame.tangents[0]);
+      }
+      if constexpr (kKinematics == Kinematics::finite) {
+        const auto turns = frame.turning_force(turning);
+        put(turns, &s.turning_force[slot_of(first, 0)]);
+        put(-turns, &s.turning_force[slot_of(first + 1, 0)]);
+      }
+    }
+  }
+};
+
 /// Packs of faces that have one law.
 template <int Dim, class Set, class Law>
 struct Contacts {
   using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
+  using Frames = FaceFrames<Dim, Set>;
   using OneForAll = typename Law::template Constants<double>;
   using ForEach = typename Law::template Constants<Real>;
   using Internals = typename Law::template Internals<Dim, Real>;
@@ -138,7 +219,7 @@ struct Contacts {
   template <Kinematics kKinematics>
   [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_pack, int last_pack) {
     for (int pack = first_pack; pack < last_pack; ++pack) {
-      const Frame frame = frame_of<kKinematics>(s, pack);
+      const auto frame = Frames::template of<kKinematics>(s, pack);
       const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
       for (int at = first; at < last; ++at) {
         const Real area = Real::load(s.layout.points[at].area);
@@ -147,34 +228,6 @@ struct Contacts {
                  &s.contact_force[slot_of(at, 0)]);
       }
     }
-  }
-
-  struct Frame {
-    Vector normal;
-    std::array<Vector, Dim - 1> tangents;
-    Real edge;  ///< length of the edge that turns the frame, m; finite kinematics only
-  };
-
-  template <Kinematics kKinematics>
-  static Frame frame_of(const State<Dim>& s, int pack) {
-    Frame frame;
-    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[pack].tangent[t]);
-    if constexpr (kKinematics == Kinematics::finite) {
-      // mean edge of the two sides
-      const PointPack* const point = &s.layout.points[s.layout.first_point_of(pack)];
-      const auto at = [&](const std::array<int, kLanes>& offset) {
-        return R::gather(s.gathered_position, offset) + R::gather(s.displacement, offset);
-      };
-      const Vector edge = ((at(point[1].a) - at(point[0].a)) + (at(point[1].b) - at(point[0].b))) * Real(0.5);
-      frame.edge = norm(edge);
-      const Vector t = edge * (1.0 / frame.edge);
-      frame.tangents[0] = t;
-    }
-    if constexpr (Dim == 2)
-      frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
-    else
-      frame.normal = cross(frame.tangents[0], frame.tangents[1]);
-    return frame;
   }
 
   /// \param faces  the faces that go through the law: EveryFace or OtherFaces
@@ -198,7 +251,7 @@ struct Contacts {
   /// \param respond  function from (point, opening, tangential jump) to a ContactResponse
   template <Kinematics kKinematics, bool kMeasure, class Faces, class Respond>
   static void respond_to_jumps(State<Dim>& s, int pack, const Faces& faces, Respond respond) {
-    const Frame frame = frame_of<kKinematics>(s, pack);
+    const auto frame = Frames::template of<kKinematics>(s, pack);
     const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
     Real turning = 0.0;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
@@ -221,8 +274,11 @@ struct Contacts {
         widest = larger(widest, norm(jump));
       }
     }
-    if constexpr (kKinematics == Kinematics::finite)
-      add_turning_forces(s, first, frame, turning * faces.area(s.layout.points[first]));
+    if constexpr (kKinematics == Kinematics::finite) {
+      const Vector turns = frame.turning_force(turning * faces.area(s.layout.points[first]));
+      R::store(turns, &s.turning_force[slot_of(first, 0)]);
+      R::store(-turns, &s.turning_force[slot_of(first + 1, 0)]);
+    }
     if constexpr (kMeasure) {
       FaceSums& sums = s.face_sums[pack];
       sums.stored = sum(stored);
@@ -300,15 +356,6 @@ struct Contacts {
     Faces faces{};
     void operator+=(const Real& more) const { (Real::load(number) + faces.lost(more)).store(number); }
   };
-
-  /// Adds forces that keep moments in balance where the frame turns with the edge. The components of a jump
-  /// turn with the frame, and these forces do the work of the tractions on that part: each is minus the
-  /// tractions times the derivatives of the jump's components by the position of a gridpoint.
-  static void add_turning_forces(State<Dim>& s, int first_point, const Frame& frame, const Real& turning) {
-    const Vector force = frame.normal * (0.5 * turning / frame.edge);
-    R::store(force, &s.turning_force[slot_of(first_point, 0)]);
-    R::store(-force, &s.turning_force[slot_of(first_point + 1, 0)]);
-  }
 
   /// Sums |stiffness| over the rows of a contact's matrix. The factor 2 counts the gridpoint itself and the
   /// one across.

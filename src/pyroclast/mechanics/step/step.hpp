@@ -82,7 +82,8 @@ class Step {
   }
 
   static constexpr StepPasses<Dim> passes() {
-    StepPasses<Dim> all{place_corner_forces, move_bundles, move_tied_parts, sum_stiffness};
+    StepPasses<Dim> all{place_corner_forces, move_bundles, move_tied_parts, sum_stiffness,
+                        PorePressure<Dim, Set>::add};
     if constexpr (Dim == 2) {
       using Found = FoundContactForces<Set>;
       all.update_found = Found::update;

@@ -24,6 +24,19 @@ enum class FirstWater : std::uint8_t {
   content      ///< water over the dry mass of the concrete, in equilibrium everywhere
 };
 
+/// Choice of the parts of a body on which the pressure of pore water acts.
+enum class PressureActs : std::uint8_t { no, zones, all };
+
+/// Action of pore water on the body, and of cracks on the water.
+struct PoreCoupling {
+  PressureActs acts = PressureActs::all;
+  /// Biot's coefficient b of zones and of intact contacts; a contact with damage D bears b + (1 - b) D of the
+  /// pressure.
+  double biot = 0.5;
+  double crack_width = 5e-6;       ///< mean opening of a face from which it is a crack that drains, m
+  double exchange_pressure = 2e5;  ///< change of a pore pressure between two exchanges, about, Pa
+};
+
 /// Boundary condition of a deck on water; none: sealed.
 struct MoistureBoundaryCondition {
   BoundaryFaces faces;
@@ -38,6 +51,7 @@ struct MoistureConditions {
   double first_amount = 0.0;  ///< its share
   MoistureParameters parameters;
   std::vector<MoistureBoundaryCondition> boundaries;
+  PoreCoupling coupling = {};
 };
 
 /// Returns the pores of a matrix, where the concrete's are stated, with a share f of inclusions that neither

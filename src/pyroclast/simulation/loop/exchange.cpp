@@ -13,6 +13,8 @@ namespace {
 
 /// Steps between two checks whether the body rests.
 constexpr std::int64_t kCyclesPerCheck = 50;
+/// Checks from one look at the cracks under the pressure of pore water to the next.
+constexpr std::int64_t kChecksPerLookAtCracks = 4;
 /// Sinking of a platen within the stated cycles, over the failure strain, below which it is not running away.
 constexpr double kSlowSinking = 0.1;
 /// Share of `platen_difference`, on the face of a block, below which forces out of balance count as none
@@ -103,6 +105,8 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   simulation.motion().advance(static_cast<int>(steps));
   kept_.cycles += steps;
   if (steps < to_check) return false;
+  if (kept_.cycles % (kChecksPerLookAtCracks * kCyclesPerCheck) == 0 && simulation.cracks_outrun_water())
+    return true;
   const auto [now, is_supported, is_still] = read(simulation);
   kept_.ran_away = may_fail && now - kept_.strain_before > coupling_.failure_strain;
   if (kept_.ran_away) return true;

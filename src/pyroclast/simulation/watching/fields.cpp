@@ -180,6 +180,10 @@ constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, Va
                              true,           moves,        put_end,           "mean of both sides"};
 
 constexpr auto kOfContacts = std::to_array<KnownField>({
+    {"face_pressure", unit::stress, Item::contact, ValueKind::number, true, is_moist,
+     [](R& r, int i, double* to) { *to = r.simulation().moisture()->contact_pressure(i); },
+     "pressure of the vapour between the two blocks, or in the crack there, less that of the atmosphere, at "
+     "least 0; only with [water in pores](../understand/moisture.md)"},
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack(r, i); },
      "the largest damage by any mode, 0 intact, 1 broken; 0 at bearings, whose contacts are no cracks"},

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "known.hpp"
+#include "pyroclast/base/random.hpp"
+
+/// Pressure of pore water: it widens zones, and parts the sides of contacts.
+namespace pyroclast::pore_pressure_test {
+namespace {
+
+using namespace bodies;
+
+constexpr double young = 29.4e9, poisson = 0.2;
+
+/// One material and one interface under a pressure, of which zones and contacts bear shares.
+template <int Dim>
+BodyProperties pressed(const ModelOf<Dim>& model, const ContactProperties& contact, double in_zones,
+                       double at_contacts) {
+  const double strain = in_zones * (1.0 - 2.0 * poisson) / young;
+  BodyProperties p = by_interface(
+      model, std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson, strain)),
+      {contact});
+  p.pore_pressure.assign(model.contacts.size(), at_contacts);
+  return p;
+}
+
+/// Body without pressure, which can have some.
+template <int Dim>
+Mechanics<Dim> dry(const ModelOf<Dim>& model, const ContactProperties& contact,
+                   const MechanicsParameters& parameters) {
+  return {model, {2400.0}, pressed(model, contact, 0.0, 0.0), parameters};
+}
+
+template <int Dim>
+void expect_free_swelling(const ModelOf<Dim>& model, int axis, double length, double height,
+                          Kinematics kinematics) {
+  const double biot = 0.5, pressure = 3e6;
+  auto parameters = settling<Dim>(40);
+  parameters.kinematics = kinematics;
+  auto m = dry(model, elastic_contact(), parameters);
+  m.set_properties(pressed(model, elastic_contact(), biot * pressure, biot * pressure));
+  m.advance(6000);
+  double low = 0.0, high = 0.0, stress = 0.0;
+  for (int g = 0; g < model.gridpoint_count(); ++g) {
+    const double u = m.read().displacement(g)[axis];
+    if (model.position[g][axis] < 1e-9) low = u;
+    if (model.position[g][axis] > length - 1e-9) high = u;
+  }
+  for (const auto& s : m.read().stresses())
+    for (const double component : s) stress = std::max(stress, std::abs(component));
+  const int faces = static_cast<int>(std::lround(length / height)) - 1;
+  const double opening = faces * biot * pressure / elastic_contact().normal_stiffness;
+  const double exact = biot * pressure * (1.0 - 2.0 * poisson) / young * length + opening;
+  // 1e-6: strains beside 1, which small kinematics leaves out
+  const double within = kinematics == Kinematics::small ? 1e-9 : 1e-4;
+  expect_known({std::string("Lengthening of a free column under pore pressure, ") +
+                    (Dim == 2 ? "plane stress" : "in space"),
+                "b p (1 - 2 nu) / E of blocks, b p / K_n of contacts", "m"},
+               high - low, exact, within * exact);
+  EXPECT_LT(stress, 1e-9 * pressure);  // Terzaghi: no total stress
+  for (const auto& c : m.read().contacts())
+    EXPECT_NEAR(c.normal_traction, biot * pressure, 1e-9 * pressure);  // the law holds what parts it
+}
+
+TEST(PorePressureVerification, AFreeBodySwellsWithoutStress) {
+  expect_free_swelling(column(4, 0.01), 1, 0.04, 0.01, Kinematics::small);
+  expect_free_swelling(column(4, 0.01), 1, 0.04, 0.01, Kinematics::finite);
+  expect_free_swelling(cubes(3, 0.01), 2, 0.03, 0.01, Kinematics::small);
+}
+
+TEST(PorePressureVerification, ASealedBodyBetweenFixedPlatesBearsThePressureAsTotalStress) {
+  const ModelOf<3> model = cubes(3, 0.01);
+  const double pressure = 3e6;
+  auto contact = elastic_contact();
+  contact.normal_stiffness *= 1e3;
+  auto m = dry(model, contact, settling<3>(400));
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    for (int i = 0; i < 3; ++i)
+      if (const double x = model.position[g][i]; x == 0.0 || x == (i == 2 ? 0.03 : 0.01))
+        m.constraints().prescribe_velocity(g, i, 0.0);
+  m.set_properties(pressed(model, contact, pressure, pressure));
+  m.advance(4000);
+  for (const auto& s : m.read().stresses())
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(s[i], -pressure, 1e-6 * pressure);
+}
+
+TEST(PorePressureVerification, TwoBlocksPartWhereTheirShareOfThePressureComesToTheTensileStrength) {
+  const ModelOf<2> model = column(2, 0.01);
+  auto contact = mortar_contact();
+  contact.tensile_strength = 2.5e6;
+  for (const double share : {1.0, 0.5}) {
+    auto m = dry(model, contact, settling<2>(40));
+    double broke_at = 0.0;
+    for (double pressure = 0.05e6; broke_at == 0.0 && pressure < 6e6; pressure += 0.05e6) {
+      m.set_properties(pressed(model, contact, share * pressure, share * pressure));
+      m.advance(600);
+      if (m.read().remembered(0, Remembers::tension_damage) > 0.0) broke_at = pressure;
+    }
+    expect_known(
+        {"Pore pressure that parts two blocks of 2.5 MPa, its share " + std::to_string(share).substr(0, 3),
+         "f_t over the share, within one increment", "Pa"},
+        broke_at, 2.5e6 / share, 0.0501e6);
+  }
+}
+
+// Promise: pressure moves neither the body's centre nor turns it, however its blocks lie, and its work is the
+// ledger's.
+TEST(PorePressure, LeavesMomentumAndEnergyInBalance) {
+  const ModelOf<2> model = tessellated(40, 0.05, 0.05, 3);
+  for (const auto kinematics : {Kinematics::small, Kinematics::finite}) {
+    auto parameters = quasi_static<2>(0.0);
+    parameters.kinematics = kinematics;
+    parameters.safety = 0.2;
+    auto m = dry(model, elastic_contact(), parameters);
+    Random random(4);
+    std::vector<Vec<2>> velocities(model.position.size());
+    for (auto& v : velocities) v = {{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)}};
+    m.begin_moving(velocities);
+    m.advance(200);
+    auto properties = pressed(model, elastic_contact(), 0.0, 0.0);
+    for (double& p : properties.pore_pressure) p = random.uniform(0.0, 5e6);
+    m.set_properties(properties);
+    m.advance(1);
+    Vec<2> force{};
+    double moment = 0.0, size = 0.0;
+    for (int g = 0; g < model.gridpoint_count(); ++g) {
+      const Vec<2> f = m.read().force(g), x = model.position[g] + m.read().displacement_of_force(g);
+      force += f;
+      moment += x[0] * f[1] - x[1] * f[0];
+      size += norm(f);
+    }
+    EXPECT_LT(norm(force), 1e-12 * size);
+    // contacts with small displacements do not keep moments
+    EXPECT_LT(std::abs(moment), (kinematics == Kinematics::finite ? 1e-12 : 1e-3) * 0.05 * size);
+    m.advance(400);
+    const EnergyLedger e = m.totals().energy();
+    EXPECT_GT(e.pore_pressure, 1e-3 * turnover(e));
+    EXPECT_LT(std::abs(e.error()), (kinematics == Kinematics::small ? 1e-9 : 1e-4) * turnover(e));
+    m.set_properties(pressed(model, elastic_contact(), 0.0, 0.0));
+    m.advance(1);
+    const EnergyLedger after = m.totals().energy();
+    EXPECT_LT(std::abs(after.error()), (kinematics == Kinematics::small ? 1e-9 : 1e-4) * turnover(after));
+  }
+}
+
+}  // namespace
+}  // namespace pyroclast::pore_pressure_test
