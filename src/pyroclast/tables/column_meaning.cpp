@@ -156,7 +156,7 @@ ColumnMeanings meanings_of_name(std::string_view name, const ColumnMeanings& voc
     if (ColumnMeanings found = that_have(word, vocabulary); !found.empty())
       of_words.push_back(std::move(found));
   for (const ColumnMeanings& one : of_words)
-    if (one.size() == 1 && one[0]->rules) return one;
+    if (one.size() == 1 && one[0]->rules) return {one[0]};
   const ColumnMeanings numbers{&meaning::index};
   if (std::ranges::any_of(of_words, [&](const auto& one) { return one != numbers; }))
     std::erase(of_words, numbers);  // "grain id" is a grain
