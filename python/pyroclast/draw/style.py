@@ -277,7 +277,7 @@ def settle(figure: Figure) -> Figure:
     _choose_panels(figure, of_page)
     if not of_page.is_column:
         if (engine := _layout_of(figure)) is not None:
-            engine.execute(figure)  # panels of one scale on both axes shrink by it, and the next finds room for the rest
+            engine.execute(figure)  # panels of one scale on both axes shrink, and the next finds room for the rest
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
     for _ in range(4):

@@ -228,7 +228,8 @@ def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tu
     return shift, np.arctan2(across, along)
 
 
-def water_of_zones(path: Path, zones: int, mean: Callable[[np.ndarray], np.ndarray]) -> Iterator[tuple[str, np.ndarray]]:
+def water_of_zones(path: Path, zones: int,
+                   mean: Callable[[np.ndarray], np.ndarray]) -> Iterator[tuple[str, np.ndarray]]:
     """Reads the fields of a frame on water in the pores, by block; none where the run has no water.
 
     mean: from values (Z,) of zones to means (B,) of blocks.

@@ -18,7 +18,8 @@ from ..stored.heated import Heated
 from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
-from .plane_body import FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite, water_of_zones
+from .plane_body import (FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite,
+                         water_of_zones)
 
 _OPENING = 1e-6  # m, wanted step: ten times that of the plane, as a solid has so many more contacts
 _SAME = 1e-6  # cosines of one angle differ by less
