@@ -267,6 +267,15 @@ std::vector<fs::path> installed_folders(const LawCompiler& compiler) {
     if (is_folder && line.starts_with(' ')) folders.emplace_back(line.substr(1));
     is_folder = is_folder || line == "#include <...> search starts here:";
   }
+  // Folders of the system may be links to others, as asm on Debian 13, by whose names the compiler tells
+  // files.
+  const std::vector<fs::path> searched = folders;
+  for (const fs::path& folder : searched) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+      if (entry.is_symlink(ignored) && entry.is_directory(ignored))
+        folders.push_back(fs::weakly_canonical(entry.path(), ignored));
+  }
   return folders;
 }
 
