@@ -253,6 +253,13 @@ std::string said_by(const std::vector<std::string>& words, const LawCompiler& co
   return read_file(messages);
 }
 
+/// Levels of folders of headers below those searched in which links are followed.
+constexpr int kDeepestLink = 1;
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
 /// Returns the folders of headers that belong to the compiler, the system or this program. The environment
 /// may name further folders to the compiler; files there are the user's.
 std::vector<fs::path> installed_folders(const LawCompiler& compiler) {
@@ -267,20 +274,21 @@ std::vector<fs::path> installed_folders(const LawCompiler& compiler) {
     if (is_folder && line.starts_with(' ')) folders.emplace_back(line.substr(1));
     is_folder = is_folder || line == "#include <...> search starts here:";
   }
-  // Folders of the system may be links to others, as asm on Debian 13, by whose names the compiler tells
-  // files.
+  // Headers may be links of the system to others, by whose names the compiler tells them: asm on Debian 13.
   const std::vector<fs::path> searched = folders;
   for (const fs::path& folder : searched) {
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored))
-      if (entry.is_symlink(ignored) && entry.is_directory(ignored))
-        folders.push_back(fs::weakly_canonical(entry.path(), ignored));
+    for (auto entry = fs::recursive_directory_iterator(folder, ignored); entry != fs::end(entry);
+         entry.increment(ignored)) {
+      if (entry.depth() >= kDeepestLink) entry.disable_recursion_pending();
+      if (!entry->is_symlink(ignored)) continue;
+      const fs::path real = fs::weakly_canonical(entry->path(), ignored);
+      if (fs::path there = entry->is_directory(ignored) ? real : real.parent_path();
+          is_below(there, "/usr") && std::ranges::find(folders, there) == folders.end())
+        folders.push_back(std::move(there));
+    }
   }
   return folders;
-}
-
-bool is_below(const fs::path& file, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
 }
 
 /// Tells whether a file lies in one of the folders by its name and by its real place: a link elsewhere that
