@@ -294,8 +294,7 @@ int check(const RunOptions& options) {
   if (const int pockets = simulation->moisture() ? simulation->moisture()->pocket_blocks() : 0)
     fmt::print(
         "                {} blocks of the matrix are closed in by stones, or by sealed faces: what their "
-        "stones let "
-        "pass decides their pressure\n",
+        "stones let pass decides their pressure\n",
         pockets);
   if (simulation->moisture() && simulation->moves())
     fmt::print("                {}\n",

@@ -12,10 +12,13 @@ constexpr double kSameMix = 1.2;  // greatest ratio between factors of one mix
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+/// How f_c goes with E of the mortar and with the factor on strengths: cases/starter.toml with E of the
+/// mortar from 20 to 50 GPa and strengths from 0.7 to 2 times the paper's.
+constexpr double kOfStiffness = 0.22, kOfFactor = 0.79;
+
 /// The paper's Table 2. E and f_c: decks of `pyroclast concrete` with a fifth of the largest stone as block
 /// size, the means of three to ten seeds (docs/validation/after_peak.md): E within 1 %, f_c within 6 %;
-/// coarser blocks bear up to a tenth less. The exponents: cases/starter.toml with E of the mortar from 20 to
-/// 50 GPa and strengths from 0.7 to 2 times the paper's.
+/// coarser blocks bear up to a tenth less.
 constexpr FirstGuess kPlane[] = {
     {.source = "the paper's Table 2",
      .law = Cohesive::name,
@@ -23,15 +26,15 @@ constexpr FirstGuess kPlane[] = {
      .mortar_modulus = 29.4e9,
      .strength = 31e6,
      .modulus_over_estimate = 1.04,
-     .of_stiffness = 0.22,
-     .of_factor = 0.79,
+     .of_stiffness = kOfStiffness,
+     .of_factor = kOfFactor,
      .block_size = 3e-3,
      .of_block_size = 0.0}};
 
 /// cases/starter_3d.toml, whose contacts were fitted by hand for space, and cases/hot_strength_3d.toml, whose
 /// contacts were recalibrated before. E over its estimate, f_c, and how f_c of the second goes with the size
 /// of blocks: docs/validation/solid_strengths.md; of the first, whose mode II energy goes with that size:
-/// docs/validation/one_concrete.md. The other exponents are those of the plane: a guess.
+/// docs/validation/one_concrete.md. That the other exponents are those of the plane is a guess.
 constexpr FirstGuess kSpace[] = {
     {.source = "those of cases/starter_3d.toml",
      .law = MixedMode::name,
@@ -39,8 +42,8 @@ constexpr FirstGuess kSpace[] = {
      .mortar_modulus = 29.4e9,
      .strength = 34.3e6,
      .modulus_over_estimate = 1.08,
-     .of_stiffness = 0.22,
-     .of_factor = 0.79,
+     .of_stiffness = kOfStiffness,
+     .of_factor = kOfFactor,
      .block_size = 8.06e-3,
      .of_block_size = -0.08},
     {.source = "those of cases/hot_strength_3d.toml",
@@ -49,8 +52,8 @@ constexpr FirstGuess kSpace[] = {
      .mortar_modulus = 29.4e9,
      .strength = 34.3e6,
      .modulus_over_estimate = 1.08,
-     .of_stiffness = 0.22,
-     .of_factor = 0.79,
+     .of_stiffness = kOfStiffness,
+     .of_factor = kOfFactor,
      .block_size = 8.06e-3,
      .of_block_size = -0.3}};
 

@@ -39,8 +39,10 @@ struct CrackNetwork {
 /// the distance; where it narrows evenly from its middle to an end, 2 w_m^2 w_e^2 / (w_m + w_e) stands for
 /// width^3. Where several meet, the pressure of their common end is eliminated (star and delta, Karimi-Fard,
 /// Durlofsky and Aziz 2004): an end holds no vapour. At an end on the outline, every crack opens to the
-/// outside alone. \param opens      true for outer faces that are not sealed \param roughness  1 for smooth
-/// walls, up to 5
+/// outside alone.
+///
+/// \param opens      true for outer faces that are not sealed
+/// \param roughness  1 for smooth walls, up to 5
 CrackNetwork crack_network(const MoistureMesh& mesh, const std::vector<OpenFace>& cracks,
                            const std::vector<bool>& opens, double roughness);
 

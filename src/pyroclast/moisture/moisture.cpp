@@ -187,11 +187,15 @@ PoreConditions Moisture::conditions(int cell) const {
   return {pores(cell), state_.temperature[cell], state_.highest_temperature[cell]};
 }
 
-/// Returns the conditions in a crack, which lie between those of the cells beside it.
-PoreConditions Moisture::crack_conditions(int face, const std::vector<double>& temperature) const {
+/// Returns the temperature of a crack, degC: the mean of the cells beside it.
+double Moisture::crack_temperature(int face, const std::vector<double>& temperature) const {
   const auto [a, b] = mesh_.faces[face].cells;
-  const double mean = 0.5 * (temperature[a] + temperature[b]);
-  return {pores(a), mean, mean};
+  return 0.5 * (temperature[a] + temperature[b]);
+}
+
+PoreConditions Moisture::crack_conditions(int face, const std::vector<double>& temperature) const {
+  const double mean = crack_temperature(face, temperature);
+  return {pores(mesh_.faces[face].cells[0]), mean, mean};
 }
 
 /// Returns the part of one side in what flows through a face, from 0 to 1.
@@ -355,8 +359,8 @@ void Moisture::begin_trial(const std::vector<double>& temperature) {
     at_.push_back(crack_conditions(face, temperature));
     target_[node] = state_.crack_water[i] / volume_[node];
     pressure_[node] =
-        state_.crack_pressure[i] *
-        (at_[node].saturation_pressure / crack_conditions(face, state_.temperature).saturation_pressure);
+        state_.crack_pressure[i] * (at_[node].saturation_pressure /
+                                    water::saturation_pressure(crack_temperature(face, state_.temperature)));
   }
   for (std::size_t f = 0; f < mesh_.outer_faces.size(); ++f) {
     const int c = mesh_.outer_faces[f].cell;

@@ -147,6 +147,7 @@ class Moisture {
   const PoreMaterial& pores(int cell) const { return *materials_[mesh_.material[cell]]; }
   int node_count() const { return static_cast<int>(volume_.size()); }
   PoreConditions conditions(int cell) const;
+  double crack_temperature(int face, const std::vector<double>& temperature) const;
   PoreConditions crack_conditions(int face, const std::vector<double>& temperature) const;
   void add_to_cell(int cell, double water);
   double share_of_side(int face, int side) const;

@@ -181,7 +181,7 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
 
 BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
-                             const PorePressures* water, BodyProperties memory) {
+                             const std::optional<PorePressures>& water, BodyProperties memory) {
   const std::vector<int> zone_materials = materials_of_zones(model);
   BodyProperties p = std::move(memory);
   p.pore_pressure = water ? water->of_contacts : std::vector<double>();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
@@ -68,10 +69,11 @@ struct PorePressures {
 /// Returns the parameters of every zone and contact at the field's temperatures, and the creep of zones on
 /// their way there. Throws Error when a property is not defined at one of the temperatures.
 /// \param before  highest temperatures at the exchanges so far
-/// \param water   pressures of pore water, which widen zones as free strain does and part contacts; null:
-/// none \param memory  properties whose memory is used again
+/// \param water   pressures of pore water, which widen zones as free strain does and part contacts
+/// \param memory  properties whose memory is used again
 BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
-                             const PorePressures* water = nullptr, BodyProperties memory = {});
+                             const std::optional<PorePressures>& water = std::nullopt,
+                             BodyProperties memory = {});
 
 }  // namespace pyroclast

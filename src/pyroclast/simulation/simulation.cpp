@@ -33,7 +33,8 @@ TemperatureField make_field(const Model& model, const std::vector<BlockMaterial>
 
 std::unique_ptr<Motion> make_motion_at(const Model& model, const ConcreteMaterials& materials,
                                        const TemperatureField& field, const HottestTemperatures& hottest,
-                                       const PorePressures* water, const MechanicsParameters& parameters,
+                                       const std::optional<PorePressures>& water,
+                                       const MechanicsParameters& parameters,
                                        const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
   for (const auto& material : materials.block_materials)
@@ -135,8 +136,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
     stress_free = stress_free_gridpoints(*moving->stress_free, *model_, numbers_.mean_size);
   hottest_ = HottestTemperatures(*model_, materials_, field_, stress_free);
   const auto water = moisture_ ? moisture_->pressures(nullptr) : std::nullopt;
-  motion_ = make_motion_at(*model_, materials_, field_, hottest_, water ? &*water : nullptr,
-                           moving->mechanics, team_);
+  motion_ = make_motion_at(*model_, materials_, field_, hottest_, water, moving->mechanics, team_);
   for (const specimen::Notch& notch : body.notches)
     if (const auto parted = model_->contact_sets.find(notch.name); parted != model_->contact_sets.end())
       for (int contact : parted->second)
@@ -236,8 +236,8 @@ void Simulation::follow_heat() {
 /// Hands the properties of materials to the mechanics, at the temperatures and pore pressures that there are.
 void Simulation::hand_over(const ConcreteMaterials& materials) {
   const auto water = moisture_ ? moisture_->pressures(motion_.get()) : std::nullopt;
-  earlier_ = motion_->set_properties(properties_at(*model_, materials, field_, hottest_,
-                                                   water ? &*water : nullptr, std::exchange(earlier_, {})));
+  earlier_ = motion_->set_properties(
+      properties_at(*model_, materials, field_, hottest_, water, std::exchange(earlier_, {})));
   hottest_.note_exchange(field_);
 }
 
