@@ -18,7 +18,8 @@ struct LedgerEntry {
   const char* label;  ///< few words for legends
   const char* meaning;
   double (*value)(const Ledger&);
-  bool is_of_pore_pressure = false;  ///< true for an entry of bodies on whose contacts pore water presses
+  /// Tells whether the entry stands in a ledger: some are of some bodies alone.
+  bool (*is_there)(const Ledger&) = [](const Ledger&) { return true; };
 };
 
 /// Returns the column of the ledger's error.

@@ -76,6 +76,26 @@ bool Body<Dim>::ties_join_parts() const {
 }
 
 template <int Dim>
+void Body<Dim>::leave_out(int face) {
+  if (is_left_out.empty()) {
+    is_left_out.resize(static_cast<std::size_t>(model.face_count()));
+    left_out = made<std::uint8_t>(layout.faces.size());
+    state.left_out = {left_out.data(), left_out.size()};
+  }
+  is_left_out[face] = true;
+  const int slot = layout.contact_slot[model.face_contacts[face]];
+  left_out[layout.face_pack_of_point[slot / kLanes]] |=
+      static_cast<std::uint8_t>(1U << static_cast<unsigned>(slot % kLanes));
+}
+
+template <int Dim>
+void Body<Dim>::leave_none_out() {
+  is_left_out.clear();
+  left_out = {};
+  state.left_out = {};
+}
+
+template <int Dim>
 int Body<Dim>::constraint_pack_of(int gridpoint) const {
   const int bundle = layout.bundle_of(gridpoint), index = made_constraints[bundle];
   if (index < 0) return -1;

@@ -35,6 +35,7 @@ struct MechanicsParameters {
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
   FoundParameters found;   ///< contacts that are found; finite kinematics in the plane only
   InstructionSet instructions = best_instruction_set();
+  bool loses_blocks = false;  ///< true where blocks may leave the body, see Mechanics::remove
   // The parameters from here on change speed, not results.
   LayoutParameters layout;
   /// Least zones of a thread; with fewer a thread waits longer at barriers than it saves.
@@ -85,6 +86,8 @@ struct Books {
   double begun_property_change = 0.0, begun_mass_scaling = 0.0;
   double creep_work = 0.0;     ///< work of creep
   double pore_pressure = 0.0;  ///< work of pore pressures up to their last change
+  double removed = 0.0, begun_removed = 0.0;  ///< energy of blocks that are gone, as of properties
+  double gravity = 0.0;                       ///< work of the weight of blocks that are gone
   double start = 0.0;          ///< kinetic energy of the velocities at the start
 };
 
@@ -113,6 +116,13 @@ struct Body {
     return properties.contacts.law(properties.of_contact[contact]);
   }
   const LawTable& law_of_pack(int face_pack) const { return *laws[arrays.law_of_faces[face_pack]]; }
+  /// Tells whether a block has left the body, see Mechanics::remove.
+  bool is_gone(int block) const { return !gone.empty() && gone[block]; }
+  /// Leaves a face out: its contact points keep what they remember, and bear nothing.
+  void leave_out(int face);
+  bool leaves_out(int face) const { return !is_left_out.empty() && is_left_out[face]; }
+  /// Takes all faces in again.
+  void leave_none_out();
   /// Returns the first bundle of the block whose gridpoints, or some of them, stand in a bundle.
   int first_bundle_of(int bundle) const;
   /// Tells whether gridpoints of a block that stands in parts are tied: its parts then wait for each other.
@@ -169,6 +179,10 @@ struct Body {
   double real_mass = 0.0, moving_mass = 0.0;  ///< kg
 
   std::unique_ptr<FoundData> found;  ///< contacts that are found; null where contacts are the first ones
+
+  std::vector<bool> gone;            ///< by block, see is_gone; empty as long as none is
+  std::vector<bool> is_left_out;     ///< by face, see leaves_out; empty as long as none is
+  FlatArray<std::uint8_t> left_out;  ///< bits of these faces, see State::left_out
 
   std::int64_t steps = 0;
   Books books;

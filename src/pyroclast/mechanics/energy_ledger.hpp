@@ -37,7 +37,9 @@ struct EnergyLedger {
   double zones = 0.0, contacts = 0.0, kinetic = 0.0;
   // lost
   Dissipation dissipated;
-  double local_damping = 0.0, viscous_damping = 0.0;
+  double local_damping = 0.0, viscous_damping = 0.0, removed = 0.0;
+  bool has_pore_pressure = false;  ///< true for a body on whose contacts pore water presses
+  bool loses_blocks = false;       ///< true for a body that blocks may leave
 
   /// Sums the entries of one side, without those of `dissipated`.
   double sum(LedgerSide side, double from = 0.0) const;
@@ -61,7 +63,8 @@ inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
      [](const EnergyLedger& e) { return e.property_change; }},
     {"pore_pressure", "energy_pore_pressure_J", LedgerSide::put_in, "pore pressure",
      "work of the pressure of pore water on contacts that open",
-     [](const EnergyLedger& e) { return e.pore_pressure; }, true},
+     [](const EnergyLedger& e) { return e.pore_pressure; },
+     [](const EnergyLedger& e) { return e.has_pore_pressure; }},
     {"mass_scaling", "energy_mass_scaling_J", LedgerSide::put_in, "mass scaling",
      "change of kinetic energy when scaled masses follow the stiffness",
      [](const EnergyLedger& e) { return e.mass_scaling; }},
@@ -75,6 +78,9 @@ inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
      [](const EnergyLedger& e) { return e.local_damping; }},
     {"viscous_damping", "energy_viscous_damping_J", LedgerSide::lost, "viscous damping", "to viscous damping",
      [](const EnergyLedger& e) { return e.viscous_damping; }},
+    {"removed", "energy_removed_J", LedgerSide::lost, "gone with pieces",
+     "held by blocks that have left the body, and by what they ceased to press on",
+     [](const EnergyLedger& e) { return e.removed; }, [](const EnergyLedger& e) { return e.loses_blocks; }},
     {"error", "energy_error_J", LedgerSide::error, "error", "energy put in, less energy held and lost",
      [](const EnergyLedger& e) { return e.error(); }},
 });

@@ -84,6 +84,13 @@ void Masses<Dim>::scale() {
 template <int Dim>
 void Masses<Dim>::set_moving_mass() {
   for (int g = 0; g < body_.model.gridpoint_count(); ++g) body_.mass[g] = scaled_mass(g);
+  forget_gone();
+}
+
+template <int Dim>
+void Masses<Dim>::forget_gone() {
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g)
+    if (body_.gravity_mass[g] == 0.0) body_.mass[g] = 0.0;
   body_.moving_mass = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) { return body_.mass[g]; });
   set_step_over_mass();
 }
@@ -93,7 +100,7 @@ void Masses<Dim>::set_step_over_mass() {
   auto& step_over_mass = body_.arrays.step_over_mass;
   std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle slots never move
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
-    step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
+    if (body_.mass[g] > 0.0) step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
   if constexpr (Dim == 2)
     if (body_.found) FoundContacts(body_).follow_masses();
 }
@@ -104,6 +111,7 @@ TimeStepLimit Masses<Dim>::real_mass_limit() const {
   TimeStepLimit limit{std::numeric_limits<double>::infinity(), 0};
   const auto [first, last] = body_.layout.chunks.gridpoints.own();
   for (int g = first; g < last; ++g) {
+    if (body_.gravity_mass[g] == 0.0) continue;  // gone
     const double step =
         body_.parameters.safety * 2.0 *
         std::sqrt(body_.gravity_mass[g] / (body_.stiffness[g] * (1.0 + body_.parameters.local_damping)));
@@ -119,7 +127,7 @@ void Masses<Dim>::follow_state() {
   if (body_.parameters.mass == MassChoice::scaled)
     set_moving_mass();
   else
-    set_step_over_mass();
+    forget_gone();
 }
 
 template class Masses<2>;

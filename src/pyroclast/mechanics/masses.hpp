@@ -27,6 +27,8 @@ class Masses {
   void measure_stiffness();
   /// Scales the masses anew after a change of the stiffness.
   void scale();
+  /// Takes the mass of gone blocks away, see GoneBlocks.
+  void forget_gone();
   /// Sets what follows from stiffness and parameters of a state that was read.
   void follow_state();
   /// Returns the stable step with real mass, paper Eq. (9).

@@ -9,6 +9,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/found/found_contacts.hpp"
+#include "pyroclast/mechanics/gone.hpp"
 
 namespace pyroclast {
 
@@ -46,6 +47,7 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
   Body<Dim>& body = *body_;
   if (!properties.creep.empty() && !body.creeps())
     throw Error("a body made of materials that do not creep cannot begin to creep");
+  GoneBlocks<Dim>(body).leave_out_of(properties);
   change_properties([&] {
     Properties<Dim>(body).begin_creep(properties.creep);
     std::swap(body.properties, properties);
@@ -54,20 +56,41 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
 }
 
 template <int Dim>
+void Mechanics<Dim>::remove(const std::vector<int>& blocks) {
+  if (blocks.empty()) return;
+  Body<Dim>& body = *body_;
+  if (!body.parameters.loses_blocks) throw Error("this body was made to keep its blocks");
+  commit_creep();
+  GoneBlocks<Dim> gone(body);
+  gone.book(blocks);
+  const Added added = change_at_last_forces([&] {
+    gone.remove(blocks);
+    if constexpr (Dim == 2)
+      if (body.found) FoundContacts(body).forget_gone();
+  });
+  body.books.removed -= added.now;
+  body.books.begun_removed -= added.begun;
+  Masses<Dim>(body).forget_gone();
+}
+
+template <int Dim>
 void Mechanics<Dim>::commit_creep() {
   if (!body_->creep_under_way.empty()) change_properties([&] { Properties<Dim>(*body_).end_creep(); });
 }
 
-/// \param change  function that changes properties or creep
+/// Makes a change of the body. The ledger counts the work of forces by the trapezoidal rule. So the change is
+/// made at the displacements of the last step's forces, and the half step already begun with the old ones is
+/// made good.
+///
+/// \param change  function that changes properties, creep or blocks
 template <int Dim>
 template <class Change>
-void Mechanics<Dim>::change_properties(Change change) {
-  // The ledger counts the work of forces by the trapezoidal rule. So the change is made at the displacements
-  // of the last step's forces, and the half step already begun with the old ones is made good.
+Mechanics<Dim>::Added Mechanics<Dim>::change_at_last_forces(Change change) {
   Body<Dim>& body = *body_;
   const EnergyLedger before = totals().energy();
   const double held_before = before.zones + before.contacts + before.dissipated.total();
   const double pushed_before = totals().work_of_pore_pressure();
+  const auto old_force = read().forces(), velocity = read().velocities();
   change();
   body.books.pore_pressure += pushed_before - totals().work_of_pore_pressure();
   Properties<Dim>(body).place();
@@ -75,7 +98,6 @@ void Mechanics<Dim>::change_properties(Change change) {
     if (body.found) FoundContacts(body).follow_properties();
   auto& displacement = body.arrays.displacement;
   const auto next = displacement;
-  const auto old_force = read().forces();
   const double begun = body.steps > 0 ? time_step() : 0.0;
   for (std::size_t slot = 0; slot < next.size(); ++slot)
     displacement[slot] -= vector_at<Dim>(body.state.velocity, static_cast<int>(slot)) * begun;
@@ -83,10 +105,20 @@ void Mechanics<Dim>::change_properties(Change change) {
   std::copy(next.begin(), next.end(), displacement.begin());
 
   const EnergyLedger after = totals().energy();
-  body.books.property_change += after.zones + after.contacts + after.dissipated.total() - held_before;
-  body.books.begun_property_change -= chunked_sum(body.layout.chunks.gridpoints, [&](int g) {
-    return 0.5 * begun * dot(read().force(g) - old_force[g], read().velocity(g));
+  const double begun_work = chunked_sum(body.layout.chunks.gridpoints, [&](int g) {
+    return 0.5 * begun * dot(read().force(g) - old_force[g], velocity[g]);
   });
+  return {after.zones + after.contacts + after.dissipated.total() - held_before, -begun_work};
+}
+
+/// \param change  function that changes properties or creep
+template <int Dim>
+template <class Change>
+void Mechanics<Dim>::change_properties(Change change) {
+  Body<Dim>& body = *body_;
+  const Added added = change_at_last_forces(change);
+  body.books.property_change += added.now;
+  body.books.begun_property_change += added.begun;
 
   Masses<Dim> masses(body);
   masses.measure_stiffness();
@@ -120,6 +152,7 @@ void Mechanics<Dim>::advance(int steps) {
   constraints().order();
   body.books.property_change += std::exchange(body.books.begun_property_change, 0.0);
   body.books.mass_scaling += std::exchange(body.books.begun_mass_scaling, 0.0);
+  body.books.removed += std::exchange(body.books.begun_removed, 0.0);
   for (int left = steps; left > 0;) {
     const int now = std::min(left, steps_to_hand_over());
     left -= now;
@@ -159,6 +192,8 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("creep_work", body.books.creep_work);
   if (body.has_pore_pressure()) visitor.visit("pore_pressure_work", body.books.pore_pressure);
   visitor.visit("start", body.books.start);
+  if (visitor.replaces()) body.leave_none_out();
+  if (body.parameters.loses_blocks) GoneBlocks<Dim>(body).visit_state(visitor);
   // the stiffness is that of the contact frames at the last change of properties; they have turned since
   visitor.visit_by_chunk("stiffness", body.stiffness, body.layout.chunks.gridpoints, state::at_least(0));
   body.visit_arrays(visitor);

@@ -46,6 +46,12 @@ class Mechanics {
   /// `property_change` closes the ledger. Does nothing where no zone creeps.
   void commit_creep();
 
+  /// Takes blocks out of the body for good, with all that acts on them: they have no force, no mass and no
+  /// motion any more. `EnergyLedger::removed` counts the energy that they hold, and what they cease to bear.
+  /// Velocities, ties and forces that are prescribed must act on none of them. Needs
+  /// `MechanicsParameters::loses_blocks`.
+  void remove(const std::vector<int>& blocks);
+
   /// Notes the step for contacts that have cracked since the last call.
   void note_cracks() { pyroclast::note_cracks(*body_); }
 
@@ -81,6 +87,12 @@ class Mechanics {
   double time_step() const { return body_->time_step(); }
 
  private:
+  /// Energy that a change adds to a body, J: at once, and through the half step already begun.
+  struct Added {
+    double now = 0.0, begun = 0.0;
+  };
+  template <class Change>
+  Added change_at_last_forces(Change change);
   template <class Change>
   void change_properties(Change change);
   int steps_to_hand_over();

@@ -93,11 +93,13 @@ class Motion {
   virtual double mass_ratio() const = 0;
   virtual TimeStepLimit real_mass_limit() const = 0;
   virtual BodyProperties set_properties(BodyProperties properties) = 0;
+  virtual void remove(const std::vector<int>& blocks) = 0;
   virtual void commit_creep() = 0;
   virtual void note_cracks() = 0;
   [[nodiscard]] virtual bool break_contact(int contact) = 0;
   virtual void visit_state(StateVisitor& visitor) = 0;
 
+  virtual bool is_gone(int block) const = 0;  ///< Tells whether a block has left the body.
   virtual bool creeps() const = 0;  ///< Tells whether zones of this body can creep.
   /// Tells whether water in the pores presses on the contacts of this body.
   virtual bool has_pore_pressure() const = 0;
@@ -143,10 +145,12 @@ class MotionOf final : public Motion {
   BodyProperties set_properties(BodyProperties properties) override {
     return mechanics_.set_properties(std::move(properties));
   }
+  void remove(const std::vector<int>& blocks) override { mechanics_.remove(blocks); }
   void commit_creep() override { mechanics_.commit_creep(); }
   void note_cracks() override { mechanics_.note_cracks(); }
   [[nodiscard]] bool break_contact(int contact) override { return mechanics_.break_contact(contact); }
   void visit_state(StateVisitor& visitor) override { mechanics_.visit_state(visitor); }
+  bool is_gone(int block) const override { return mechanics_.body().is_gone(block); }
   bool creeps() const override { return mechanics_.body().creeps(); }
   bool has_pore_pressure() const override { return mechanics_.body().has_pore_pressure(); }
   const std::vector<const LawTable*>& laws() const override { return mechanics_.body().laws; }

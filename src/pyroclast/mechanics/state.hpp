@@ -234,8 +234,9 @@ struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
   const PackFunctions<Dim>* laws = nullptr;  ///< functions of the laws of the body
   FoundRows* found = nullptr;  ///< contacts that are found; null where contacts are the first ones
-  /// Bits of the faces of each pack of faces that are handed over to found contacts; empty without these.
-  ConstView<std::uint8_t> handed_over;
+  /// Bits of the faces of each pack of faces that bear nothing any more: handed over to found contacts, or of a
+  /// block that is gone. Empty as long as there are none.
+  ConstView<std::uint8_t> left_out;
 
   bool weighs() const { return !this->real_mass.empty(); }
 };

@@ -142,6 +142,9 @@ EnergyLedger Totals<Dim>::energies() const {
   EnergyLedger e;
   e.property_change = body_.books.property_change;
   e.mass_scaling = body_.books.mass_scaling;
+  e.removed = body_.books.removed;
+  e.has_pore_pressure = body_.has_pore_pressure();
+  e.loses_blocks = body_.parameters.loses_blocks;
   e.zones = sums.zones;
   e.kinetic = sums.kinetic;
   e.local_damping = sums.local_damping;
@@ -153,9 +156,9 @@ EnergyLedger Totals<Dim>::energies() const {
   e.dissipated = dissipated();
   // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
-    e.gravity = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
-      return body_.gravity_mass[g] * dot(body_.state.gravity, read_.displacement_of_force(g));
-    });
+    e.gravity = body_.books.gravity + chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
+                  return body_.gravity_mass[g] * dot(body_.state.gravity, read_.displacement_of_force(g));
+                });
   e.pore_pressure = body_.books.pore_pressure + work_of_pore_pressure();
   return e;
 }

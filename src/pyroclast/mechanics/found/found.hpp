@@ -99,9 +99,8 @@ struct FoundData {
   std::vector<int> first_contact;  ///< first contact of each interface; -1 where it has none
   std::vector<std::vector<int>> contacts_of_block;
   GridpointContacts at_gridpoint;
-  std::vector<int> face_of_lane;        ///< face of each lane of the packs of faces; -1 where idle
-  std::vector<bool> is_handed_over;     ///< by face of the model
-  FlatArray<std::uint8_t> handed_over;  ///< bits of these faces, see State::handed_over
+  std::vector<int> face_of_lane;     ///< face of each lane of the packs of faces; -1 where idle
+  std::vector<bool> is_handed_over;  ///< by face of the model; true for those of gone blocks too
 
   std::vector<FoundPair> pairs;         ///< pairs that are near, or not as new ones, by key
   std::vector<std::array<int, 2>> far;  ///< keys of far pairs, ascending

@@ -173,9 +173,7 @@ void FoundContacts::make(Body<2>& body) {
     found.block_of_slot[body.layout.gridpoint_slot[g]] = block_of[g];
   found.arrays.searched = body.made<Vec<2>>(slots);
   found.searched_far = body.made<Vec<2>>(slots);
-  found.handed_over = body.made<std::uint8_t>(body.layout.faces.size());
   body.state.found = &found.seen;
-  body.state.handed_over = {found.handed_over.data(), found.handed_over.size()};
 }
 
 Vec<2> FoundContacts::place(int gridpoint, const FlatArray<Vec<2>>& displacement) const {
@@ -769,7 +767,7 @@ std::vector<int> FoundContacts::broken_faces() const {
   for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {
     const LawTable& law = body_.law_of_pack(pack);
     const auto count = static_cast<int>(law.internals(2).size());
-    unsigned broken = 0xffU & ~static_cast<unsigned>(found_.handed_over[pack]);
+    unsigned broken = 0xffU & ~static_cast<unsigned>(body_.left_out.empty() ? 0 : body_.left_out[pack]);
     for (int point = 0; point < 2; ++point) {
       unsigned of_point = 0;
       for (const Remembers what : kDamages)
@@ -791,9 +789,7 @@ std::vector<int> FoundContacts::broken_faces() const {
 void FoundContacts::mark_handed_over(int face) {
   found_.is_handed_over[face] = true;
   for (int side = 0; side < 2; ++side) found_.facets[found_.outline + 2 * face + side].is_free = true;
-  const int slot = body_.layout.contact_slot[body_.model.face_contacts[face]];
-  found_.handed_over[body_.layout.face_pack_of_point[slot / kLanes]] |=
-      static_cast<std::uint8_t>(1U << static_cast<unsigned>(slot % kLanes));
+  body_.leave_out(face);
 }
 
 /// Returns the pair of the two sides of a face, with the areas, jumps and history of its contact points at
@@ -849,6 +845,38 @@ void FoundContacts::hand_over() {
   search();
   leave_out_overlaps(fresh, 0.0);
   make_rows();
+}
+
+void FoundContacts::forget_gone() {
+  take_back();
+  const auto is_gone = [&](int facet) { return body_.is_gone(found_.facets[facet].block); };
+  for (FoundPair& pair : found_.pairs) {
+    if (!is_gone(pair.facets[0]) && !is_gone(pair.facets[1])) continue;
+    FoundPair lost = new_pair(pair.facets);
+    lost.is_near = false;
+    lost.lost = pair.lost;
+    lost.lost_area = pair.lost_area;
+    lost.lost_damping = pair.lost_damping;
+    pair = std::move(lost);
+  }
+  std::vector<bool> fresh(found_.facets.size());
+  for (int face = 0; face < body_.model.face_count(); ++face) {
+    const int side = found_.outline + 2 * face;
+    if (found_.is_handed_over[face] || (!is_gone(side) && !is_gone(side + 1))) continue;
+    mark_handed_over(face);
+    fresh[side] = fresh[side + 1] = true;
+  }
+  bury_gone();
+  forget_lists();
+  search();
+  leave_out_overlaps(fresh, 0.0);
+  make_rows();
+}
+
+/// Takes the facets of gone blocks out of all searches.
+void FoundContacts::bury_gone() {
+  for (BlockFacet& facet : found_.facets)
+    if (body_.is_gone(facet.block)) facet.is_free = false;
 }
 
 /// Leaves out the present overlap of pairs that lie in each other as they begin.
@@ -948,7 +976,6 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
   if (!visitor.replaces()) return;
 
   std::fill(found_.is_handed_over.begin(), found_.is_handed_over.end(), false);
-  std::fill(found_.handed_over.begin(), found_.handed_over.end(), std::uint8_t{0});
   for (BlockFacet& facet : found_.facets) facet.is_free = facet.face < 0;
   for (const int face : faces) mark_handed_over(face);
   found_.pairs.clear();
@@ -972,6 +999,7 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
     found_.pairs.push_back(std::move(pair));
   }
   visitor.require(taken == numbers.size(), "numbers", "are more than the pairs have");
+  bury_gone();
   forget_lists();
 }
 

@@ -26,6 +26,8 @@ class FoundContacts {
   void search_where_needed();
   /// Hands faces over to pairs whose contact points are all broken, with all that the points remember.
   void hand_over();
+  /// Forgets the pairs of blocks that are gone, but for what they lost, and frees what such blocks covered.
+  void forget_gone();
   /// Lets the rows follow new properties: every end goes through its law in the next step.
   void follow_properties();
   /// Lets the damping follow new masses.
@@ -75,6 +77,7 @@ class FoundContacts {
   void list_loads();
   void take_back();
   void mark_handed_over(int face);
+  void bury_gone();
   std::vector<int> broken_faces() const;
   FoundPair pair_of_face(int face) const;
   void leave_out_overlaps(const std::vector<bool>& fresh, double tolerance);

@@ -133,19 +133,15 @@ struct Contacts {
   static void update(State<Dim>& s, int first, int last, bool measure) {
     with_kinematics(s, [&](auto kinematics) {
       const auto packs = measure ? update_packs<kinematics(), true> : update_packs<kinematics(), false>;
-      if constexpr (Dim == 2 && kinematics() == Kinematics::finite)
-        if (!s.handed_over.empty()) {
-          const auto some_handed_over = measure ? update_handed_over<true> : update_handed_over<false>;
-          for (int pack = first; pack < last;) {
-            const bool hands_over = s.handed_over[pack] != 0;
-            int end = pack + 1;
-            while (end < last && (s.handed_over[end] != 0) == hands_over) ++end;
-            (hands_over ? some_handed_over : packs)(s, pack, end);
-            pack = end;
-          }
-          return;
-        }
-      packs(s, first, last);
+      if (s.left_out.empty()) return packs(s, first, last);
+      const auto others = measure ? update_others<kinematics(), true> : update_others<kinematics(), false>;
+      for (int pack = first; pack < last;) {
+        const bool lacks_some = s.left_out[pack] != 0;
+        int end = pack + 1;
+        while (end < last && (s.left_out[end] != 0) == lacks_some) ++end;
+        (lacks_some ? others : packs)(s, pack, end);
+        pack = end;
+      }
     });
   }
 
@@ -163,21 +159,22 @@ struct Contacts {
     }
   }
 
-  /// Updates packs of faces of which found pairs press some: these keep their history, and bear nothing.
-  template <bool kMeasure>
-  [[gnu::flatten, gnu::noinline]] static void update_handed_over(State<Dim>& __restrict s, int first_pack,
-                                                                 int last_pack) {
+  /// Updates packs of which some faces are left out: these keep their history, and bear nothing.
+  template <Kinematics kKinematics, bool kMeasure>
+  [[gnu::flatten, gnu::noinline]] static void update_others(State<Dim>& __restrict s, int first_pack,
+                                                            int last_pack) {
     for (int pack = first_pack; pack < last_pack; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
-      const OtherFaces faces{Real::Truth::from_bits(s.handed_over[pack])};
+      const OtherFaces faces{Real::Truth::from_bits(s.left_out[pack])};
       const int first = s.layout.first_point_of(pack);
       if (any(faces.area(s.layout.points[first]) > 0.0)) {
-        update_pack<Kinematics::finite, kMeasure>(s, pack, faces);
+        update_pack<kKinematics, kMeasure>(s, pack, faces);
         continue;
       }
-      for (int at = first; at < s.layout.first_point_of(pack + 1); ++at)
-        for (auto* const forces : {&s.contact_force[slot_of(at, 0)], &s.turning_force[slot_of(at, 0)]})
-          R::store(Vector{}, forces);
+      for (int at = first; at < s.layout.first_point_of(pack + 1); ++at) {
+        R::store(Vector{}, &s.contact_force[slot_of(at, 0)]);
+        if constexpr (kKinematics == Kinematics::finite) R::store(Vector{}, &s.turning_force[slot_of(at, 0)]);
+      }
       if constexpr (kMeasure) s.face_sums[pack] = {};
     }
   }
@@ -188,13 +185,13 @@ struct Contacts {
     static void put(const Real& number, double* to) { number.store(to); }
     static Real lost(const Real& more) { return more; }
   };
-  /// Faces of a pack that are not handed over to found pairs.
+  /// Faces of a pack that are not left out.
   struct OtherFaces {
-    typename Real::Truth handed_over = Real::Truth::from_bits(0);
+    typename Real::Truth left_out = Real::Truth::from_bits(0);
 
-    Real area(const PointPack& point) const { return select(handed_over, Real(0.0), Real::load(point.area)); }
-    void put(const Real& number, double* to) const { select(handed_over, Real::load(to), number).store(to); }
-    Real lost(const Real& more) const { return select(handed_over, Real(0.0), more); }
+    Real area(const PointPack& point) const { return select(left_out, Real(0.0), Real::load(point.area)); }
+    void put(const Real& number, double* to) const { select(left_out, Real::load(to), number).store(to); }
+    Real lost(const Real& more) const { return select(left_out, Real(0.0), more); }
   };
 
   /// Implements PackFunctions::update_lanes.

@@ -220,11 +220,11 @@ Column dissipated_column(std::string_view name, std::string label = {}) {
 /// Calls one of two functions for each energy, in the order of the columns: `of_entry` for an entry of the
 /// ledger, and `of_dissipated`, with its number, for an energy that contact laws or creep dissipate.
 template <class OfEntry, class OfDissipated>
-void for_each_energy(bool has_pore_pressure, std::size_t dissipations, OfEntry of_entry,
+void for_each_energy(const EnergyLedger& ledger, std::size_t dissipations, OfEntry of_entry,
                      OfDissipated of_dissipated) {
   bool are_told = false;
   for (const auto& entry : kEnergies) {
-    if (entry.is_of_pore_pressure && !has_pore_pressure) continue;
+    if (!entry.is_there(ledger)) continue;
     const bool follows = entry.side == LedgerSide::lost || entry.side == LedgerSide::error;
     if (follows && !std::exchange(are_told, true))
       for (std::size_t i = 0; i < dissipations; ++i) of_dissipated(i);
@@ -233,10 +233,10 @@ void for_each_energy(bool has_pore_pressure, std::size_t dissipations, OfEntry o
 }
 
 /// Returns the columns of the energies, with those of the dissipated ones.
-std::vector<Column> energy_columns(bool has_pore_pressure, const std::vector<Column>& dissipated) {
+std::vector<Column> energy_columns(const EnergyLedger& ledger, const std::vector<Column>& dissipated) {
   std::vector<Column> columns;
   for_each_energy(
-      has_pore_pressure, dissipated.size(),
+      ledger, dissipated.size(),
       [&](const auto& entry) { columns.push_back(column_of_entry(entry, "energy", &Side::of_energy)); },
       [&](std::size_t i) { columns.push_back(dissipated[i]); });
   return columns;
@@ -264,14 +264,14 @@ Gauge motion_gauge(const Motion& motion) {
   std::vector<Column> dissipated;
   for (const auto& name : motion.dissipations())
     dissipated.push_back(dissipated_column(name, label_of_loss(motion, name)));
-  append(gauge.columns, energy_columns(motion.has_pore_pressure(), dissipated));
+  append(gauge.columns, energy_columns(motion.totals().energy(), dissipated));
   gauge.read = [](const Simulation& simulation) {
     const MotionReading measured = measure_motion(simulation.motion());
     std::vector<double> values;
     for (const auto& column : kMotion) values.push_back(column.value(measured));
     const auto& lost = measured.energy.dissipated.energies;
     for_each_energy(
-        simulation.motion().has_pore_pressure(), lost.size(),
+        measured.energy, lost.size(),
         [&](const auto& entry) { values.push_back(entry.value(measured.energy)); },
         [&](std::size_t i) { values.push_back(lost[i]); });
     return values;
@@ -472,11 +472,13 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
 
 std::vector<Column> possible_gauge_columns() {
   std::vector<Column> columns;
+  EnergyLedger all;
+  all.has_pore_pressure = all.loses_blocks = true;
   append(columns, columns_of(kClock));
   append(columns, columns_of(kTemperature));
   append(columns, columns_of(kPress));
   append(columns, columns_of(kMotion));
-  append(columns, energy_columns(true, {dissipated_column("NAME")}));
+  append(columns, energy_columns(all, {dissipated_column("NAME")}));
   for (const CrackColumn& column : kCracks) columns.push_back(crack_column(column, kKindOfCracks));
   append(columns, columns_of(kOpening));
   columns.push_back({"NAME_UNIT", "its own", kMeaningOfRecord, ColumnRole::record});
