@@ -248,6 +248,48 @@ TEST(Moisture, SealedBodiesKeepTheirWater) {
     EXPECT_NEAR(body.moisture.state().content[c] / before[c], 1.0, 1e-12);
 }
 
+// Promise: cells that leave take their water along, and the others dry where they are bared as a body that never
+// had them.
+TEST(Moisture, GoesOnWithoutCellsThatLeave) {
+  const MoistAir air{0.018, Curve::constant(0.0138)};
+  const auto reduced = [](MoistBody<2>& body) {
+    std::vector<bool> stays(body.model.block_count(), true);
+    stays[0] = false;
+    const auto now = outline(body.model, body.geometry, stays);
+    body.moisture.reduce_to(moisture_mesh(body.model, body.geometry, stays, now),
+                            earlier_faces(body.outer, now));
+  };
+  auto body = strip(6, 0.06, high_strength()), rest = strip(5, 0.05, high_strength());
+  for (auto* of : {&body, &rest}) {
+    of->moisture.apply(of->end(0.0), air);
+    of->moisture.start_with_saturation(0.7, 20.0);
+  }
+  reduced(body);
+  EXPECT_NEAR(body.moisture.stored(), rest.moisture.stored(), 1e-12);
+  body.moisture.advance(600.0, std::vector<double>(5, 150.0));
+  rest.moisture.advance(600.0, std::vector<double>(5, 150.0));
+  for (int c = 0; c < 5; ++c)
+    EXPECT_NEAR(body.moisture.state().content[c], rest.moisture.state().content[c], 1e-8);
+
+  auto cracked = strip(6, 0.06, high_strength());
+  cracked.moisture.apply(cracked.end(0.0), air);
+  cracked.moisture.start_with_saturation(0.7, 20.0);
+  cracked.moisture.set_cracks({{0, 20e-6, {20e-6, 20e-6}}, {3, 10e-6, {10e-6, 10e-6}}});
+  cracked.moisture.advance(300.0, cracked.everywhere(120.0));
+  const MoistureState before = cracked.moisture.state();
+  const double leaves = cracked.moisture.mesh().volume[0] * before.content[0] + before.crack_water[0];
+  const double stored = cracked.moisture.stored();
+  reduced(cracked);
+  const MoistureState& now = cracked.moisture.state();
+  EXPECT_NEAR(now.ledger.removed, leaves, 1e-12 * stored);
+  ASSERT_EQ(now.cracks.size(), 1U);
+  EXPECT_EQ(now.crack_water[0], before.crack_water[1]);
+  EXPECT_EQ(now.pressure[0], before.pressure[1]);
+  cracked.moisture.advance(300.0, std::vector<double>(5, 160.0));
+  EXPECT_LT(std::abs(cracked.moisture.imbalance()), 1e-14 * stored + 1e-16);
+  EXPECT_GT(now.ledger.left, before.ledger.left);
+}
+
 TEST(Moisture, WhatIsOutOfRangeIsRefused) {
   MoistBody<2> body = strip(2, 0.1, high_strength());
   EXPECT_THROW(body.moisture.start_with_saturation(1.1, 20.0), Error);

@@ -21,8 +21,8 @@ struct MoistBody {
   MoistBody(ModelOf<Dim> its_model, const PoreMaterial& pores, const MoistureParameters& parameters = {})
       : model(std::move(its_model)),
         geometry(zone_geometry(model)),
-        outer(outline(model, geometry, {true})),
-        moisture(moisture_mesh(model, geometry, {true}, outer), {pores}, parameters) {}
+        outer(outline(model, geometry, std::vector<bool>(model.block_count(), true))),
+        moisture(moisture_mesh(model, geometry, std::vector<bool>(model.block_count(), true), outer), {pores}, parameters) {}
 
   /// Outer faces in the plane across x.
   std::vector<int> end(double x) const {

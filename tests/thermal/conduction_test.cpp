@@ -19,8 +19,10 @@
 #include "messages.hpp"
 #include "model/small_specimen.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 #include "specimen/solid_bodies.hpp"
 
@@ -542,6 +544,82 @@ TEST(Conduction, GivesJoinedGridpointsOneTemperature) {
   const auto temperature = strip.heat.gridpoint_temperatures(0.0);
   for (const auto& contact : strip.model.contacts) EXPECT_EQ(temperature[contact.a], temperature[contact.b]);
   EXPECT_EQ(strip.heat.nodes().count(), 31 * 5 + 30 * 4);  // corners and centres of the blocks
+}
+
+// ---- Blocks that leave -----------------------------------------------------------------------------------
+
+// Promise: what is left takes the fire where it is bared, as a body that never had the others.
+TEST(Conduction, GoesOnWithoutBlocksThatLeaveAsABodyThatNeverHadThem) {
+  const auto fire = [](Conduction<2>& heat, double left) {
+    heat.apply(heat.faces(on_plane<2>(0, left, 1e-9)),
+               Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
+    heat.apply(heat.faces(on_plane<2>(0, left, 1e-9)), Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve});
+    heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.12, 1e-9)), Curve::constant(20.0));
+    heat.prescribe_temperature(heat.faces(on_plane<2>(1, 0.0, 1e-9)), Curve::constant(30.0));
+  };
+  const auto parameters = [] {
+    auto p = heat_parameters(eurocode_range, 20.0);
+    p.loses_blocks = true;
+    return p;
+  }();
+  const auto material = constant_material(1.6, 2.2e6);
+  const auto whole = plane_body({.blocks = {6, 3}, .size = {0.12, 0.06}});
+  auto rest = plane_body({.blocks = {5, 3}, .size = {0.10, 0.06}});
+  for (auto& x : rest.position) x[0] += 0.02;
+  Conduction<2> heat(whole, {material}, parameters), alone(rest, {material}, parameters);
+  fire(heat, 0.0);
+  fire(alone, 0.02);
+  heat.remove({0, 6, 12});  // the column on the left
+  EXPECT_EQ(heat.ledger().removed, 0.0);
+  advance_to(heat, 600.0);
+  advance_to(alone, 600.0);
+  const auto t = heat.gridpoint_temperatures(-1.0), t_alone = alone.gridpoint_temperatures(-1.0);
+  const std::vector<int> block_of = gridpoint_blocks(whole);
+  std::size_t of_rest = 0;
+  for (int g = 0; g < whole.gridpoint_count(); ++g) {
+    const bool is_gone = block_of[g] % 6 == 0;
+    EXPECT_NEAR(t[g], is_gone ? -1.0 : t_alone[of_rest++], 1e-6);
+  }
+  EXPECT_EQ(of_rest, t_alone.size());
+}
+
+TEST(Conduction, BooksTheHeatOfBlocksThatLeaveAndKeepsThatOfTheOthers) {
+  auto p = heat_parameters(eurocode_range, 20.0);
+  p.loses_blocks = true;
+  const auto model = solid_body({.blocks = {4, 3, 2}, .size = {0.08, 0.06, 0.04}, .jitter = 0.2});
+  const auto make = [&] {
+    auto heat = std::make_unique<Conduction<3>>(model, std::vector{std::optional{moist_concrete()}}, p);
+    heat->apply(heat->faces(on_plane<3>(0, 0.0, 1e-9)), Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
+    return heat;
+  };
+  auto heat = make();
+  advance_to(*heat, 300.0);
+  const HeatLedger before = heat->ledger();
+  const auto t = heat->gridpoint_temperatures(-1.0);
+  heat->remove({0, 4});
+  heat->remove({12});
+  const HeatLedger after = heat->ledger();
+  EXPECT_GT(after.removed, 0.05 * before.stored);
+  EXPECT_NEAR(after.stored + after.removed, before.stored, 1e-12 * before.stored);
+  EXPECT_NEAR(after.error(), before.error(), 1e-12 * before.stored);
+  const auto now = heat->gridpoint_temperatures(-1.0);
+  for (std::size_t g = 0; g < t.size(); ++g) {
+    EXPECT_TRUE(now[g] == -1.0 || now[g] == t[g]);
+  }
+  // a state of the smaller body goes on alike
+  StateCopy copy;
+  copy.take([&](StateVisitor& visitor) { heat->visit_state(visitor); });
+  auto other = make();
+  other->remove({0, 4});
+  other->remove({12});
+  copy.put([&](StateVisitor& visitor) { other->visit_state(visitor); });
+  advance_to(*heat, 600.0);
+  advance_to(*other, 600.0);
+  EXPECT_EQ(heat->state(), other->state());
+  const HeatLedger last = heat->ledger();
+  EXPECT_EQ(last.removed, after.removed);
+  EXPECT_GT(last.boundary.convection, before.boundary.convection * 1.3);
+  EXPECT_NEAR(last.error(), 0.0, 1e-11 * last.stored);
 }
 
 // ---- Refusals --------------------------------------------------------------------------------------------

@@ -54,8 +54,8 @@ ModelOf<2> pair() {
 /// The gaps of a body, whose contacts part as the gaps say.
 struct Gaps {
   Gaps(const ModelOf<2>& of, const GapHeat& law, const Interval& range = {0.0, 1000.0},
-       std::vector<bool> materials = {true})
-      : model(of), conducts(std::move(materials)), gaps(model, conducts, law, TemperatureGrid(range), team) {}
+       const std::vector<bool>& materials = {true})
+      : model(of), conducts(blocks_of(model, materials)), gaps(model, conducts, law, TemperatureGrid(range), team) {}
 
   /// All contacts as wide open as that, with all gridpoints at a temperature.
   bool set(const ContactGap& gap, double temperature = 20.0) {

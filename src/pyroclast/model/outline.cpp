@@ -1,10 +1,14 @@
 #include "pyroclast/model/outline.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pyroclast {
 
 namespace {
+
+/// Cosine of the angle up to which two faces look the same way, 60 degrees.
+constexpr double kLooksAlike = 0.5;
 
 /// Returns the corners of the face that lies opposite to each corner of a zone, seen counter-clockwise from
 /// outside.
@@ -59,12 +63,18 @@ Vec<Dim> opposite_gradient(const ZoneGeometry<Dim>& geometry, int zone, int corn
 
 }  // namespace
 
+std::vector<bool> blocks_of(const Model& model, const std::vector<bool>& materials) {
+  std::vector<bool> blocks;
+  for (const int material : model.block_material) blocks.push_back(materials[material]);
+  return blocks;
+}
+
 template <int Dim>
 std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part) {
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
-      result[g] = takes_part[model.block_material[b]];
+      result[g] = takes_part[b];
   return result;
 }
 
@@ -77,7 +87,7 @@ std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeome
   };
   std::vector<Candidate> candidates;
   for (int b = 0; b < model.block_count(); ++b) {
-    if (!takes_part[model.block_material[b]]) continue;
+    if (!takes_part[b]) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
       const auto faces = faces_of(model.zones[z]);
       for (int i = 0; i <= Dim; ++i) candidates.push_back({sorted(faces[i]), z, i});
@@ -110,6 +120,40 @@ std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeome
   return result;
 }
 
+template <int Dim>
+std::vector<int> earlier_faces(const std::vector<OutlineFace<Dim>>& earlier,
+                               const std::vector<OutlineFace<Dim>>& now) {
+  // both are in the order of their zones
+  const auto same = [](const OutlineFace<Dim>& a, const OutlineFace<Dim>& b) {
+    return a.zone == b.zone && a.gridpoints == b.gridpoints;
+  };
+  const auto find = [&](const std::vector<OutlineFace<Dim>>& faces, const OutlineFace<Dim>& face) {
+    auto at = std::ranges::lower_bound(faces, face.zone, {}, &OutlineFace<Dim>::zone);
+    while (at != faces.end() && at->zone == face.zone && !same(*at, face)) ++at;
+    return at != faces.end() && at->zone == face.zone ? static_cast<int>(at - faces.begin()) : -1;
+  };
+  std::vector<int> left;
+  for (int f = 0; f < std::ssize(earlier); ++f)
+    if (find(now, earlier[f]) < 0) left.push_back(f);
+  std::vector<int> result;
+  for (const OutlineFace<Dim>& face : now) {
+    int of = find(earlier, face);
+    if (of < 0 && !left.empty()) {
+      const auto distance = [&](int f) {
+        const bool looks_elsewhere = dot(earlier[f].normal, face.normal) < kLooksAlike;
+        return std::pair(looks_elsewhere, norm(earlier[f].centre - face.centre));
+      };
+      of = *std::ranges::min_element(left, {}, distance);
+    }
+    result.push_back(of);
+  }
+  return result;
+}
+
+template std::vector<int> earlier_faces(const std::vector<OutlineFace<2>>&,
+                                        const std::vector<OutlineFace<2>>&);
+template std::vector<int> earlier_faces(const std::vector<OutlineFace<3>>&,
+                                        const std::vector<OutlineFace<3>>&);
 template std::vector<bool> gridpoints_of(const ModelOf<2>&, const std::vector<bool>&);
 template std::vector<bool> gridpoints_of(const ModelOf<3>&, const std::vector<bool>&);
 template std::vector<OutlineFace<2>> outline(const ModelOf<2>&, const ZoneGeometry<2>&,

@@ -20,12 +20,21 @@ struct OutlineFace {
 };
 
 /// Returns all faces on the outline of a body, in the order of their zones.
-/// \param takes_part  true where blocks of a material belong to the body, by material of the model
+/// \param takes_part  true where a block belongs to the body
 template <int Dim>
 std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                       const std::vector<bool>& takes_part);
 
-/// Tells for each gridpoint whether it belongs to a block of a material that takes part.
+/// Returns for each face of an outline the face of the earlier outline whose place it takes: the same face, or
+/// for a face that blocks bared when they left, the nearest of the faces that left and look the same way, else
+/// the nearest of all that left; -1 where none did.
+template <int Dim>
+std::vector<int> earlier_faces(const std::vector<OutlineFace<Dim>>& earlier,
+                               const std::vector<OutlineFace<Dim>>& now);
+
+/// Tells for each block whether its material is one of those that take part, by material of the model.
+std::vector<bool> blocks_of(const Model& model, const std::vector<bool>& materials);
+/// Tells for each gridpoint whether it belongs to a block that takes part.
 template <int Dim>
 std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part);
 

@@ -220,7 +220,7 @@ std::string names_of(const NamedSets& sets) {
 std::vector<Face> faces_of(const Model& model) {
   return with_dimension(model, [](const auto& of_dimension) {
     std::vector<Face> faces;
-    const std::vector<bool> all(of_dimension.material_names.size(), true);
+    const std::vector<bool> all(of_dimension.block_count(), true);
     for (const auto& face : outline(of_dimension, zone_geometry(of_dimension), all)) {
       Face added{{}, of_dimension.dimension(), resized<3>(face.centre), resized<3>(face.normal), face.area};
       std::ranges::copy(face.gridpoints, added.corner.begin());

@@ -259,6 +259,37 @@ void Moisture::set_cracks(std::vector<OpenFace> cracks) {
   make_links();
 }
 
+void Moisture::reduce_to(MoistureMesh mesh, const std::vector<int>& outer) {
+  const double before = stored();
+  std::vector<int> cells;  // present cell of each one that stays
+  for (const int block : mesh.block) cells.push_back(mesh_.cell_of_block[block]);
+  for (auto* of_cells : {&state_.content, &state_.pressure, &state_.temperature, &state_.highest_temperature}) {
+    std::vector<double> kept;
+    for (const int cell : cells) kept.push_back((*of_cells)[cell]);
+    *of_cells = std::move(kept);
+  }
+  std::vector<OpenFace> cracks;
+  std::vector<double> crack_water, crack_pressure;
+  for (std::size_t f = 0; f < mesh.cell_face.size(); ++f) {
+    const int face = mesh.cell_face[f], earlier = mesh_.cell_face[f];
+    if (face < 0 || crack_at_[earlier] < 0) continue;
+    const int crack = crack_at_[earlier];
+    cracks.push_back({face, state_.cracks[crack].width, state_.cracks[crack].at_ends});
+    crack_water.push_back(state_.crack_water[crack]);
+    crack_pressure.push_back(state_.crack_pressure[crack]);
+  }
+  state_.cracks = std::move(cracks);
+  state_.crack_water = std::move(crack_water);
+  state_.crack_pressure = std::move(crack_pressure);
+  std::vector<std::optional<MoistureCondition>> conditions;
+  for (const int face : outer) conditions.push_back(face < 0 ? std::nullopt : conditions_[face]);
+  conditions_ = std::move(conditions);
+  surface_mobility_.resize(conditions_.size());
+  mesh_ = std::move(mesh);
+  make_links();
+  state_.ledger.removed += before - stored();
+}
+
 void Moisture::start(double temperature) {
   state_ = {};
   state_.next_step = parameters_.largest_step;
@@ -298,7 +329,8 @@ double Moisture::stored() const {
 }
 
 double Moisture::imbalance() const {
-  return stored() - (state_.ledger.at_start + state_.ledger.released - state_.ledger.left);
+  return stored() - (state_.ledger.at_start + state_.ledger.released - state_.ledger.left -
+                     state_.ledger.removed);
 }
 
 double Moisture::saturation(int cell) const {

@@ -40,6 +40,7 @@ struct MoistureLedger {
   double at_start = 0.0;
   double released = 0.0;  ///< given back by hydrates
   double left = 0.0;      ///< went out through outer faces, less what came in
+  double removed = 0.0;   ///< gone with blocks
 };
 
 /// State at the end of the last step; with it and its parameters a field goes on bitwise as before.
@@ -84,6 +85,11 @@ class Moisture {
   void start_with_saturation(double saturation, double temperature);
   /// Starts at a temperature (degC), with the same vapour pressure everywhere, Pa.
   void start_with_pressure(double pressure, double temperature);
+
+  /// Goes on with fewer cells, whose water leaves with the others.
+  /// \param mesh   the same model without some of its blocks
+  /// \param outer  for each outer face of this mesh the present one whose condition it takes over; -1: sealed
+  void reduce_to(MoistureMesh mesh, const std::vector<int>& outer);
 
   /// Opens, widens, narrows and closes cracks. A new crack gets its vapour from the cells beside it, and one
   /// that closes gives them its water back.

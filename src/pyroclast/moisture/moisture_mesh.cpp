@@ -102,7 +102,7 @@ MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& g
   MoistureMesh mesh;
   mesh.cell_of_block.assign(model.block_count(), -1);
   for (int b = 0; b < model.block_count(); ++b) {
-    if (!takes_part[model.block_material[b]]) continue;
+    if (!takes_part[b]) continue;
     mesh.cell_of_block[b] = mesh.cell_count();
     double volume = 0.0;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) volume += geometry.volume[z];

@@ -54,7 +54,7 @@ struct MoistureMesh {
 };
 
 /// Makes the cells of a model.
-/// \param takes_part  true where a material has pores, by material of the model
+/// \param takes_part  true where a block has pores
 /// \param outer       faces of the outline, of which those of moist blocks are taken
 template <int Dim>
 MoistureMesh moisture_mesh(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,

@@ -73,13 +73,13 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
     : model_(model), coupling_(conditions.coupling), zone_volumes_(model.zone_volumes()) {
   require_one_process(model.ranks().count());
   std::vector<std::optional<PoreMaterial>> pores(block_materials.size());
-  std::vector<bool> takes_part(block_materials.size());
+  std::vector<bool> has_pores(block_materials.size());
   for (std::size_t m = 0; m < conditions.pores.size(); ++m) {
     const StatedPores& stated = conditions.pores[m];
     pores[m] = stated.of_concrete
                    ? pores_of_matrix(stated.material, 1.0 - numbers.fraction[m], model.dimension())
                    : stated.material;
-    takes_part[m] = true;
+    has_pores[m] = true;
     is_matrix_.push_back(stated.of_concrete);
     if (!(pores[m]->porosity < 1.0))
       throw Error(
@@ -87,17 +87,41 @@ MoistureField::MoistureField(const Model& model, const std::vector<BlockMaterial
                       "volume",
                       block_materials[m].name, numbers.fraction[m]));
   }
+  takes_part_ = blocks_of(model, has_pores);
   with_dimension(model, [&]<int Dim>(const ModelOf<Dim>& of_dimension) {
     const ZoneGeometry<Dim> geometry = zone_geometry(of_dimension);
-    const auto faces = outline(of_dimension, geometry, takes_part);
-    moisture_.emplace(moisture_mesh(of_dimension, geometry, takes_part, faces), pores, conditions.parameters);
+    const auto faces = outline(of_dimension, geometry, takes_part_);
+    moisture_.emplace(moisture_mesh(of_dimension, geometry, takes_part_, faces), pores,
+                      conditions.parameters);
     face_contacts_.assign(of_dimension.face_contacts.begin(), of_dimension.face_contacts.end());
     apply_water(of_dimension, faces, conditions.boundaries, *moisture_);
   });
-  for (std::size_t f = 0; f < mesh().cell_face.size(); ++f)
-    if (mesh().cell_face[f] >= 0) face_of_.push_back(static_cast<int>(f));
+  list_faces();
   seen_opening_.resize(face_of_.size());
   start(conditions, block_materials, numbers.fraction, temperature);
+  see_state();
+}
+
+void MoistureField::list_faces() {
+  face_of_.clear();
+  for (std::size_t f = 0; f < mesh().cell_face.size(); ++f)
+    if (mesh().cell_face[f] >= 0) face_of_.push_back(static_cast<int>(f));
+}
+
+void MoistureField::remove(const std::vector<int>& blocks) {
+  std::vector<double> opening_of_face(mesh().cell_face.size());
+  for (std::size_t f = 0; f < face_of_.size(); ++f) opening_of_face[face_of_[f]] = seen_opening_[f];
+  with_dimension(model_, [&]<int Dim>(const ModelOf<Dim>& of_dimension) {
+    const ZoneGeometry<Dim> geometry = zone_geometry(of_dimension);
+    const auto earlier = outline(of_dimension, geometry, takes_part_);
+    for (const int block : blocks) takes_part_[block] = false;
+    const auto now = outline(of_dimension, geometry, takes_part_);
+    moisture_->reduce_to(moisture_mesh(of_dimension, geometry, takes_part_, now),
+                         earlier_faces(earlier, now));
+  });
+  list_faces();
+  seen_opening_.clear();
+  for (const int face : face_of_) seen_opening_.push_back(opening_of_face[face]);
   see_state();
 }
 
@@ -277,6 +301,7 @@ void MoistureField::visit_state(StateVisitor& visitor) {
   visitor.visit("at_start", s.ledger.at_start);
   visitor.visit("released", s.ledger.released);
   visitor.visit("left", s.ledger.left);
+  visitor.visit("removed", s.ledger.removed);
   visitor.visit("steps", s.steps, state::count());
   visitor.visit("retries", s.retries, state::count());
   visitor.visit("iterations", s.iterations, state::count());

@@ -27,6 +27,9 @@ class MoistureField {
   MoistureField(const Model& model, const std::vector<BlockMaterial>& block_materials,
                 const SpecimenNumbers& numbers, const MoistureConditions& conditions, double temperature);
 
+  /// Takes blocks out of the body for good, with their water. Faces that they bare get the conditions of the
+  /// nearest faces that leave with them.
+  void remove(const std::vector<int>& blocks);
   /// Lets water flow until the time of these temperatures, which change evenly until then. Throws Error, see
   /// Moisture::advance.
   void follow(const TemperatureField& temperatures);
@@ -81,11 +84,13 @@ class MoistureField {
 
   double gauge(double pressure) const { return std::max(0.0, pressure - water::kAtmosphere); }
   double opening(const Motion& motion, int face, std::vector<double>* of_contacts = nullptr) const;
+  void list_faces();
   void see_state();
 
   const Model& model_;
   PoreCoupling coupling_;
-  std::vector<bool> is_matrix_;  ///< by material: true where the pores are stated of the concrete
+  std::vector<bool> is_matrix_;   ///< by material: true where the pores are stated of the concrete
+  std::vector<bool> takes_part_;  ///< by block: true where it has pores and is there
   std::vector<double> zone_volumes_;
   std::vector<int> face_contacts_;  ///< first contact of each face of the model, and of one more
   std::vector<int> face_of_;        ///< face of the model of each face of the mesh

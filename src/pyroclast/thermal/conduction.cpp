@@ -55,22 +55,22 @@ const HeatParameters& checked(const HeatParameters& p) {
   return p;
 }
 
-std::vector<bool> conducting(const std::vector<std::string>& names,
-                             const std::vector<std::optional<HeatMaterial>>& materials) {
+/// Numbers the materials that conduct; -1 for the others.
+std::vector<int> table_indices(const std::vector<std::string>& names,
+                               const std::vector<std::optional<HeatMaterial>>& materials) {
   if (materials.size() != names.size())
     throw Error(fmt::format("heat conduction: {} materials are given, but the model has {}", materials.size(),
                             names.size()));
-  std::vector<bool> conducts;
-  for (const auto& material : materials) conducts.push_back(material.has_value());
-  return conducts;
-}
-
-/// Numbers the materials that conduct; -1 for the others.
-std::vector<int> table_indices(const std::vector<bool>& conducts) {
   std::vector<int> index;
   int next = 0;
-  for (const bool conducting_material : conducts) index.push_back(conducting_material ? next++ : -1);
+  for (const auto& material : materials) index.push_back(material ? next++ : -1);
   return index;
+}
+
+std::vector<bool> conducting(const Model& model, const std::vector<int>& table_of_material) {
+  std::vector<bool> materials;
+  for (const int table : table_of_material) materials.push_back(table >= 0);
+  return blocks_of(model, materials);
 }
 
 std::vector<HeatTable> make_tables(const std::vector<std::string>& names,
@@ -118,14 +118,15 @@ Conduction<Dim>::Conduction(const ModelOf<Dim>& model,
       parameters_(checked(parameters)),
       team_(team ? std::move(team) : std::make_shared<Team>()),
       grid_(parameters.temperature_range),
-      conducts_(conducting(model.material_names, materials)),
-      table_of_material_(table_indices(conducts_)),
+      table_of_material_(table_indices(model.material_names, materials)),
+      conducts_(conducting(model, table_of_material_)),
       tables_(make_tables(model.material_names, materials, grid_, parameters.largest_change)),
       geometry_(zone_geometry(model)),
       outline_(pyroclast::outline(model, geometry_, conducts_)),
-      zones_(model, geometry_, table_of_material_, tables_, *team_),
+      zones_(tables_, *team_),
       store_(grid_, tables_, {}),
       prescriptions_(model.position.size()) {
+  zones_.set_blocks(model, geometry_, table_of_blocks());
   if (parameters_.gaps) gaps_.emplace(model, conducts_, *parameters_.gaps, grid_, *team_);
   set_nodes(join_through_contacts(model, conducts_));
   if (!model.ranks().any(nodes_.count() > 0))
@@ -164,13 +165,44 @@ void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
   const bool changes = gaps_->set_gaps(std::move(gaps), gridpoint_temperatures(grid_.range().lower));
   if (!model_.ranks().any(changes)) return;
   auto nodes = join_through_contacts(model_, conducts_, gaps_->parts());
-  if (model_.ranks().any(nodes.of_gridpoint != nodes_.of_gridpoint)) move_heat_to(std::move(nodes));
+  if (model_.ranks().any(nodes.of_gridpoint != nodes_.of_gridpoint)) move_heat_to(std::move(nodes), [] {});
+}
+
+template <int Dim>
+void Conduction<Dim>::remove(const std::vector<int>& blocks) {
+  drop_trial();
+  for (const int block : blocks) conducts_[block] = false;
+  const std::vector<OutlineFace<Dim>> earlier = std::move(outline_);
+  outline_ = pyroclast::outline(model_, geometry_, conducts_);
+  const std::vector<int> of_earlier = earlier_faces(earlier, outline_);
+  const auto follow = [&](std::vector<int>& faces) {
+    std::vector<bool> acts(earlier.size());
+    for (const int face : faces) acts[face] = true;
+    faces.clear();
+    for (int f = 0; f < std::ssize(of_earlier); ++f)
+      if (of_earlier[f] >= 0 && acts[of_earlier[f]]) faces.push_back(f);
+  };
+  for (Applied& applied : applied_) follow(applied.faces);
+  prescriptions_ = Prescriptions(model_.position.size());
+  for (Prescribed& prescribed : prescribed_) {
+    follow(prescribed.faces);
+    hold(prescribed.faces, prescribed.temperature);
+  }
+  const std::vector<std::uint8_t> none;
+  auto nodes = join_through_contacts(model_, conducts_, gaps_ ? gaps_->parts() : none);
+  move_heat_to(std::move(nodes), [&] {
+    zones_.set_blocks(model_, geometry_, table_of_blocks());
+    if (gaps_) gaps_->set_blocks(conducts_);
+  });
 }
 
 /// Moves the heat to other nodes: each gridpoint takes its share of its node's heat along. Heat that waits at
-/// an end of the temperature range is shared out by volume, with what rounding leaves.
+/// an end of the temperature range is shared out by volume, with what rounding leaves. Gridpoints without a
+/// node take theirs out of the body.
+/// \param before_set  function called before the nodes are set
 template <int Dim>
-void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
+template <class Before>
+void Conduction<Dim>::move_heat_to(ThermalNodes nodes, Before before_set) {
   constexpr int kNone = -1, kSeveral = -2;
   halo_.spread(state_.enthalpy);  // an own node may have been a foreign one
   const ThermalNodes before = nodes_;
@@ -186,13 +218,24 @@ void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
     heat[g] = store.enthalpy(g, was.temperature[old]);
     left[old] -= heat[g];
     ++size_before[old];
+    if (now < 0) continue;
     ++size[now];
     from[now] = from[now] == kNone || from[now] == old ? old : kSeveral;
   }
   std::vector<double> enthalpy(size.size());
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
-    if (const int old = before.of_gridpoint[g]; old >= 0)
-      enthalpy[nodes.of_gridpoint[g]] += heat[g] + left[old] * shares[g].front().volume / volume_[old];
+  for (int g = 0; g < model_.gridpoint_count(); ++g) {
+    const int old = before.of_gridpoint[g], now = nodes.of_gridpoint[g];
+    if (old < 0) continue;
+    const double taken = heat[g] + left[old] * shares[g].front().volume / volume_[old];
+    if (now >= 0) {
+      enthalpy[now] += taken;
+      continue;
+    }
+    const double at_start = store.enthalpy(g, parameters_.initial_temperature);
+    state_.stored_at_start -= at_start;
+    state_.ledger.removed += taken - at_start;
+  }
+  before_set();
   set_nodes(std::move(nodes));
   state_.enthalpy = std::move(enthalpy);
   state_.temperature.resize(size.size());
@@ -224,6 +267,15 @@ std::vector<std::vector<NodeShare>> Conduction<Dim>::gridpoint_shares() const {
       }
   }
   return shares;
+}
+
+/// Returns the index into the tables of each block; -1 where it conducts no heat.
+template <int Dim>
+std::vector<int> Conduction<Dim>::table_of_blocks() const {
+  std::vector<int> tables;
+  for (int b = 0; b < model_.block_count(); ++b)
+    tables.push_back(conducts_[b] ? table_of_material_[model_.block_material[b]] : -1);
+  return tables;
 }
 
 template <int Dim>
@@ -263,11 +315,17 @@ void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryConditi
 template <int Dim>
 void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const Curve& temperature) {
   drop_trial();
+  prescribed_.push_back({faces, temperature});
+  hold(faces, temperature);
+  prescriptions_.set_nodes(nodes_, node_chunks_);
+}
+
+template <int Dim>
+void Conduction<Dim>::hold(const std::vector<int>& faces, const Curve& temperature) {
   std::vector<int> gridpoints;
   for (int face : faces)
     for (int g : outline_.at(face).gridpoints) gridpoints.push_back(g);
   prescriptions_.add(gridpoints, temperature);
-  prescriptions_.set_nodes(nodes_, node_chunks_);
 }
 
 template <int Dim>
@@ -845,7 +903,9 @@ void Conduction<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("steps", s.steps, state::count());
   visitor.visit("retries", s.retries, state::count());
   visitor.visit("stages", s.stages, state::count());
-  visitor.visit_numbers("ledger", s.ledger);
+  visitor.visit_numbers("boundary", s.ledger.boundary);
+  visitor.visit("prescribed", s.ledger.prescribed);
+  if (parameters_.loses_blocks) visitor.visit("removed", s.ledger.removed);
   visitor.visit("stored_at_start", s.stored_at_start);
   if (visitor.replaces()) {
     widen_temperature_range(s.temperature_range);
@@ -875,6 +935,7 @@ template <int Dim>
 HeatLedger Conduction<Dim>::ledger() const {
   HeatLedger ledger = state_.ledger;
   ledger.stored = total_enthalpy() - state_.stored_at_start;
+  ledger.loses_blocks = parameters_.loses_blocks;
   return ledger;
 }
 

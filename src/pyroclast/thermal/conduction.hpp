@@ -30,6 +30,7 @@ struct HeatParameters {
   /// Resistance of contacts; empty: heat crosses all contacts without resistance.
   std::optional<GapHeat> gaps{};
   bool always_limits = false;  ///< true: limits flows in every step, needed or not, for tests
+  bool loses_blocks = false;   ///< true where blocks may leave the body
 };
 
 /// State of a conduction at the end of its last completed step. The state and the parameters of the
@@ -114,6 +115,7 @@ class Conduction final : public HeatSolver {
   /// gridpoints, nodes are numbered anew, and no heat is lost: a part takes its share along, and joined parts
   /// have one temperature, the mean by capacity. Throws Error as GapConduction::set_gaps does.
   void set_gaps(std::vector<ContactGap> gaps) override;
+  void remove(const std::vector<int>& blocks) override;
   /// Returns the conduction through gaps; null where heat crosses all contacts without resistance.
   const GapConduction<Dim>* gaps() const { return gaps_ ? &*gaps_ : nullptr; }
   const GapHeat* gap_law() const override { return gaps_ ? &gaps_->law() : nullptr; }
@@ -221,9 +223,17 @@ class Conduction final : public HeatSolver {
     std::vector<int> faces;
     BoundaryCondition condition;
   };
+  /// Faces of the outline whose temperature is prescribed.
+  struct Prescribed {
+    std::vector<int> faces;
+    Curve temperature;
+  };
 
   void set_nodes(ThermalNodes nodes);
-  void move_heat_to(ThermalNodes nodes);
+  template <class Before>
+  void move_heat_to(ThermalNodes nodes, Before before_set);
+  std::vector<int> table_of_blocks() const;
+  void hold(const std::vector<int>& faces, const Curve& temperature);
   std::vector<std::vector<NodeShare>> gridpoint_shares() const;
   void add_to_boundary(const Applied& applied);
   void begin_run(double end);
@@ -270,8 +280,8 @@ class Conduction final : public HeatSolver {
   HeatParameters parameters_;
   std::shared_ptr<Team> team_;
   TemperatureGrid grid_;
-  std::vector<bool> conducts_;          ///< true for a material that conducts
   std::vector<int> table_of_material_;  ///< -1: does not conduct
+  std::vector<bool> conducts_;          ///< true for a block that conducts
   std::vector<HeatTable> tables_;
   ZoneGeometry<Dim> geometry_;
   std::vector<OutlineFace<Dim>> outline_;
@@ -290,6 +300,7 @@ class Conduction final : public HeatSolver {
   Prescriptions prescriptions_;
 
   std::vector<Applied> applied_;
+  std::vector<Prescribed> prescribed_;
 
   HeatState state_;
   Trial trial_;

@@ -46,9 +46,15 @@ GapConduction<Dim>::GapConduction(const ModelOf<Dim>& model, const std::vector<b
       gaps_(model.contacts.size()),
       parts_(model.contacts.size(), 0),
       by_chunk_(contacts_by_chunk(model)) {
-  const auto conducting = gridpoints_of(model, conducts);
-  for (const auto& c : model.contacts) open_to_heat_.push_back(conducting[c.a] && conducting[c.b]);
+  set_blocks(conducts);
   set_grid(grid);
+}
+
+template <int Dim>
+void GapConduction<Dim>::set_blocks(const std::vector<bool>& conducts) {
+  const auto conducting = gridpoints_of(model_, conducts);
+  open_to_heat_.clear();
+  for (const auto& c : model_.contacts) open_to_heat_.push_back(conducting[c.a] && conducting[c.b]);
 }
 
 template <int Dim>

@@ -19,14 +19,16 @@ template <int Dim>
 class GapConduction {
  public:
   /// \param model     model, kept by reference, as is the team
-  /// \param conducts  true where a material takes part, by material of the model; contacts with another
-  ///                  material, such as a bearing's, are closed to heat
+  /// \param conducts  true where a block takes part; contacts with another block, such as a bearing's, are
+  ///                  closed to heat
   ///
   /// Throws Error naming the number of `law` that is out of range, and as set_grid does.
   GapConduction(const ModelOf<Dim>& model, const std::vector<bool>& conducts, const GapHeat& law,
                 const TemperatureGrid& grid, Team& team);
 
   const GapHeat& law() const { return law_; }
+  /// Closes the contacts of blocks that take part no more.
+  void set_blocks(const std::vector<bool>& conducts);
   /// Changes the range of temperatures. Throws Error when the conductivity of the gas is not known or not
   /// positive somewhere in the range.
   void set_grid(const TemperatureGrid& grid);

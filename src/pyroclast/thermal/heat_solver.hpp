@@ -16,15 +16,17 @@ namespace pyroclast {
 /// properties are as wide.
 inline constexpr StateRule kTemperatures = state::within(absolute_zero - 1.0, 1e5);
 
-/// Heat of a body since the start, J. The heat that came in equals the heat stored; the remainder is the
-/// ledger's error.
+/// Heat of a body since the start, J. The heat that came in equals the heat stored and the heat that left
+/// with blocks; the remainder is the ledger's error.
 struct HeatLedger {
   HeatByKind boundary;
   double prescribed = 0.0;  ///< heat needed to hold the prescribed temperatures
   double stored = 0.0;
+  double removed = 0.0;       ///< gone with blocks, over that at the start
+  bool loses_blocks = false;  ///< true for a body that blocks may leave
 
   double heat_in() const { return boundary.total() + prescribed; }
-  double error() const { return heat_in() - stored; }
+  double error() const { return heat_in() - stored - removed; }
   bool operator==(const HeatLedger&) const = default;
 };
 
@@ -40,7 +42,10 @@ inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
      [](const HeatLedger& h) { return h.boundary.convection; }},
     {"radiation", "heat_radiation_J", LedgerSide::put_in, "radiation", "by radiation",
      [](const HeatLedger& h) { return h.boundary.radiation; }},
-    {"error", "heat_error_J", LedgerSide::error, "error", "heat that came in, less heat stored",
+    {"removed", "heat_removed_J", LedgerSide::lost, "gone with pieces",
+     "in blocks that have left the body", [](const HeatLedger& h) { return h.removed; },
+     [](const HeatLedger& h) { return h.loses_blocks; }},
+    {"error", "heat_error_J", LedgerSide::error, "error", "heat that came in, less heat stored and gone",
      [](const HeatLedger& h) { return h.error(); }},
 });
 
@@ -68,6 +73,9 @@ class HeatSolver {
 
   virtual void widen_temperature_range(const Interval& range) = 0;
   virtual void set_gaps(std::vector<ContactGap> gaps) = 0;
+  /// Takes blocks out of the body for good, with their heat. Faces that they bare get the conditions of the
+  /// nearest faces that leave with them.
+  virtual void remove(const std::vector<int>& blocks) = 0;
   /// Returns the law of heat through gaps; null where heat crosses all contacts without resistance. The next
   /// two functions are for solvers that have one.
   virtual const GapHeat* gap_law() const = 0;

@@ -93,6 +93,21 @@ void TemperatureField::set_gaps(std::vector<ContactGap> gaps) {
   read_conduction();
 }
 
+void TemperatureField::remove(const std::vector<int>& blocks) {
+  if (advance_.under_way) throw Error("blocks cannot leave while the temperatures advance");
+  for (const int block : blocks) {
+    std::fill(specimen_volume_.begin() + model_.block_zones[block],
+              specimen_volume_.begin() + model_.block_zones[block + 1], 0.0);
+    std::erase_if(specimen_gridpoints_, [&](int g) {
+      return model_.block_gridpoints[block] <= g && g < model_.block_gridpoints[block + 1];
+    });
+  }
+  volume_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z]; });
+  if (is_uniform()) return update();
+  conduction_->remove(blocks);
+  read_conduction();
+}
+
 double TemperatureField::advance(double largest_change, double until, double steady_rate) {
   begin_advance(largest_change, until, steady_rate);
   while (!advance(std::numeric_limits<std::int64_t>::max())) {

@@ -41,6 +41,10 @@ class TemperatureField {
   /// while an advance is under way.
   void set_gaps(std::vector<ContactGap> gaps);
 
+  /// Takes blocks out of the specimen for good, see HeatSolver::remove. Throws Error while an advance is under
+  /// way.
+  void remove(const std::vector<int>& blocks);
+
   /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,
   /// or to the time `until`, s, or until the rate (Conduction::rate) is below `steady_rate`, K/s. Returns the
   /// time reached.

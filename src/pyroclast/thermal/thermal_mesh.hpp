@@ -19,7 +19,7 @@ struct ThermalNodes {
 /// Makes the nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts
 /// join are one node.
 ///
-/// \param conducts  true where a material takes part, by material of the model
+/// \param conducts  true where a block takes part
 /// \param parts     true where a contact has a resistance, see GapConduction, and joins nothing; empty: no
 ///                  contact
 ///

@@ -9,15 +9,16 @@
 namespace pyroclast {
 
 template <int Dim>
-ZoneConduction<Dim>::ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
-                                    const std::vector<int>& table_of_material,
-                                    const std::vector<HeatTable>& tables, Team& team)
-    : tables_(tables), team_(team) {
+void ZoneConduction<Dim>::set_blocks(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
+                                     const std::vector<int>& table_of_block) {
+  zones_.clear();
+  gridpoints_.clear();
+  row_.clear();
   const auto [first_own, last_own] = model.chunks().own();
   for (int b = 0; b < model.block_count(); ++b) {
     if (b == first_own) own_begin_ = zone_count();
     if (b == last_own) own_end_ = zone_count();
-    const int table = table_of_material[model.block_material[b]];
+    const int table = table_of_block[b];
     if (table < 0) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
       Zone zone{{}, table, geometry.volume[z], geometry.gradient[z]};

@@ -29,12 +29,14 @@ inline void raise(std::atomic<double>& maximum, double value) {
 template <int Dim>
 class ZoneConduction {
  public:
-  /// \param table_of_material  index into the tables of each material of the model, -1 where it conducts no
-  ///                           heat
-  /// \param tables             kept by reference
-  /// \param team               team that shares zones and nodes; kept by reference
-  ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
-                 const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables, Team& team);
+  /// \param tables  kept by reference
+  /// \param team    team that shares zones and nodes; kept by reference
+  ZoneConduction(const std::vector<HeatTable>& tables, Team& team) : tables_(tables), team_(team) {}
+
+  /// Sets the zones; needed before all other calls.
+  /// \param table_of_block  index into the tables of each block, -1 where it conducts no heat
+  void set_blocks(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
+                  const std::vector<int>& table_of_block);
 
   /// Sets the node at each gridpoint; needed before all other calls.
   void set_nodes(const ThermalNodes& nodes);

@@ -98,7 +98,7 @@ void FoundContacts::make(Body<2>& body) {
     found.facets.push_back({block_of[gridpoints[0]], gridpoints, face, face < 0, length});
   };
   for (const auto& face :
-       pyroclast::outline(model, body.geometry, std::vector<bool>(model.material_names.size(), true)))
+       pyroclast::outline(model, body.geometry, std::vector<bool>(model.block_count(), true)))
     add_facet(face.gridpoints, -1);
   found.outline = static_cast<int>(found.facets.size());
   found.face_of_lane.assign(body.layout.faces.size() * kLanes, -1);

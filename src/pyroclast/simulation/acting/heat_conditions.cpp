@@ -223,7 +223,7 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
   constexpr double kFaces = 0.7;  // cosine of the angle up to which a face looks along an axis, 45 degrees
   std::vector<bool> takes_part;
   for (const BlockMaterial& material : block_materials) takes_part.push_back(!material.is_of_bearing);
-  const auto faces = outline(model, zone_geometry(model), takes_part);
+  const auto faces = outline(model, zone_geometry(model), blocks_of(model, takes_part));
   const ChunkList chunks =
       model.zone_chunks().of_some(static_cast<int>(faces.size()), [&](int face) { return faces[face].zone; });
   struct DrivenFaces {

@@ -242,9 +242,10 @@ std::vector<Column> energy_columns(const EnergyLedger& ledger, const std::vector
   return columns;
 }
 
-std::vector<Column> heat_columns() {
+std::vector<Column> heat_columns(const HeatLedger& ledger) {
   std::vector<Column> columns;
-  for (const auto& entry : kHeats) columns.push_back(column_of_entry(entry, "heat", &Side::of_heat));
+  for (const auto& entry : kHeats)
+    if (entry.is_there(ledger)) columns.push_back(column_of_entry(entry, "heat", &Side::of_heat));
   return columns;
 }
 
@@ -281,16 +282,17 @@ Gauge motion_gauge(const Motion& motion) {
 }
 
 /// Makes a gauge of rate and heat of a computed field.
-Gauge transport_gauge() {
+Gauge transport_gauge(const HeatSolver& solver) {
   Gauge gauge;
   gauge.columns = columns_of(kTransport);
-  append(gauge.columns, heat_columns());
+  append(gauge.columns, heat_columns(solver.ledger()));
   gauge.read = [](const Simulation& simulation) {
     const HeatSolver& conduction = solver_of(simulation);
     const HeatLedger heat = conduction.ledger();
     std::vector<double> values;
     for (const auto& column : kTransport) values.push_back(column.value(conduction));
-    for (const auto& entry : kHeats) values.push_back(entry.value(heat));
+    for (const auto& entry : kHeats)
+      if (entry.is_there(heat)) values.push_back(entry.value(heat));
     return values;
   };
   return gauge;
@@ -439,7 +441,7 @@ std::vector<Gauge> record_gauges(const Simulation& simulation) {
 
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
-  std::vector<Gauge> gauges{transport_gauge()};
+  std::vector<Gauge> gauges{transport_gauge(solver_of(simulation))};
   if (simulation.field().conduction()->hottest_gas()) gauges.push_back(make_gauge(kGas, solver_of, false));
   if (simulation.cracks_hinder_heat()) gauges.push_back(gap_gauge(simulation.model()));
   if (simulation.moisture())
@@ -484,7 +486,9 @@ std::vector<Column> possible_gauge_columns() {
   columns.push_back({"NAME_UNIT", "its own", kMeaningOfRecord, ColumnRole::record});
   append(columns, columns_of(kTransport));
   append(columns, columns_of(kGas));
-  append(columns, heat_columns());
+  HeatLedger all_heat;
+  all_heat.loses_blocks = true;
+  append(columns, heat_columns(all_heat));
   append(columns, columns_of(kGaps));
   append(columns, columns_of(kWater));
   columns.push_back(probe_column("NAME"));
