@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,14 +31,21 @@ Temperatures row_of(const ProfileRows& rows, std::size_t row, std::size_t points
 std::string profile_lines(double time, const std::vector<double>& depths, Temperatures temperatures) {
   std::string text;
   for (std::size_t i = 0; i < depths.size(); ++i)
-    text += fmt::format("{:.9g},{:.9g},{:.9g}\n", time, depths[i], temperatures[i]);
+    text += std::isnan(temperatures[i]) ? fmt::format("{:.9g},{:.9g},\n", time, depths[i])
+                                        : fmt::format("{:.9g},{:.9g},{:.9g}\n", time, depths[i], temperatures[i]);
   return text;
+}
+
+/// Tells whether a point is at the isotherm or hotter; one that has left with a piece counts as hot.
+bool is_hot(double temperature) {
+  return !(temperature < kIsotherm);
 }
 
 /// Returns the depth to which all of the line is at the isotherm or hotter, m; its first point is.
 double depth_of_isotherm(const std::vector<double>& depths, Temperatures temperatures) {
   for (std::size_t i = 1; i < depths.size(); ++i) {
-    if (temperatures[i] >= kIsotherm) continue;
+    if (is_hot(temperatures[i])) continue;
+    if (std::isnan(temperatures[i - 1])) return depths[i - 1];
     const double share = (temperatures[i - 1] - kIsotherm) / (temperatures[i - 1] - temperatures[i]);
     return depths[i - 1] + share * (depths[i] - depths[i - 1]);
   }
@@ -47,16 +55,16 @@ double depth_of_isotherm(const std::vector<double>& depths, Temperatures tempera
 /// Returns the lines of the isotherm that a row adds to those of the rows before it.
 std::string isotherm_lines(const ProfileRows& rows, std::size_t row, const std::vector<double>& depths) {
   const Temperatures now = row_of(rows, row, depths.size());
-  const bool is_hot = now.front() >= kIsotherm;
+  const bool begins_hot = is_hot(now.front());
   std::string text;
   if (row > 0) {
     const double before = row_of(rows, row - 1, depths.size()).front();
-    if (is_hot != (before >= kIsotherm)) {
-      const double share = (kIsotherm - before) / (now.front() - before);
+    if (begins_hot != is_hot(before)) {
+      const double share = std::isnan(now.front()) ? 1.0 : (kIsotherm - before) / (now.front() - before);
       text = fmt::format("{:.9g},0\n", rows.time[row - 1] + share * (rows.time[row] - rows.time[row - 1]));
     }
   }
-  if (is_hot) text += fmt::format("{:.9g},{:.9g}\n", rows.time[row], depth_of_isotherm(depths, now));
+  if (begins_hot) text += fmt::format("{:.9g},{:.9g}\n", rows.time[row], depth_of_isotherm(depths, now));
   return text;
 }
 
@@ -80,7 +88,10 @@ HeatedLine required(HeatedLine line, const ProfileRows& rows) {
 void ProfileRows::visit_state(StateVisitor& visitor) {
   const StateVisitor::Scope scope(visitor, "profile");
   visitor.visit("time", time, state::at_least(0));
+  // a state holds no NaN
+  for (double& t : temperature) t = std::isnan(t) ? kTemperatures.least : t;
   visitor.visit("temperature", temperature, kTemperatures);
+  for (double& t : temperature) t = t == kTemperatures.least ? std::numeric_limits<double>::quiet_NaN() : t;
   visitor.require(time.empty() ? temperature.empty() : temperature.size() % time.size() == 0, "temperature",
                   "does not have as many values for each time");
 }
@@ -106,8 +117,12 @@ void ProfileFiles::write(const Simulation& simulation, bool is_wanted, ProfileRo
   if (!rows.time.empty() && !is_wanted) {
     const Temperatures before = row_of(rows, rows.time.size() - 1, depths.size());
     double change = 0.0;
-    for (std::size_t i = 0; i < now.size(); ++i) change = std::max(change, std::abs(now[i] - before[i]));
-    if (change < kLeastChange) return;
+    bool some_left = false;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      some_left = some_left || std::isnan(now[i]) != std::isnan(before[i]);
+      change = std::max(change, std::abs(now[i] - before[i]));
+    }
+    if (change < kLeastChange && !some_left) return;
   }
   rows.time.push_back(time);
   rows.temperature.insert(rows.temperature.end(), now.begin(), now.end());

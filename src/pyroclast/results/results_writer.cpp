@@ -32,6 +32,8 @@ void ResultsWriter::begin(const Run& run) {
   if (!run.simulation().field().is_uniform())
     profile_.emplace(folder_, run.simulation(), exposure_, profile_rows_);
   if (has_fields_) fields_.emplace(file_in(folder_, "fields"), run.simulation(), run.history(), frames_);
+  if (const Spalling* spalling = run.simulation().spalling())
+    spalls_.emplace(folder_, run.simulation().model(), *spalling);
   lost_frames_.clear();
   for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
     lost_frames_.push_back(fmt::format(
@@ -51,6 +53,7 @@ void ResultsWriter::begin(const Run& run) {
 void ResultsWriter::write(const Run& run) {
   history_->write(run.history());
   if (profile_) profile_->write(run.simulation(), run.frame_is_due(), profile_rows_);
+  if (spalls_) spalls_->write(run.simulation().model(), *run.simulation().spalling());
   if (fields_ && run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
 }
 

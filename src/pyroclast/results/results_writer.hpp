@@ -9,6 +9,7 @@
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/profile_files.hpp"
+#include "pyroclast/results/spall_files.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/loop/run.hpp"
@@ -16,8 +17,8 @@
 namespace pyroclast {
 
 /// Writer of a run's results into its folder as they come: `run.json`, `history.csv`, `fields/`, `specimen/`,
-/// `properties.csv`, where heat is conducted `temperature_profile.csv` and `isotherm.csv`, and at the end
-/// `summary.json`:
+/// `properties.csv`, where heat is conducted `temperature_profile.csv` and `isotherm.csv`, where pieces may
+/// leave `spalls.csv` and `spalled_blocks.csv`, and at the end `summary.json`:
 ///
 ///     writer.begin(run);
 ///     while (run.next()) writer.write(run);
@@ -68,6 +69,7 @@ class ResultsWriter {
   std::optional<HistoryFile> history_;
   std::optional<ProfileFiles> profile_;
   std::optional<FieldFiles> fields_;
+  std::optional<SpallFiles> spalls_;
   ProfileRows profile_rows_;
   FrameRows frames_;
   double earlier_ = 0.0;  ///< wall time of earlier processes, s

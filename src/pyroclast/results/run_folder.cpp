@@ -40,6 +40,8 @@ constexpr auto kWritten = std::to_array<const char*>({
     "history.csv",
     "temperature_profile.csv",
     "isotherm.csv",
+    "spalls.csv",
+    "spalled_blocks.csv",
     "properties.csv",
     "summary.json",
     "lock",

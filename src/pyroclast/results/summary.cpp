@@ -1,6 +1,7 @@
 #include "pyroclast/results/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -105,6 +106,26 @@ void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
   }
 }
 
+OrderedJson spalling_json(const Simulation& simulation) {
+  const Spalling& spalling = *simulation.spalling();
+  OrderedJson json;
+  json["pieces"] = spalling.spalls().size();
+  json["blocks"] = spalling.blocks_gone();
+  json["first_s"] = json_of(
+      spalling.spalls().empty() ? std::nullopt : std::optional(spalling.spalls().front().heating_time));
+  json["mass_kg"] = spalling.mass_gone();
+  json["mean_depth_m"] = spalling.mean_depth();
+  json["largest_depth_m"] = spalling.largest_depth();
+  json["lost_section"] = spalling.lost_section();
+  for (std::size_t bar = 0; bar < spalling.rule().bars.size(); ++bar) {
+    const double temperature = spalling.temperature_at(bar, simulation.field());
+    json["bars"][name_of_bar(spalling.rule().bars[bar])] = {
+        {"bare_from_s", json_of(spalling.bare_from(bar))},
+        {"temperature_degC", json_of(std::isnan(temperature) ? std::nullopt : std::optional(temperature))}};
+  }
+  return json;
+}
+
 OrderedJson json_of(const ReferenceDistances& of) {
   const CurveDistances& d = of.distances;
   return {{"rms_over_greatest", json_of(d.rms)},
@@ -124,6 +145,7 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
   if (simulation.moves()) add_motion(json, s, run);
   if (simulation.field().conduction()) add_heat(json, s, run);
+  if (simulation.spalling()) json["spalling"] = spalling_json(simulation);
   for (const ReferenceDistances& of : s.references) json["references"][of.name] = json_of(of);
   if (simulation.specimen()) json["specimen"] = specimen_facts(*simulation.specimen());
   if (const SpecimenTold* told = simulation.told(); told && !told->facts.empty())

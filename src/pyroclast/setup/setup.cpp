@@ -19,6 +19,7 @@
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
 #include "pyroclast/setup/read_moisture.hpp"
+#include "pyroclast/setup/read_spalling.hpp"
 #include "pyroclast/setup/read_probes.hpp"
 #include "pyroclast/setup/read_references.hpp"
 #include "pyroclast/setup/read_sets.hpp"
@@ -475,6 +476,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
   setup.moving->mechanics = read_mechanics(
       root.section("mechanics", "how the body moves; see [Motion](../understand/theory.md#motion)"), space);
   read_found(root.section("contacts"), moving.contacts, moving.mechanics.found);
+  if ((moving.spalling = read_spalling(root, setup.stages))) moving.mechanics.loses_blocks = true;
   check_bodies(bodies, phases, moving);
   for (const ReadBody& read : bodies) moving.contacts.bearings.push_back(read.interface);
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
@@ -483,7 +485,7 @@ void read_moving(const Section& root, const DeckSpace& space, const std::vector<
 /// Reads the materials where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
   setup.block_materials = read_conducting_materials(root, specimen::phases(setup.specimen), curves);
-  root.know({"platens", "bearings", "bodies", "velocities", "contacts", "mechanics", "concrete"});
+  root.know({"platens", "bearings", "bodies", "velocities", "contacts", "mechanics", "concrete", "spalling"});
 }
 
 }  // namespace

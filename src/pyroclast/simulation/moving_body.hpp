@@ -8,6 +8,7 @@
 #include "pyroclast/mechanics/motion.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/loose_bodies.hpp"
+#include "pyroclast/simulation/acting/spalling.hpp"
 #include "pyroclast/simulation/stress_free.hpp"
 
 namespace pyroclast {
@@ -29,6 +30,7 @@ struct MovingBody {
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
   std::vector<PlaneOfSymmetry> symmetry;
+  std::optional<SpallingRule> spalling;  ///< rule by which pieces leave; empty where all blocks stay
   MechanicsParameters mechanics;
 };
 

@@ -16,10 +16,11 @@ namespace pyroclast {
 namespace {
 
 TemperatureField make_field(const Model& model, const std::vector<BlockMaterial>& block_materials,
-                            const HeatConditions& heat, const std::shared_ptr<Team>& team) {
+                            const HeatConditions& heat, bool loses_blocks,
+                            const std::shared_ptr<Team>& team) {
   if (heat.uniform) return {model, heat.initial};
   const Interval initial{heat.initial, heat.initial};  // each exposure widens it
-  return {model, make_conduction(model, block_materials, heat, initial, team)};
+  return {model, make_conduction(model, block_materials, heat, initial, team, loses_blocks)};
 }
 
 /// Throws Error: a slit parts a contact whose law holds it together.
@@ -119,7 +120,7 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
       model_(part_of_rank(required(std::move(body.model)), ranks, heat, block_materials)),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
-      field_(make_field(*model_, block_materials, heat_, team_)) {
+      field_(make_field(*model_, block_materials, heat_, moving && moving->spalling, team_)) {
   if (heat_.moisture)
     moisture_ =
         std::make_unique<MoistureField>(*model_, block_materials, numbers_, *heat_.moisture, heat_.initial);
@@ -150,6 +151,8 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
   for (const PlaneOfSymmetry& plane : model_->symmetry) drive(plane.set(), plane.component, 0.0);
   loads_ = std::make_unique<Loads>(*motion_, body_size());
   for (const RecordParameters& record : records) records_.emplace_back(*model_, true, record);
+  if (moving->spalling)
+    spalling_ = std::make_unique<Spalling>(*model_, block_materials, heat_, *moving->spalling);
   if (body.between_platens) press_ = std::make_unique<Press>(*motion_, *body.between_platens);
 }
 
@@ -190,6 +193,7 @@ void Simulation::set_zero() {
 
 void Simulation::hold(const std::string& set, int component, const HeldMotion& motion,
                       const std::string& place) {
+  require_there(set, place);
   supports_->hold(set, component, motion, place);
   drive(set, component, 0.0);
 }
@@ -222,6 +226,37 @@ void Simulation::show_cracks() {
   field_.set_gaps(std::move(gaps));
 }
 
+void Simulation::remove(const std::vector<int>& blocks) {
+  field_.remove(blocks);
+  if (moisture_) moisture_->remove(blocks);
+}
+
+void Simulation::let_pieces_go() {
+  if (!spalling_) return;
+  for (Spall& spall : spalling_->find(*motion_, field_, moisture_.get())) {
+    std::vector<bool> leaves(static_cast<std::size_t>(model_->block_count()));
+    for (const int block : spall.blocks) leaves[block] = true;
+    for (const auto& [set, load] : loads_->all())
+      for (const int g : model_->set(set))
+        if (leaves[model_->block_of(g)])
+          throw Error(fmt::format("block {} leaves the body at {:g} s of heating, but the load on the set "
+                                  "\"{}\" acts on it: load other sets, or leave [spalling] out",
+                                  model_->block_of(g), field_.time(), set));
+    spall.heating_time = heating_time_;
+    motion_->remove(spall.blocks);
+    remove(spall.blocks);
+    spalling_->note(std::move(spall));
+  }
+}
+
+/// Throws Error where a gridpoint of a set has left the body.
+void Simulation::require_there(const std::string& set, const std::string& place) const {
+  if (!spalling_) return;
+  for (const int g : model_->set(set))
+    if (const int block = model_->block_of(g); is_gone(block))
+      throw Error(fmt::format("{}: block {} of the set \"{}\" has left the body", place, block, set));
+}
+
 bool Simulation::cracks_outrun_water() {
   if (!moisture_ || !moisture_->is_outrun_by_cracks(*motion_)) return false;
   moisture_->hurry();
@@ -249,6 +284,12 @@ void Simulation::set_materials(ConcreteMaterials materials) {
 void Simulation::visit_state(StateVisitor& visitor) {
   visitor.visit("heating_time", heating_time_);
   visitor.visit("exchanges", exchanges_, state::count());
+  if (spalling_) {
+    const StateVisitor::Scope scope(visitor, "spalling");
+    spalling_->visit_state(visitor);
+    if (visitor.replaces())
+      for (const Spall& spall : spalling_->spalls()) remove(spall.blocks);
+  }
   {
     const StateVisitor::Scope scope(visitor, "field");
     field_.visit_state(visitor);

@@ -16,6 +16,7 @@
 #include "pyroclast/simulation/acting/heat_conditions.hpp"
 #include "pyroclast/simulation/acting/loads.hpp"
 #include "pyroclast/simulation/acting/press.hpp"
+#include "pyroclast/simulation/acting/spalling.hpp"
 #include "pyroclast/simulation/acting/supports.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/moisture_field.hpp"
@@ -102,6 +103,15 @@ class Simulation {
   /// Tells whether cracks under pressure have widened so far that the water must be asked what it does; then
   /// the next exchange comes soon.
   bool cracks_outrun_water();
+  /// Tells whether pieces of the body move away from it, see Spalling::find.
+  bool pieces_fly() const { return spalling_ && spalling_->any_fly(*motion_); }
+  /// Lets pieces that move away leave the body for good: motion, heat and water go on without them. Throws
+  /// Error where a load acts on one of them.
+  void let_pieces_go();
+  /// Returns the pieces that have left; null where all blocks stay.
+  const Spalling* spalling() const { return spalling_.get(); }
+  /// Tells whether a block has left the body.
+  bool is_gone(int block) const { return spalling_ && spalling_->is_gone(block); }
   /// Returns the time of the next exchange that the water asks for, s of heating.
   double next_exchange_of_water() const {
     return moisture_ ? moisture_->next_exchange() : std::numeric_limits<double>::infinity();
@@ -156,6 +166,8 @@ class Simulation {
 
  private:
   void hand_over(const ConcreteMaterials& materials);
+  void remove(const std::vector<int>& blocks);
+  void require_there(const std::string& set, const std::string& place) const;
 
   std::shared_ptr<Team> team_;
   std::optional<MadeSpecimen> specimen_;
@@ -174,6 +186,7 @@ class Simulation {
   std::unique_ptr<Supports> supports_;
   std::vector<Record> records_;
   std::unique_ptr<Press> press_;
+  std::unique_ptr<Spalling> spalling_;
   double heating_time_ = 0.0;
   std::int64_t exchanges_ = 0;
 };

@@ -52,9 +52,21 @@ ExchangeResponse exchange_response(const History& history, RowRange rows, Outcom
 }
 
 /// Returns what the answer whether a specimen fails holds for.
-std::string conditions_of_answer(int dimension) {
-  return fmt::format("of this one specimen of plain concrete{}: no steel, no spalling, no member",
-                     dimension == 2 ? " in plane stress" : "");
+std::string conditions_of_answer(int dimension, bool spalls) {
+  return fmt::format("of this one specimen of plain concrete{}: no steel, {}no member",
+                     dimension == 2 ? " in plane stress" : "", spalls ? "" : "no spalling, ");
+}
+
+/// Returns what has left the body by the end of the rows.
+std::string line_of_spalls(const History& history, RowRange rows) {
+  const auto last = [&](const char* column) { return history.values(column, rows).back(); };
+  const std::vector<double> pieces = history.values("spalled_pieces", rows);
+  if (pieces.back() == 0.0) return "no piece left the body";
+  const auto first = std::ranges::find_if(pieces, [](double count) { return count > 0.0; });
+  return fmt::format(
+      "{:.0f} pieces left the body, from {:.3g} min on: {:.3g} kg, {:.2g} mm in the mean, {:.2g} mm at most",
+      pieces.back(), history.values("heating_time_s", rows)[first - pieces.begin()] / 60.0,
+      last("spalled_mass_kg"), last("spalled_depth_mean_m") * 1e3, last("spalled_depth_max_m") * 1e3);
 }
 
 /// Returns why a stage in which nothing failed has no critical temperature.
@@ -175,6 +187,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   const bool bears_load =
       kept_.has_press && coupling().platen == PlatenControl::force && kept_.load_stress > 0.0;
+  const bool spalls = history.has("spalled_pieces");
   const Result::Value why_none = failed ? Result::Value() : Result::Value(why_no_failure(bears_load, r));
   report.results = {
       {known::field, needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
@@ -185,7 +198,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {known::critical_time, value_if(failed, r.critical_time)},
       reason_of(known::critical_time, why_none),
       {known::answer_is,
-       failed || bears_load ? Result::Value(conditions_of_answer(keys_.dimension)) : Result::Value()},
+       failed || bears_load ? Result::Value(conditions_of_answer(keys_.dimension, spalls)) : Result::Value()},
       {known::highest_temperature, value_if(has_rows, r.highest)},
       {known::largest_increment, coupling().increment},
       {known::exchanges, r.exchanges},
@@ -195,7 +208,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {known::largest_thrust, value_if(has_rows && kept_.has_press, r.largest_thrust)},
   };
   if (!has_rows) return report;
-  const std::string conditions = conditions_of_answer(keys_.dimension);
+  const std::string conditions = conditions_of_answer(keys_.dimension, spalls);
   report.lines.push_back(fmt::format(
       "{:.0f} to {:.0f} degC{} in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
       kept_.first_temperature, r.last_mean,
@@ -203,6 +216,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
           ? fmt::format(" in the mean, {:.0f} degC where it is hottest,", r.highest)
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
+  if (spalls) report.lines.push_back(line_of_spalls(history, rows));
   const std::string load = bears_load ? fmt::format("load {:.2f} MPa: ", kept_.load_stress * 1e-6) : "";
   if (failed)
     report.lines.push_back(fmt::format("{}critical temperature {:.0f} degC, after {:.3g} min of heating, {}",

@@ -95,7 +95,9 @@ void TemperatureField::set_gaps(std::vector<ContactGap> gaps) {
 
 void TemperatureField::remove(const std::vector<int>& blocks) {
   if (advance_.under_way) throw Error("blocks cannot leave while the temperatures advance");
+  gone_.resize(static_cast<std::size_t>(model_.block_count()));
   for (const int block : blocks) {
+    gone_[block] = true;
     std::fill(specimen_volume_.begin() + model_.block_zones[block],
               specimen_volume_.begin() + model_.block_zones[block + 1], 0.0);
     std::erase_if(specimen_gridpoints_, [&](int g) {
@@ -167,7 +169,9 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
   }
   conduction_->visit_state(visitor);
   // an advance under way leaves the gridpoints where it began
+  for_gone_gridpoints([&](int g) { gridpoints_[g] = kReferenceTemperature; });
   visitor.visit_by_chunk("gridpoints", gridpoints_, model_.gridpoint_chunks(), kTemperatures);
+  for_gone_gridpoints([&](int g) { gridpoints_[g] = std::numeric_limits<double>::quiet_NaN(); });
   if (visitor.replaces()) gridpoint_halo(model_).spread(gridpoints_);
   visitor.visit("time", time_, state::at_least(0));
   visitor.visit("fastest", fastest_, state::number());
@@ -184,8 +188,17 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
   if (visitor.replaces()) update();
 }
 
+/// Calls `f(gridpoint)` for those of blocks that have left.
+template <class F>
+void TemperatureField::for_gone_gridpoints(F f) const {
+  for (int b = 0; b < std::ssize(gone_); ++b)
+    if (gone_[b])
+      for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) f(g);
+}
+
 /// Computes all that follows from the temperatures of the gridpoints.
 void TemperatureField::update() {
+  for_gone_gridpoints([&](int g) { gridpoints_[g] = kReferenceTemperature; });
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     zones_[z] = mean_of_zone(model_, static_cast<int>(z), gridpoints_);
   }
@@ -193,6 +206,7 @@ void TemperatureField::update() {
     const auto [a, b] = contact_gridpoints_[c];
     contacts_[c] = 0.5 * (gridpoints_[a] + gridpoints_[b]);
   }
+  for_gone_gridpoints([&](int g) { gridpoints_[g] = std::numeric_limits<double>::quiet_NaN(); });
   Interval here{kInfinity, -kInfinity};
   for (int g : specimen_gridpoints_) include(here, gridpoints_[g]);
   const auto read = [&] {

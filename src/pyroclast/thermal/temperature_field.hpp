@@ -66,6 +66,8 @@ class TemperatureField {
 
   /// Returns the temperature of each gridpoint, °C; `zones` and `contacts` return the means over the
   /// gridpoints of each zone and contact point, at a platen the temperature of the specimen's gridpoint.
+  /// Gridpoints of blocks that have left have none (NaN); their zones and contacts are at the reference
+  /// temperature.
   const std::vector<double>& gridpoints() const { return gridpoints_; }
   const std::vector<double>& zones() const { return zones_; }
   const std::vector<double>& contacts() const { return contacts_; }
@@ -98,13 +100,17 @@ class TemperatureField {
 
   void read_conduction();
   void update();
+  bool is_gone(int block) const { return !gone_.empty() && gone_[block]; }
+  template <class F>
+  void for_gone_gridpoints(F f) const;
 
   const Model& model_;
   std::unique_ptr<HeatSolver> conduction_;
   std::vector<int> specimen_gridpoints_;
   /// Gridpoints of each contact; at a platen twice the specimen's.
   std::vector<std::array<int, 2>> contact_gridpoints_;
-  std::vector<double> specimen_volume_;  ///< volume of each zone, m³; 0 in the platens
+  std::vector<double> specimen_volume_;  ///< volume of each zone, m³; 0 in the platens and where it is gone
+  std::vector<bool> gone_;               ///< by block; empty as long as none has left
   ChunkList zone_chunks_;
   double volume_ = 0.0;  ///< volume of the specimen, m³
 

@@ -1,37 +1,15 @@
 #include "pyroclast/thermal/thermal_mesh.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/disjoint_sets.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-/// Sets that grow by joining; the smallest member stands for its set.
-class DisjointSets {
- public:
-  explicit DisjointSets(int count) : parent_(static_cast<std::size_t>(count)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  int first_of(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(int i, int j) {
-    i = first_of(i);
-    j = first_of(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Returns the largest distance of gridpoints that coincide, m. Contacts are made of coinciding faces, so
 /// anything beyond rounding is an error in the model.

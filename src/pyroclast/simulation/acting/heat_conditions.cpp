@@ -184,7 +184,7 @@ template <int Dim>
 std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
                                                const std::vector<BlockMaterial>& block_materials,
                                                const HeatConditions& heat, const Interval& range,
-                                               std::shared_ptr<Team> team) {
+                                               std::shared_ptr<Team> team, bool loses_blocks) {
   auto conduction = std::make_unique<Conduction<Dim>>(model, heat_materials(block_materials),
                                                       HeatParameters{.temperature_range = range,
                                                                      .initial_temperature = heat.initial,
@@ -192,7 +192,8 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
                                                                      .safety = heat.safety,
                                                                      .largest_change = heat.largest_change,
                                                                      .largest_step = heat.largest_step,
-                                                                     .gaps = gap_heat(heat)},
+                                                                     .gaps = gap_heat(heat),
+                                                                     .loses_blocks = loses_blocks},
                                                       std::move(team));
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {
@@ -265,9 +266,9 @@ BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& b
 std::unique_ptr<HeatSolver> make_conduction(const Model& model,
                                             const std::vector<BlockMaterial>& block_materials,
                                             const HeatConditions& heat, const Interval& range,
-                                            std::shared_ptr<Team> team) {
+                                            std::shared_ptr<Team> team, bool loses_blocks) {
   return with_dimension(model, [&](const auto& of_dimension) {
-    return make_conduction_of(of_dimension, block_materials, heat, range, std::move(team));
+    return make_conduction_of(of_dimension, block_materials, heat, range, std::move(team), loses_blocks);
   });
 }
 

@@ -100,12 +100,13 @@ BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& b
 /// \param range  range of temperatures for the solver until it is widened, °C, see temperature_range; the
 ///               materials' curves must cover it
 /// \param team   threads of the run; without a team the calling thread works alone
+/// \param loses_blocks  true where blocks may leave the specimen
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one face.
 std::unique_ptr<HeatSolver> make_conduction(const Model& model,
                                             const std::vector<BlockMaterial>& block_materials,
                                             const HeatConditions& heat, const Interval& range,
-                                            std::shared_ptr<Team> team = nullptr);
+                                            std::shared_ptr<Team> team = nullptr, bool loses_blocks = false);
 
 }  // namespace pyroclast

@@ -13,7 +13,7 @@ namespace {
 
 /// Steps between two checks whether the body rests.
 constexpr std::int64_t kCyclesPerCheck = 50;
-/// Checks from one look at the cracks under the pressure of pore water to the next.
+/// Checks from one look at the cracks under the pressure of pore water, and at pieces that fly, to the next.
 constexpr std::int64_t kChecksPerLookAtCracks = 4;
 /// Sinking of a platen within the stated cycles, over the failure strain, below which it is not running away.
 constexpr double kSlowSinking = 0.1;
@@ -90,6 +90,12 @@ void Exchange::set_down(const Press& press) {
 }
 
 bool Exchange::advance(Simulation& simulation, int most_steps) {
+  if (!go_on(simulation, most_steps)) return false;
+  simulation.let_pieces_go();
+  return true;
+}
+
+bool Exchange::go_on(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
   if (kept_.is_handed_over && !kept_.is_cut_short) {
@@ -108,7 +114,8 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   const auto [now, is_supported, is_still] = read(simulation);
   kept_.ran_away = may_fail && now - kept_.strain_before > coupling_.failure_strain;
   if (kept_.ran_away) return true;
-  if (kept_.cycles % (kChecksPerLookAtCracks * kCyclesPerCheck) == 0 && simulation.cracks_outrun_water()) {
+  const bool looks_at_cracks = kept_.cycles % (kChecksPerLookAtCracks * kCyclesPerCheck) == 0;
+  if (looks_at_cracks && (simulation.cracks_outrun_water() || simulation.pieces_fly())) {
     kept_.is_cut_short = true;
     return true;
   }

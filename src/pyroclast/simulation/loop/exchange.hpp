@@ -61,7 +61,7 @@ class Exchange {
   /// specimen that is being crushed then gets more cycles, until it stops or the platen has run away. The
   /// specimen's own ends tell this, for a platen without load may have left them. A body without load hovers
   /// where it shrank away from the lower platen. It is then set down: its weight would take long to move the
-  /// scaled mass.
+  /// scaled mass. Pieces that fly end the exchange, and leave the body.
   bool advance(Simulation& simulation, int most_steps);
 
   bool ran_away() const { return kept_.ran_away; }
@@ -74,6 +74,7 @@ class Exchange {
   void visit_state(StateVisitor& visitor);
 
  private:
+  bool go_on(Simulation& simulation, int most_steps);
   bool move_evenly(Simulation& simulation);
   void set_down(const Press& press);
   /// What an exchange asks of the body between its steps.

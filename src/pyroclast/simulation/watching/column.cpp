@@ -48,6 +48,10 @@ const char* name_of(ColumnRole role) {
       return "heat.error";
     case ColumnRole::heat_flow:
       return "heat.flow";
+    case ColumnRole::spalling:
+      return "spalling";
+    case ColumnRole::bar:
+      return "bar";
     case ColumnRole::water:
       return "water";
     case ColumnRole::probe:

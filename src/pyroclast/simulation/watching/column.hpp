@@ -30,6 +30,8 @@ enum class ColumnRole : std::uint8_t {
   heat_error,            ///< likewise
   heat_flow,             ///< measure of how heat flows
   water,                 ///< water in the pores: amounts, and extremes of its pressure
+  spalling,              ///< pieces that have left the body
+  bar,                   ///< temperature at the depth of a bar
   probe,                 ///< temperature at a probe
   probe_pressure,        ///< pore pressure at a probe
   record,                ///< record of the deck

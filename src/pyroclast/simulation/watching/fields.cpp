@@ -36,6 +36,9 @@ bool creeps(const S& s) {
 bool is_moist(const S& s) {
   return s.moisture() != nullptr;
 }
+bool loses_pieces(const S& s) {
+  return s.spalling() != nullptr;
+}
 bool parts_heat(const S& s) {
   return s.moves() && s.cracks_hinder_heat();
 }
@@ -173,7 +176,15 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      [](R& r, int i, double* to) { *to = r.simulation().moisture()->content(block_of_zone(r, i)); },
      "likewise: liquid and vapour"},
     {"temperature", unit::temperature, Item::gridpoint, ValueKind::number, true, always,
-     [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "bearings stay at 20 °C"},
+     [](R& r, int i, double* to) {
+       *to = r.is_gone(Item::gridpoint, i) ? kReferenceTemperature : r.simulation().field().gridpoints()[i];
+     },
+     "bearings stay at 20 °C"},
+    {"gone", unit::dimensionless, Item::zone, ValueKind::number, true, loses_pieces,
+     [](R& r, int i, double* to) { *to = r.is_gone(Item::zone, i) ? 1.0 : 0.0; },
+     "1 in blocks that have left the body, else 0; only where [pieces leave](../understand/spalling.md). All "
+     "other fields of such blocks and of their contacts are 0, their temperature 20 °C and their displacement "
+     "that with which they left"},
 });
 
 constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, ValueKind::vector,
@@ -310,6 +321,16 @@ int components_of(ValueKind kind, int dimension) {
   return kind == ValueKind::number ? 1 : kind == ValueKind::vector ? dimension : kMostComponents;
 }
 
+bool FieldReader::is_gone(Item item, int number) const {
+  if (!simulation_.spalling()) return false;
+  const auto gone = [&](int gridpoint) { return simulation_.is_gone(model().block_of(gridpoint)); };
+  if (item == Item::gridpoint) return gone(number);
+  if (item == Item::zone) return gone(model().gridpoints_of_zone(number)[0]);
+  const Joint& joint =
+      model().joint(item == Item::contact_end ? number / ends_of_contact(model().dimension()) : number);
+  return gone(joint.a) || gone(joint.b);
+}
+
 const ContactState& FieldReader::contact(int contact) {
   if (std::exchange(contact_, contact) != contact) state_ = motion().read().contact(contact);
   return state_;
@@ -370,7 +391,10 @@ void values_in_slices(const std::vector<Field>& fields, const Simulation& simula
       fields.front().item, simulation.model(), width_of(fields, simulation),
       [&](int item, T* row) {
         for (const Field& field : fields) {
-          field.read(reader, item, value.data());
+          if (field.item != Item::gridpoint && field.name != "gone" && reader.is_gone(field.item, item))
+            value.fill(0.0);
+          else
+            field.read(reader, item, value.data());
           const int components = components_of(field.kind, dimension);
           for (int c = 0; c < components; ++c) *row++ = static_cast<T>(value[c]);
         }

@@ -45,6 +45,8 @@ class FieldReader {
   const Simulation& simulation() const { return simulation_; }
   const Model& model() const { return simulation_.model(); }
   const Motion& motion() const { return simulation_.motion(); }
+  /// Tells whether an item belongs to a block that has left the body, or joins one.
+  bool is_gone(Item item, int number) const;
   const ContactState& contact(int contact);
   /// Returns the conductance of each contact to heat, W/(m2 K).
   const std::vector<double>& heat_conductances();

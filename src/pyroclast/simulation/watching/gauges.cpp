@@ -153,6 +153,24 @@ constexpr auto kWater = std::to_array<ColumnOf<W>>({
      [](const W& w) { return w.largest_pressure_ratio(); }},
 });
 
+using Sp = Spalling;
+constexpr auto kSpalling = std::to_array<ColumnOf<Sp>>({
+    {"spalled_pieces", "1", ColumnRole::spalling, "pieces", "pieces that have left the body",
+     [](const Sp& s) { return static_cast<double>(s.spalls().size()); }},
+    {"spalled_blocks", "1", ColumnRole::spalling, "blocks", "blocks of these pieces",
+     [](const Sp& s) { return static_cast<double>(s.blocks_gone()); }},
+    {"spalled_mass_kg", "kg", ColumnRole::spalling, "mass", "mass of these pieces at 20 °C, without water",
+     [](const Sp& s) { return s.mass_gone(); }},
+    {"spalled_depth_mean_m", "m", ColumnRole::spalling, "mean_depth",
+     "volume of these pieces over the area of the faces that heat acts on",
+     [](const Sp& s) { return s.mean_depth(); }},
+    {"spalled_depth_max_m", "m", ColumnRole::spalling, "largest_depth",
+     "largest depth of these pieces below the faces of the start that heat acts on",
+     [](const Sp& s) { return s.largest_depth(); }},
+    {"lost_section", "1", ColumnRole::spalling, "lost_section",
+     "volume of these pieces over that of the specimen", [](const Sp& s) { return s.lost_section(); }},
+});
+
 double gap_extent(const S& s) {
   return s.field().conduction()->gap_area() / s.model().thickness;
 }
@@ -398,6 +416,24 @@ const Motion& motion_of(const Simulation& simulation) {
   return simulation.motion();
 }
 
+Column bar_column(const std::string& name) {
+  return {fmt::format("bar_{}_degC", name), "degC",
+          "mean temperature of what is left at the depth of a bar, see spalling.bars of the deck",
+          ColumnRole::bar, name};
+}
+
+Gauge bar_gauge(const Spalling& spalling) {
+  Gauge gauge;
+  for (const double depth : spalling.rule().bars) gauge.columns.push_back(bar_column(name_of_bar(depth)));
+  gauge.read = [](const Simulation& s) {
+    std::vector<double> values;
+    for (std::size_t bar = 0; bar < s.spalling()->rule().bars.size(); ++bar)
+      values.push_back(s.spalling()->temperature_at(bar, s.field()));
+    return values;
+  };
+  return gauge;
+}
+
 Column probe_pressure_column(const std::string& name) {
   return {fmt::format("probe_{}_pore_MPa", name), "MPa",
           "pore pressure of the block at a [[probes]] of the deck, less that of the atmosphere",
@@ -429,6 +465,11 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
         kPress, [](const Simulation& s) -> const Press& { return s.press(); }, true));
   gauges.push_back(motion_gauge(simulation.motion()));
   gauges.push_back(crack_gauge(simulation.motion()));
+  if (simulation.spalling()) {
+    gauges.push_back(make_gauge(
+        kSpalling, [](const Simulation& s) -> const Spalling& { return *s.spalling(); }, false));
+    gauges.push_back(bar_gauge(*simulation.spalling()));
+  }
   return gauges;
 }
 
@@ -466,7 +507,10 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
   pressures.read = [](const Simulation& s) {
     std::vector<double> values;
     for (const auto& probe : s.probes())
-      values.push_back(kMega * s.moisture()->pore_pressure(s.model().block_of(probe.gridpoint())));
+      if (const int block = s.model().block_of(probe.gridpoint()); s.is_gone(block))
+        values.push_back(std::numeric_limits<double>::quiet_NaN());
+      else
+        values.push_back(kMega * s.moisture()->pore_pressure(block));
     return values;
   };
   return gauges;
@@ -491,6 +535,8 @@ std::vector<Column> possible_gauge_columns() {
   append(columns, heat_columns(all_heat));
   append(columns, columns_of(kGaps));
   append(columns, columns_of(kWater));
+  append(columns, columns_of(kSpalling));
+  columns.push_back(bar_column("DEPTH"));
   columns.push_back(probe_column("NAME"));
   columns.push_back(probe_pressure_column("NAME"));
   return columns;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/disjoint_sets.hpp"
 #include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/simulation/watching/items.hpp"
 
@@ -179,6 +180,7 @@ PassedThrough passed_through(const Simulation& simulation) {
   });
   std::vector<int> order(static_cast<std::size_t>(blocks.count()));
   std::iota(order.begin(), order.end(), 0);
+  std::erase_if(order, [&](int block) { return simulation.is_gone(block); });
   std::ranges::sort(order, {}, [&](int block) { return blocks[block].low[0]; });
   std::map<int, int> deep;  // gridpoints that lie in others, and their blocks
   const auto look_into = [&](int block, int other) {
@@ -222,6 +224,7 @@ std::vector<FallingPiece> falling_pieces(const Simulation& simulation) {
       [&](int g, double* row) {
         for (int i = 0; i < simulation.model().dimension(); ++i)
           if (motion.read().is_prescribed(g, i)) row[0] = 1.0;
+        if (motion.is_gone(simulation.model().block_of(g))) row[0] = 1.0;
         row[1] = motion.read().real_mass(g);
         row[2] = motion.read().moving_mass(g);
       },
@@ -232,27 +235,18 @@ std::vector<FallingPiece> falling_pieces(const Simulation& simulation) {
         of_block.real_mass += row[1];
         of_block.moving_mass += row[2];
       });
-  std::vector<int> piece(sums.size());
-  std::iota(piece.begin(), piece.end(), 0);
-  const auto first_of = [&](int block) {
-    while (piece[block] != block) block = piece[block] = piece[piece[block]];
-    return block;
-  };
-  const auto join = [&](int a, int b) {
-    const int first = first_of(a), other = first_of(b);
-    piece[std::max(first, other)] = std::min(first, other);
-  };
+  DisjointSets piece(static_cast<int>(sums.size()));
   each_contact(simulation, true, [&](int a, int b, bool connects) {
-    if (connects) join(a, b);
+    if (connects) piece.join(a, b);
   });
-  for (const FoundPoint& point : motion.found_points()) join(point.blocks[0], point.blocks[1]);
+  for (const FoundPoint& point : motion.found_points()) piece.join(point.blocks[0], point.blocks[1]);
 
   struct Sum : BlockSums {
     std::vector<int> blocks;
   };
   std::map<int, Sum> of_piece;  // by their first blocks
   for (int block = 0; block < std::ssize(sums); ++block) {
-    Sum& sum = of_piece[first_of(block)];
+    Sum& sum = of_piece[piece.first_of(block)];
     sum.is_held = sum.is_held || sums[block].is_held;
     sum.real_mass += sums[block].real_mass;
     sum.moving_mass += sums[block].moving_mass;

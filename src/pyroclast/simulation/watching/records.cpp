@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -172,7 +173,20 @@ double Record::force(const Simulation& simulation) const {
 }
 
 double Record::read(const Simulation& simulation) const {
+  if (has_lost(simulation)) return std::numeric_limits<double>::quiet_NaN();
   return measure(simulation) - (counts_from_zero() ? zero_ : 0.0);
+}
+
+/// Tells whether a block that the record counts on has left the body.
+bool Record::has_lost(const Simulation& simulation) const {
+  if (!simulation.spalling() || simulation.spalling()->spalls().empty()) return false;
+  const Model& model = simulation.model();
+  const auto is_gone = [&](int g) { return simulation.is_gone(model.block_of(g)); };
+  if (is_of_cracks(parameters_.kind))
+    return std::ranges::any_of(
+        items_, [&](int c) { return is_gone(model.joint(c).a) || is_gone(model.joint(c).b); });
+  return std::ranges::any_of(mean_.set.gridpoints, is_gone) ||
+         std::ranges::any_of(mean_of_other_.set.gridpoints, is_gone);
 }
 
 double Record::measure(const Simulation& simulation) const {

@@ -88,6 +88,7 @@ class Record {
     T of(Value value) const;
   };
   Mean mean_over(const Model& model, GridpointSet set) const;
+  bool has_lost(const Simulation& simulation) const;
   double measure(const Simulation& simulation) const;
   double force(const Simulation& simulation) const;
 
