@@ -15,8 +15,8 @@ a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png; one with water in its pores
-water.png and, with fields, water_profile.png. A run that keeps no fields gets
-those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png,
+water.png and, with fields, water_profile.png; one that pieces may leave spalling.png, with fields. A run that keeps
+no fields gets those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png,
 unless no law of its contacts has a damage.
 
 Prints the path of each figure. Ends with 1 and a line on stderr for each thing that is missing or malformed; figures
@@ -49,6 +49,7 @@ from .draw.records import record_course, record_fracture, records, records_of
 from .draw.sections import gradation, morphology
 from .draw.solid_sections import COLOURS, cracks_inside, plane_section
 from .draw.style import page_of, save
+from .draw.spalling import spalling
 from .draw.water import water, water_profile
 from .errors import Error
 from .programs import complain, run_program, say
@@ -56,7 +57,7 @@ from .stored.compressed import Compressed
 from .stored.files import GapWarning
 from .stored.heated import Heated
 from .stored.results import Results, SpecimenFolder
-from .stored.run_facts import WATER
+from .stored.run_facts import SPALLING, WATER
 from .writing import make_folder, shell_path
 
 if sys.version_info >= (3, 11):
@@ -154,6 +155,8 @@ def _of_conduction(run: Results) -> Iterator[Picture]:
         yield Picture("water", lambda: water(run))
         if run.has_fields:
             yield Picture("water_profile", lambda: water_profile(run))
+    if run.facts.of_role(SPALLING) and run.has_fields:
+        yield Picture("spalling", lambda: spalling(run))
     if profile is not None:
         yield Picture("temperature_profile", lambda: temperature_profile(run, profile))
         if len(profile.isotherm):

@@ -424,7 +424,7 @@ def _enlarged(box: tuple[np.ndarray, np.ndarray], scale: float, room: tuple[floa
 
 def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
     run, frame = panel.run, panel.frame
-    blocks, contacts = run.mesh.blocks, run.mesh.contacts
+    blocks, contacts = run.blocks_at(frame), run.mesh.contacts
     draw_blocks(axes, blocks, _moved(panel, look.magnification), view=look.view)
     cells = (contacts.points + look.magnification * run.contact_displacement(frame))[contacts.cells]
     thinning = _thinning(blocks, contacts, look.across if style.page().is_column else max(look.across, _PANELS))

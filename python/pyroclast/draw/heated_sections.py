@@ -147,8 +147,8 @@ def temperature_field(run: Results) -> Figure:
     blocks, page = run.mesh.blocks, style.page()
     frames = page.chosen(_spread(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
-    specimen = blocks.zones[~blocks.of_bearing]
-    within = [field[np.unique(specimen)] for field in fields]
+    parts = [run.blocks_at(frame) for frame in frames]
+    within = [field[np.unique(part.zones[~part.of_bearing])] for part, field in zip(parts, fields)]
     colours = colours_of(within)
     across = min(page.fitting(_NARROWEST) if page.is_column else _FIELDS, len(frames))
     view = view_of(run)
@@ -162,8 +162,8 @@ def temperature_field(run: Results) -> Figure:
     all_axes = figure.subplots(lines, across, squeeze=False).ravel()
     for axes in all_axes[len(frames):]:
         axes.axis("off")
-    for axes, frame, field, values in zip(all_axes, frames, fields, within):
-        _draw_temperature(axes, blocks, field, colours, view)
+    for axes, frame, part, field, values in zip(all_axes, frames, parts, fields, within):
+        _draw_temperature(axes, part, field, colours, view)
         mean = f"mean {frame.temperature:.0f} °C"
         axes.set_title(mean if frame.minutes is None else f"{frame.minutes:.0f} min", fontweight="bold")
         axes.set_xlabel(("" if frame.minutes is None else f"{mean}\n") + f"{values.min():.0f} to {values.max():.0f} °C",
@@ -176,7 +176,7 @@ def temperature_field(run: Results) -> Figure:
 
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
     """Draws the specimen's temperature, alone in its axes, coloured up to its hottest; returns what has the colours."""
-    blocks = run.mesh.blocks
+    blocks = run.blocks_at(frame)
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]
     colours = colours_of([within])

@@ -396,7 +396,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     or "temperature", with isotherms, where the body was before it moved. magnification: of displacements. The picture
     is as large as the specimen is along the other axes. Raises Error for another axis, share or colour.
     """
-    blocks = run.mesh.blocks
+    blocks = run.blocks_at(frame)
     if axis not in _IN_PLANE:
         raise Error(f"axis is {axis!r}; it must be one of {', '.join(_IN_PLANE)}")
     if not 0.0 <= at <= 1.0:

@@ -96,7 +96,7 @@ def _means_over_depth(run: Results, frame: Frame, name: str, face: str) -> tuple
     low, high = specimen_box(blocks)
     place = blocks.points[blocks.zones, axis].mean(axis=1)
     depth = high[axis] - place if is_upper else place - low[axis]
-    inner = ~blocks.of_bearing
+    inner = ~blocks.of_bearing & ~run.gone(frame)
     edges = np.linspace(0.0, high[axis] - low[axis], _SLABS + 1)
     weight, of_slab = (np.histogram(depth[inner], edges, weights=weights)[0]
                        for weights in (blocks.sizes[inner], (blocks.sizes * values)[inner]))

@@ -16,7 +16,7 @@ from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.reference import TRANSIENT_STRAIN, strain_band
 from ..stored.results import Results
-from ..stored.run_facts import BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE, PROBE_PRESSURE, WATER
+from ..stored.run_facts import BAR, BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE, PROBE_PRESSURE, SPALLING, WATER
 from .marks import Mark, marks
 from .packing import packed_floats
 
@@ -28,6 +28,10 @@ _WATER = {"largest_pressure": "largest pore pressure [MPa]",
           "largest_pressure_ratio": "largest vapour pressure over saturation [–]", "held": "water in the pores [kg]",
           "left": "water that left [kg]", "released": "water that hydrates gave back [kg]"}
 """Labels of columns on water, by their meaning."""
+_SPALLING = {"pieces": ("pieces that left", 1.0), "mass": ("mass that left [kg]", 1.0),
+             "mean_depth": ("depth lost in the mean [mm]", 1e3), "largest_depth": ("largest depth lost [mm]", 1e3),
+             "lost_section": ("share of the section lost [–]", 1.0)}
+"""Labels of columns on pieces that left, by their meaning, and factors to their units."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,12 @@ def _all(run: Results) -> Iterator[CurveQuantity]:
             yield CurveQuantity(f"water_{of}", label, water[of])
     for probe in run.facts.of_role(PROBE_PRESSURE):
         yield CurveQuantity(f"pore {probe.of}", f"pore pressure at probe {probe.of} [MPa]", probe.name)
+    spalling = {column.of: column.name for column in run.facts.of_role(SPALLING)}
+    for of, (label, factor) in _SPALLING.items():
+        if of in spalling:
+            yield CurveQuantity(f"spalled_{of}", label, spalling[of], factor)
+    for bar in run.facts.of_role(BAR):
+        yield CurveQuantity(f"bar {bar.of}", f"at the depth of {bar.of} [°C]", bar.name)
     yield CurveQuantity("time", "time of the mechanics [s]", "time_s", 1.0, "time")
     yield CurveQuantity("step", "step", "step")
     for opening in run.facts.of_role(OPENING):

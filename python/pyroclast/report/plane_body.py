@@ -26,10 +26,10 @@ from .packing import packed_floats, packed_steps, packed_whole
 
 MEET = 1e-9  # of the size of a body: points so near to each other are one
 FINE = 1e-6  # of the size of a body: the step of places and displacements
-STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "pore": 0.01, "saturation": 0.005}
+STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "pore": 0.01, "saturation": 0.005, "gone": 1.0}
 """Wanted steps: MPa, K, m, 1, MPa, 1."""
-WATER_IN_BLOCKS = {"pore_pressure": ("pore_pressure [Pa]", 1e-6), "saturation": ("saturation [1]", 1.0)}
-"""Fields of zones on water, alike in a block, and their factors to the units of the page."""
+OF_BLOCKS = {"pore_pressure": ("pore_pressure [Pa]", 1e-6), "saturation": ("saturation [1]", 1.0), "gone": ("gone [1]", 1.0)}
+"""Fields of zones that are alike in a block, and their factors to the units of the page."""
 _LOST_SHARE = 1e-5  # of all energy that contacts lost: the step of what one of them lost
 _LOST = re.compile(r"lost_(\w+) \[J m-2\]")
 _MOST_LEFT_OUT = 4  # notes of frames
@@ -228,14 +228,14 @@ def rigid_motions(corner: np.ndarray, outline: Outline, moves: np.ndarray) -> tu
     return shift, np.arctan2(across, along)
 
 
-def water_of_zones(path: Path, zones: int,
+def fields_of_blocks(path: Path, zones: int,
                    mean: Callable[[np.ndarray], np.ndarray]) -> Iterator[tuple[str, np.ndarray]]:
-    """Reads the fields of a frame on water in the pores, by block; none where the run has no water.
+    """Reads the fields of a frame that are alike in a block, as far as the run has them.
 
     mean: from values (Z,) of zones to means (B,) of blocks.
     """
     there = names_in(path, "VTKHDF/CellData")
-    for name, (field_name, factor) in WATER_IN_BLOCKS.items():
+    for name, (field_name, factor) in OF_BLOCKS.items():
         if field_name in there:
             yield name, factor * mean(read_array(path, f"VTKHDF/CellData/{field_name}", (zones,)))
 
@@ -258,7 +258,7 @@ class _Reader:
         run, outline = self._run, self._outline
         if self._heated:
             yield "temperature", run.gridpoint_temperature(frame)[outline.gridpoint]
-        yield from water_of_zones(self._folder / f"blocks_{frame.number:04d}.hdf", len(self._share), self._mean)
+        yield from fields_of_blocks(self._folder / f"blocks_{frame.number:04d}.hdf", len(self._share), self._mean)
         if not run.moves:
             return
         yield "displacement", run.gridpoint_displacement(frame)[outline.gridpoint]

@@ -134,7 +134,7 @@ def _steps(run: Results, body: dict[str, Any] | None) -> list[tuple[str, str]]:
              "shift_x": ("displacements of blocks", 1e6, "µm"), "temperature": ("temperatures", 1.0, "K"),
              "stress_y": ("stresses", 1.0, "MPa"), "opening": ("openings", 1e6, "µm"),
              "creep_y": ("creep strains", 1.0, ""), "pore_pressure": ("pore pressures", 1.0, "MPa"),
-             "saturation": ("saturations", 1.0, "")}
+             "saturation": ("saturations", 1.0, ""), "gone": ("blocks that have left", 1.0, "")}
     found = [(label, f"{factor * body['steps'][name]:.3g} {unit}".strip())
              for name, (label, factor, unit) in names.items() if name in body["steps"]]
     called = {column.of: column.label for column, *_ in energies_out(run)}

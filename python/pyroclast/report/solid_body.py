@@ -19,7 +19,7 @@ from ..stored.mesh import BlockMesh
 from ..stored.results import Results
 from .packing import packed_floats, packed_steps, packed_whole
 from .plane_body import (FINE, MEET, PackedBody, STEPS, about_body, exact_steps, meeting, packed_damage, read_finite,
-                         water_of_zones)
+                         fields_of_blocks)
 
 _OPENING = 1e-6  # m, wanted step: ten times that of the plane, as a solid has so many more contacts
 _SAME = 1e-6  # cosines of one angle differ by less
@@ -226,7 +226,7 @@ class _Reader:
         if self._heated:
             found["temperature"] = run.gridpoint_temperature(frame)[self._used].astype(float)
         path = run.folder / "fields" / f"blocks_{frame.number:04d}.hdf"
-        found.update(water_of_zones(path, len(blocks.zones), self._mean))
+        found.update(fields_of_blocks(path, len(blocks.zones), self._mean))
         if not run.moves:
             return found
         moves = run.gridpoint_displacement(frame)[self._used].astype(float)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -28,6 +28,11 @@ class BlockMesh:
     material: np.ndarray  #: (Z,) indices into `materials`
     materials: tuple[str, ...]  #: names of the phases, and last those of bearings
     of_bearing: np.ndarray  #: (Z,) bool: zones of platens and other bearings
+
+    def of(self, zones: np.ndarray) -> BlockMesh:
+        """Returns the mesh of some zones (Z,) alone, with all gridpoints."""
+        return replace(self, zones=self.zones[zones], block=self.block[zones], material=self.material[zones],
+                       of_bearing=self.of_bearing[zones])
 
     @property
     def dimension(self) -> int:

@@ -88,6 +88,7 @@ constexpr auto kFigures = std::to_array<const char*>({
     "isotherm",
     "plane_*",
     "records",
+    "spalling",
     "stress_strain",
     "temperature",
     "temperature_history",

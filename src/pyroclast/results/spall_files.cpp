@@ -17,12 +17,12 @@ namespace {
 std::string table_of_spalls(const Spalling& spalling) {
   std::string text =
       "piece,heating_time_s,blocks,area_m2,mass_kg,mean_depth_m,largest_depth_m,pressure_behind_MPa,"
-      "temperature_behind_degC,sign\n";
+      "temperature_behind_degC,by_flight\n";
   int piece = 0;
   for (const Spall& s : spalling.spalls())
     text += fmt::format("{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", ++piece, s.heating_time,
                         s.blocks.size(), s.area, s.mass, s.mean_depth, s.largest_depth, s.pressure * 1e-6,
-                        s.temperature, name_of(s.sign));
+                        s.temperature, s.sign == SpallSign::flight ? 1 : 0);
   return text;
 }
 

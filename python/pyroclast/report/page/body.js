@@ -88,6 +88,19 @@ export class Body {
       x[i] = step * rest[2 * i];
       y[i] = step * rest[2 * i + 1];
     }
+    this.displace(frame, magnification);
+    for (let b = 0; b < this.blocks; b++)
+      if (this.isGone(frame, b))
+        for (let i = this.first[b]; i < this.first[b + 1]; i++) [x[i], y[i]] = [this.middleX[b], this.middleY[b]];
+  }
+
+  // Whether a block has left the body by a frame.
+  isGone(frame, b) {
+    return "gone" in this.arrays && this.arrays.gone.at(frame, b) > 0.5;
+  }
+
+  displace(frame, magnification) {
+    const {x, y, corners, arrays: a} = this;
     if (a.move_x) {
       const u = a.move_x.values,
         v = a.move_y.values,

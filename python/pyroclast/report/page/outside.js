@@ -102,7 +102,8 @@ export class OutsideBody extends SolidBody {
     for (let b = 0; b < this.blocks; b++) {
       const u = m ? this.displacement(frame, b) : [0, 0, 0],
         w = m ? ["x", "y", "z"].map((axis) => a[`turn_${axis}`].at(frame, b)) : [0, 0, 0];
-      const [mx, my, mz] = middles.subarray(3 * b, 3 * b + 3);
+      const [mx, my, mz] = middles.subarray(3 * b, 3 * b + 3),
+        isGone = this.isGone(frame, b);
       for (let i = a.point_first.values[b]; i < a.point_first.values[b + 1]; i++) {
         const x = step * rest[3 * i],
           y = step * rest[3 * i + 1],
@@ -113,6 +114,7 @@ export class OutsideBody extends SolidBody {
         space[3 * i] = x - centre[0] + m * (u[0] + w[1] * dz - w[2] * dy);
         space[3 * i + 1] = y - centre[1] + m * (u[1] + w[2] * dx - w[0] * dz);
         space[3 * i + 2] = z - centre[2] + m * (u[2] + w[0] * dy - w[1] * dx);
+        if (isGone) for (let k = 0; k < 3; k++) space[3 * i + k] = middles[3 * b + k] - centre[k];
       }
     }
     this.choose(frame);

@@ -15,6 +15,7 @@ export class Tabs {
     const isEmpty = {
       heat: !this.drawsHeat(),
       water: !this.course.quantity("water_held"),
+      spalling: !this.course.quantity("spalled_pieces"),
       energies: !this.course.about.energy_out.length,
       convergence: !this.course.has("unbalanced_ratio"),
     };
@@ -23,6 +24,7 @@ export class Tabs {
       cracks: () => this.drawCracks(),
       heat: () => this.drawHeat(),
       water: () => this.drawWater(),
+      spalling: () => this.drawSpalling(),
       properties: () => this.drawProperties(),
       convergence: () => this.drawConvergence(),
     };
@@ -198,6 +200,12 @@ export class Tabs {
   drawWater() {
     this.drawOverMinutes("pore_pressures", "pore pressures", "pore pressure [MPa]", ["water_largest_pressure"], "pore ");
     this.drawOverMinutes("water", "water", "water [kg]", ["water_held", "water_left", "water_released"]);
+  }
+
+  drawSpalling() {
+    this.drawOverMinutes("spalled_depths", "depths", "depth lost [mm]", ["spalled_largest_depth", "spalled_mean_depth"]);
+    this.drawOverMinutes("spalled_mass", "mass", "mass that left [kg]", ["spalled_mass"]);
+    this.drawOverMinutes("bars", "bars", "temperature at the depth of a bar [°C]", [], "bar ");
   }
 
   // Panels whose cursor is the greatest temperature of the row.

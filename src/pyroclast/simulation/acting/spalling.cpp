@@ -64,10 +64,6 @@ struct Rim {
 
 }  // namespace
 
-const char* name_of(SpallSign sign) {
-  return sign == SpallSign::opening ? "opening" : "flight";
-}
-
 std::string name_of_bar(double depth) {
   return fmt::format("{:.6g}mm", depth * 1e3);
 }

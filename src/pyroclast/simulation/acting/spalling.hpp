@@ -30,7 +30,6 @@ enum class SpallSign : std::uint8_t {
   flight,   ///< it has gone as far along its rim
 };
 
-const char* name_of(SpallSign sign);
 /// Returns the name of a bar at a depth, m: "25mm".
 std::string name_of_bar(double depth);
 
