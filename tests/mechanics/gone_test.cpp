@@ -81,8 +81,7 @@ void expect_balance(const ModelOf<Dim>& model, const MechanicsParameters& parame
   const EnergyLedger last = m.totals().energy();
   EXPECT_EQ(last.removed, now.removed);
   EXPECT_LT(std::abs(last.error() - before.error()), within * turnover(last));
-  for (const int block : blocks)
-    EXPECT_EQ(norm(m.read().force(model.block_gridpoints[block])), 0.0);
+  for (const int block : blocks) EXPECT_EQ(norm(m.read().force(model.block_gridpoints[block])), 0.0);
 }
 
 TEST(GoneBlocks, TakeTheirEnergyAlong) {
@@ -105,9 +104,9 @@ TEST(GoneBlocks, LeaveABodyThatMovesAsIfItWereAlone) {
   for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
     const auto parameters = that_loses_blocks<2>(kinematics);
     const auto properties = [&](const ModelOf<2>& model) {
-      return by_interface(
-          model, std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(young, poisson)),
-          {mortar_contact()});
+      return by_interface(model,
+                          std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(young, poisson)),
+                          {mortar_contact()});
     };
     Mechanics<2> m(all, {2400.0}, properties(all), parameters);
     Mechanics<2> alone(two, {2400.0}, properties(two), parameters);

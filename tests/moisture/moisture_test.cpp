@@ -248,8 +248,8 @@ TEST(Moisture, SealedBodiesKeepTheirWater) {
     EXPECT_NEAR(body.moisture.state().content[c] / before[c], 1.0, 1e-12);
 }
 
-// Promise: cells that leave take their water along, and the others dry where they are bared as a body that never
-// had them.
+// Promise: cells that leave take their water along, and the others dry where they are bared as a body that
+// never had them.
 TEST(Moisture, GoesOnWithoutCellsThatLeave) {
   const MoistAir air{0.018, Curve::constant(0.0138)};
   const auto reduced = [](MoistBody<2>& body) {

@@ -22,7 +22,8 @@ struct MoistBody {
       : model(std::move(its_model)),
         geometry(zone_geometry(model)),
         outer(outline(model, geometry, std::vector<bool>(model.block_count(), true))),
-        moisture(moisture_mesh(model, geometry, std::vector<bool>(model.block_count(), true), outer), {pores}, parameters) {}
+        moisture(moisture_mesh(model, geometry, std::vector<bool>(model.block_count(), true), outer), {pores},
+                 parameters) {}
 
   /// Outer faces in the plane across x.
   std::vector<int> end(double x) const {

@@ -311,8 +311,8 @@ TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
   std::vector<ContactGap> gaps(model.contacts.size());
   for (int c = 0; c < model.contact_count(); c += 5) gaps[c] = {0.9, 1e-5};
   const auto whole = conduction_of(model, gaps);
-  const auto joined =
-      join_through_contacts(model, blocks_of(model, {true, true, false}));  // without gaps: the most that touches
+  const auto joined = join_through_contacts(
+      model, blocks_of(model, {true, true, false}));  // without gaps: the most that touches
   set_field(*whole, model, start);
   advance_to(*whole, kHeatStep);
   ASSERT_EQ(whole->work().steps, 1);

@@ -553,7 +553,8 @@ TEST(Conduction, GoesOnWithoutBlocksThatLeaveAsABodyThatNeverHadThem) {
   const auto fire = [](Conduction<2>& heat, double left) {
     heat.apply(heat.faces(on_plane<2>(0, left, 1e-9)),
                Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
-    heat.apply(heat.faces(on_plane<2>(0, left, 1e-9)), Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve});
+    heat.apply(heat.faces(on_plane<2>(0, left, 1e-9)),
+               Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve});
     heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.12, 1e-9)), Curve::constant(20.0));
     heat.prescribe_temperature(heat.faces(on_plane<2>(1, 0.0, 1e-9)), Curve::constant(30.0));
   };
@@ -589,7 +590,8 @@ TEST(Conduction, BooksTheHeatOfBlocksThatLeaveAndKeepsThatOfTheOthers) {
   const auto model = solid_body({.blocks = {4, 3, 2}, .size = {0.08, 0.06, 0.04}, .jitter = 0.2});
   const auto make = [&] {
     auto heat = std::make_unique<Conduction<3>>(model, std::vector{std::optional{moist_concrete()}}, p);
-    heat->apply(heat->faces(on_plane<3>(0, 0.0, 1e-9)), Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
+    heat->apply(heat->faces(on_plane<3>(0, 0.0, 1e-9)),
+                Convection{Curve::constant(25.0), fire_curves().at("iso834").curve});
     return heat;
   };
   auto heat = make();

@@ -55,7 +55,9 @@ ModelOf<2> pair() {
 struct Gaps {
   Gaps(const ModelOf<2>& of, const GapHeat& law, const Interval& range = {0.0, 1000.0},
        const std::vector<bool>& materials = {true})
-      : model(of), conducts(blocks_of(model, materials)), gaps(model, conducts, law, TemperatureGrid(range), team) {}
+      : model(of),
+        conducts(blocks_of(model, materials)),
+        gaps(model, conducts, law, TemperatureGrid(range), team) {}
 
   /// All contacts as wide open as that, with all gridpoints at a temperature.
   bool set(const ContactGap& gap, double temperature = 20.0) {

@@ -84,11 +84,11 @@ struct Books {
   /// Parts that a change of properties adds to both through the half step already begun; the next step books
   /// them.
   double begun_property_change = 0.0, begun_mass_scaling = 0.0;
-  double creep_work = 0.0;     ///< work of creep
-  double pore_pressure = 0.0;  ///< work of pore pressures up to their last change
+  double creep_work = 0.0;                    ///< work of creep
+  double pore_pressure = 0.0;                 ///< work of pore pressures up to their last change
   double removed = 0.0, begun_removed = 0.0;  ///< energy of blocks that are gone, as of properties
   double gravity = 0.0;                       ///< work of the weight of blocks that are gone
-  double start = 0.0;          ///< kinetic energy of the velocities at the start
+  double start = 0.0;                         ///< kinetic energy of the velocities at the start
 };
 
 /// Body in lanes: layout and state of a model's blocks, with the model's chunks. A body is data alone.

@@ -15,7 +15,8 @@ void GoneBlocks<Dim>::book(const std::vector<int>& blocks) {
   if (body_.state.weighs())
     for (const int block : blocks)
       for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-        body_.books.gravity += body_.gravity_mass[g] * dot(body_.state.gravity, read.displacement_of_force(g));
+        body_.books.gravity +=
+            body_.gravity_mass[g] * dot(body_.state.gravity, read.displacement_of_force(g));
   // the energy of motion at the half step that has begun
   for (const int block : blocks)
     for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g) {
@@ -81,8 +82,8 @@ void GoneBlocks<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("gravity_of_gone", body_.books.gravity);
   if (!visitor.replaces()) return;
   visitor.require(is_whole, "gone", "cannot come back to a body that has lost blocks already");
-  visitor.require(std::ranges::is_sorted(blocks) && std::ranges::adjacent_find(blocks) == blocks.end(), "gone",
-                  "must come once each, in order");
+  visitor.require(std::ranges::is_sorted(blocks) && std::ranges::adjacent_find(blocks) == blocks.end(),
+                  "gone", "must come once each, in order");
   if (!blocks.empty()) remove(blocks);
 }
 

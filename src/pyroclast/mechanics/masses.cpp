@@ -100,7 +100,8 @@ void Masses<Dim>::set_step_over_mass() {
   auto& step_over_mass = body_.arrays.step_over_mass;
   std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle slots never move
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
-    if (body_.mass[g] > 0.0) step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
+    if (body_.mass[g] > 0.0)
+      step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
   if constexpr (Dim == 2)
     if (body_.found) FoundContacts(body_).follow_masses();
 }

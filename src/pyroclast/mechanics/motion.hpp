@@ -100,7 +100,7 @@ class Motion {
   virtual void visit_state(StateVisitor& visitor) = 0;
 
   virtual bool is_gone(int block) const = 0;  ///< Tells whether a block has left the body.
-  virtual bool creeps() const = 0;  ///< Tells whether zones of this body can creep.
+  virtual bool creeps() const = 0;            ///< Tells whether zones of this body can creep.
   /// Tells whether water in the pores presses on the contacts of this body.
   virtual bool has_pore_pressure() const = 0;
   /// Returns the laws of the contacts, each once, in the order of the interfaces.

@@ -234,8 +234,8 @@ struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
   const PackFunctions<Dim>* laws = nullptr;  ///< functions of the laws of the body
   FoundRows* found = nullptr;  ///< contacts that are found; null where contacts are the first ones
-  /// Bits of the faces of each pack of faces that bear nothing any more: handed over to found contacts, or of a
-  /// block that is gone. Empty as long as there are none.
+  /// Bits of the faces of each pack of faces that bear nothing any more: handed over to found contacts, or of
+  /// a block that is gone. Empty as long as there are none.
   ConstView<std::uint8_t> left_out;
 
   bool weighs() const { return !this->real_mass.empty(); }

@@ -73,8 +73,7 @@ template <int Dim>
 std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part) {
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
-    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
-      result[g] = takes_part[b];
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) result[g] = takes_part[b];
   return result;
 }
 

@@ -25,9 +25,9 @@ template <int Dim>
 std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                       const std::vector<bool>& takes_part);
 
-/// Returns for each face of an outline the face of the earlier outline whose place it takes: the same face, or
-/// for a face that blocks bared when they left, the nearest of the faces that left and look the same way, else
-/// the nearest of all that left; -1 where none did.
+/// Returns for each face of an outline the face of the earlier outline whose place it takes: the same face,
+/// or for a face that blocks bared when they left, the nearest of the faces that left and look the same way,
+/// else the nearest of all that left; -1 where none did.
 template <int Dim>
 std::vector<int> earlier_faces(const std::vector<OutlineFace<Dim>>& earlier,
                                const std::vector<OutlineFace<Dim>>& now);

@@ -263,7 +263,8 @@ void Moisture::reduce_to(MoistureMesh mesh, const std::vector<int>& outer) {
   const double before = stored();
   std::vector<int> cells;  // present cell of each one that stays
   for (const int block : mesh.block) cells.push_back(mesh_.cell_of_block[block]);
-  for (auto* of_cells : {&state_.content, &state_.pressure, &state_.temperature, &state_.highest_temperature}) {
+  for (auto* of_cells :
+       {&state_.content, &state_.pressure, &state_.temperature, &state_.highest_temperature}) {
     std::vector<double> kept;
     for (const int cell : cells) kept.push_back((*of_cells)[cell]);
     *of_cells = std::move(kept);
@@ -329,8 +330,8 @@ double Moisture::stored() const {
 }
 
 double Moisture::imbalance() const {
-  return stored() - (state_.ledger.at_start + state_.ledger.released - state_.ledger.left -
-                     state_.ledger.removed);
+  return stored() -
+         (state_.ledger.at_start + state_.ledger.released - state_.ledger.left - state_.ledger.removed);
 }
 
 double Moisture::saturation(int cell) const {

@@ -31,8 +31,9 @@ Temperatures row_of(const ProfileRows& rows, std::size_t row, std::size_t points
 std::string profile_lines(double time, const std::vector<double>& depths, Temperatures temperatures) {
   std::string text;
   for (std::size_t i = 0; i < depths.size(); ++i)
-    text += std::isnan(temperatures[i]) ? fmt::format("{:.9g},{:.9g},\n", time, depths[i])
-                                        : fmt::format("{:.9g},{:.9g},{:.9g}\n", time, depths[i], temperatures[i]);
+    text += std::isnan(temperatures[i])
+                ? fmt::format("{:.9g},{:.9g},\n", time, depths[i])
+                : fmt::format("{:.9g},{:.9g},{:.9g}\n", time, depths[i], temperatures[i]);
   return text;
 }
 

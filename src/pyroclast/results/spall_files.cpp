@@ -20,15 +20,16 @@ std::string table_of_spalls(const Spalling& spalling) {
       "temperature_behind_degC,by_flight\n";
   int piece = 0;
   for (const Spall& s : spalling.spalls())
-    text += fmt::format("{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", ++piece, s.heating_time,
-                        s.blocks.size(), s.area, s.mass, s.mean_depth, s.largest_depth, s.pressure * 1e-6,
-                        s.temperature, s.sign == SpallSign::flight ? 1 : 0);
+    text += fmt::format("{},{:.9g},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", ++piece,
+                        s.heating_time, s.blocks.size(), s.area, s.mass, s.mean_depth, s.largest_depth,
+                        s.pressure * 1e-6, s.temperature, s.sign == SpallSign::flight ? 1 : 0);
   return text;
 }
 
 std::string table_of_blocks(const Model& model, const Spalling& spalling) {
   const bool is_solid = model.dimension() == 3;
-  std::string text = fmt::format("piece,block,x_m,y_m,{}least_depth_m,largest_depth_m\n", is_solid ? "z_m," : "");
+  std::string text =
+      fmt::format("piece,block,x_m,y_m,{}least_depth_m,largest_depth_m\n", is_solid ? "z_m," : "");
   const std::vector<Vec<3>> centroids = block_centroids(model);
   int piece = 0;
   for (const Spall& spall : spalling.spalls()) {

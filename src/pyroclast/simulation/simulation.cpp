@@ -239,9 +239,10 @@ void Simulation::let_pieces_go() {
     for (const auto& [set, load] : loads_->all())
       for (const int g : model_->set(set))
         if (leaves[model_->block_of(g)])
-          throw Error(fmt::format("block {} leaves the body at {:g} s of heating, but the load on the set "
-                                  "\"{}\" acts on it: load other sets, or leave [spalling] out",
-                                  model_->block_of(g), field_.time(), set));
+          throw Error(
+              fmt::format("block {} leaves the body at {:g} s of heating, but the load on the set "
+                          "\"{}\" acts on it: load other sets, or leave [spalling] out",
+                          model_->block_of(g), field_.time(), set));
     spall.heating_time = heating_time_;
     motion_->remove(spall.blocks);
     remove(spall.blocks);

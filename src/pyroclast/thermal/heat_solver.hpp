@@ -42,9 +42,8 @@ inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
      [](const HeatLedger& h) { return h.boundary.convection; }},
     {"radiation", "heat_radiation_J", LedgerSide::put_in, "radiation", "by radiation",
      [](const HeatLedger& h) { return h.boundary.radiation; }},
-    {"removed", "heat_removed_J", LedgerSide::lost, "gone with pieces",
-     "in blocks that have left the body", [](const HeatLedger& h) { return h.removed; },
-     [](const HeatLedger& h) { return h.loses_blocks; }},
+    {"removed", "heat_removed_J", LedgerSide::lost, "gone with pieces", "in blocks that have left the body",
+     [](const HeatLedger& h) { return h.removed; }, [](const HeatLedger& h) { return h.loses_blocks; }},
     {"error", "heat_error_J", LedgerSide::error, "error", "heat that came in, less heat stored and gone",
      [](const HeatLedger& h) { return h.error(); }},
 });

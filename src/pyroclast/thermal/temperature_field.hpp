@@ -41,8 +41,8 @@ class TemperatureField {
   /// while an advance is under way.
   void set_gaps(std::vector<ContactGap> gaps);
 
-  /// Takes blocks out of the specimen for good, see HeatSolver::remove. Throws Error while an advance is under
-  /// way.
+  /// Takes blocks out of the specimen for good, see HeatSolver::remove. Throws Error while an advance is
+  /// under way.
   void remove(const std::vector<int>& blocks);
 
   /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,

@@ -154,16 +154,15 @@ std::vector<Spalling::Leaving> Spalling::leaving(const Motion& motion) const {
     if (point.normal_traction < 0.0) parts.join(point.blocks[0], point.blocks[1]);
   std::vector<bool> stays(blocks), is_outside(blocks);
   std::vector<double> volume(blocks);
-  bool any_held = false;
   for (int b = 0; b < blocks; ++b) {
     if (is_gone_[b]) continue;
     const int part = parts.first_of(b);
     volume[part] += block_volume_[b];
     is_outside[part] = is_outside[part] || is_outside_[b];
-    if (stays[part] || !is_held(motion, b)) continue;
-    stays[part] = any_held = true;
+    stays[part] = stays[part] || is_held(motion, b);
   }
-  if (!any_held) stays[std::ranges::max_element(volume) - volume.begin()] = true;
+  // a body without load may hover between its platens
+  stays[std::ranges::max_element(volume) - volume.begin()] = true;
   const auto is_loose = [&](int block) { return !is_gone_[block] && !stays[parts.first_of(block)]; };
   std::map<int, Rim> rims;
   for (int c = 0; c < model_.contact_count(); ++c) {
@@ -228,8 +227,7 @@ Spall Spalling::describe(Leaving piece, const TemperatureField& field, const Moi
     spall.mean_depth += seen * depth(place);
     spall.temperature += joint.area * field.contacts()[c];
     rim += joint.area;
-    if (moisture)
-      spall.pressure = std::max(spall.pressure, moisture->pore_pressure(is_of_piece[a] ? b : a));
+    if (moisture) spall.pressure = std::max(spall.pressure, moisture->pore_pressure(is_of_piece[a] ? b : a));
   }
   if (spall.area > 0.0) spall.mean_depth /= spall.area;
   if (rim > 0.0) spall.temperature /= rim;

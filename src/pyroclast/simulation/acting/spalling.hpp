@@ -57,13 +57,12 @@ class Spalling {
 
   const SpallingRule& rule() const { return rule_; }
 
-  /// Finds the pieces that move away. A contact holds its blocks together as long as a point of it has more of
-  /// its strength than `bond`, or is pressed and has not
-  /// slid off. What such contacts join to a bearing, or to a gridpoint that is
-  /// held or driven, stays; where nothing is held the largest part does. Any other part is loose. A loose part
-  /// at the outside leaves once the mean opening of its rim, or the mean way that its rim has gone, is more
-  /// than `rim_opening` or than 5 % of the rim's edges. One that others enclose leaves once it has gone an
-  /// edge: contacts of the start let it pass through them.
+  /// Finds the pieces that move away. A contact holds its blocks together as long as a point of it has more
+  /// of its strength than `bond`, or is pressed and has not slid off. What such contacts join to a bearing,
+  /// or to a gridpoint that is held or driven, stays, and so does the largest part. Any other part is loose.
+  /// A loose part at the outside leaves once the mean opening of its rim, or the mean way that its rim has
+  /// gone, is more than `rim_opening` or than 5 % of the rim's edges. One that others enclose leaves once it
+  /// has gone an edge: contacts of the start let it pass through them.
   std::vector<Spall> find(const Motion& motion, const TemperatureField& field,
                           const MoistureField* moisture) const;
   /// Tells whether any does: cheaper than to find them.

@@ -183,7 +183,8 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
     {"gone", unit::dimensionless, Item::zone, ValueKind::number, true, loses_pieces,
      [](R& r, int i, double* to) { *to = r.is_gone(Item::zone, i) ? 1.0 : 0.0; },
      "1 in blocks that have left the body, else 0; only where [pieces leave](../understand/spalling.md). All "
-     "other fields of such blocks and of their contacts are 0, their temperature 20 °C and their displacement "
+     "other fields of such blocks and of their contacts are 0, their temperature 20 °C and their "
+     "displacement "
      "that with which they left"},
 });
 

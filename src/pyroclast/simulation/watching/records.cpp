@@ -183,8 +183,8 @@ bool Record::has_lost(const Simulation& simulation) const {
   const Model& model = simulation.model();
   const auto is_gone = [&](int g) { return simulation.is_gone(model.block_of(g)); };
   if (is_of_cracks(parameters_.kind))
-    return std::ranges::any_of(
-        items_, [&](int c) { return is_gone(model.joint(c).a) || is_gone(model.joint(c).b); });
+    return std::ranges::any_of(items_,
+                               [&](int c) { return is_gone(model.joint(c).a) || is_gone(model.joint(c).b); });
   return std::ranges::any_of(mean_.set.gridpoints, is_gone) ||
          std::ranges::any_of(mean_of_other_.set.gridpoints, is_gone);
 }
