@@ -11,12 +11,15 @@ import pathlib
 import re
 import shlex
 import subprocess
+import sys
 import tomllib
 from collections.abc import Callable, Sequence
 from typing import Any
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
+# A study takes the Python package that was built with the program, whatever other one is installed.
+sys.path.insert(1, str(pathlib.Path(PROGRAM).resolve().parent.parent / "python"))
 
 CONTROLLED = ["velocity=0.2 mm/s", "fastest_velocity=8 mm/s", "unbalanced_ratio=1e-4", "kinetic_over_strain=5e-3",
               "platen_difference=0.01", "dissipation_rate=1 1/s"]

@@ -139,6 +139,25 @@ class Concrete(InAFolder):
         told = self.pyroclast("concrete", *LIMESTONE, *FULLER, *hot[:3], "best.toml", "-o", "best-hot.toml").stdout
         self.assertNotIn("warning", told)
 
+    def test_a_heated_specimen_of_another_size_has_blocks_of_the_size_that_was_calibrated(self):
+        self.concrete(*LIMESTONE, *FULLER, "--width", "100 mm", "--height", "200 mm", "--blocks", "500")
+        wide = (*LIMESTONE, *FULLER, "--width", "300 mm", "--fire", "iso834", "--minutes", "90", "--from", "mine.toml")
+        told = self.pyroclast("concrete", *wide, "-o", "wide.toml").stdout
+        self.assertIn("blocks          1500 of 6.32 mm, the size that was calibrated", told)
+        self.assertIn("mine.toml has the first guesses", told)  # of the size that it has
+        deck = self.deck("wide.toml")
+        self.assertEqual((deck["specimen"]["width"], deck["specimen"]["height"]), ("300 mm", "200 mm"))
+        self.assertEqual((deck["blocks"]["count"], deck["blocks"]["calibrated_count"]), (1500, 1500))
+        self.assertEqual(deck["mechanics"]["time_step"], self.deck()["mechanics"]["time_step"])
+        self.assertIn("is valid", self.pyroclast("check", "wide.toml").stdout)
+        same = self.pyroclast("concrete", *wide[:-7], "100 mm", *wide[-6:], "-o", "same.toml").stdout
+        self.assertNotIn("the size that was calibrated", same)
+        self.assertEqual(self.deck("same.toml")["blocks"]["count"], 500)
+        self.assertIn("would be 40; choose a size with 100 to 1000000 of them",
+                      self.pyroclast("concrete", *wide[:-7], "40 mm", "--height", "40 mm", *wide[-6:], "-o", "few.toml",
+                                     code=1).stderr)
+        self.assertFalse((self.folder / "few.toml").exists())
+
     def test_no_stones_of_its_deck_form_a_skeleton_whatever_the_rock_and_the_grading(self):
         for words in ((*SIEVES, "--width", "100 mm", "--height", "200 mm"), (*LIMESTONE, *FULLER),
                       (*LIMESTONE, "--fraction", "0.55", "--d_max", "16 mm"),

@@ -74,6 +74,18 @@ class Foretold(InTheFire):
                       "curves are not extrapolated: en1992_apparent_modulus reaches as far", said)
         self.assertIn("en1992_siliceous_expansion, en1992_calcareous_expansion reach as far", said)
 
+    def test_blocks_that_scatter_critical_temperatures_are_told_with_the_number_that_does_not(self):
+        words = ("concrete", *CONCRETE[:CONCRETE.index("--blocks")], "--aggregate", "granite", "--fire", "iso834",
+                 "--minutes", "90")
+        self.pyroclast(*words, "-o", "mine.toml")
+        self.assertNotIn("blocks.count", self.pyroclast("check", "mine-fire.toml").stdout)
+        count = tomllib.loads((self.folder / "mine.toml").read_text())["blocks"]["count"]
+        told = self.pyroclast("check", "mine-fire.toml", "--set", f"blocks.count={count // 2}").stdout
+        finer = re.search(r"scatter by 100 K and more from seed to seed; (\d+) blocks are as fine as that", told)[1]
+        self.assertLess(int(finer), count)
+        told = self.pyroclast("check", "mine-fire.toml", "--set", f"blocks.count={finer}").stdout
+        self.assertNotIn("scatter by 100 K", told)
+
     def test_no_failure_carries_its_conditions(self):
         deck = self.wall(('duration = "90 min"', 'duration = "2 min"'))
         self.pyroclast("run", *deck, "-o", "out")

@@ -1157,7 +1157,7 @@ class Law(UserTest):
         done = self.pyroclast("law", "--verify", "elastic", "frictional", "--paths", 40, "--seed", 3)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         for law in ("elastic", "frictional"):
-            self.assertIn(f"{law}: 40 paths in each of 2 dimensions, seed 3: passed", done.stdout)
+            self.assertIn(f"{law}: 40 paths each in 2D and 3D, seed 3: passed", done.stdout)
         self.assertNotIn("cohesive", done.stdout)
 
     def test_what_verifying_needs_and_refuses(self):
@@ -1259,7 +1259,7 @@ class LawInAHeader(UserTest):
         for words in (("--verify", "careless.hpp"), ("--law", "careless.hpp", "--verify")):
             with self.subTest(words):
                 done = self.pyroclast("law", *words, "--paths", "64", env=self.env | {"PYROCLAST_CACHE": COMPILED.name})
-                self.assertIn("careless: 64 paths in each of 1 dimensions", done.stdout, done.stderr)
+                self.assertIn("careless: 64 paths in 2D, seed", done.stdout, done.stderr)
                 self.assertNotIn("elastic", done.stdout)
                 self.assertIn(done.returncode, (0, 1))
 

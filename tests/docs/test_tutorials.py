@@ -62,7 +62,8 @@ class Tutorials(unittest.TestCase):
                         for line in filter(lambda shown: shown.strip() not in ("", "..."), text.splitlines()):
                             self.assertTrue(has(printed, line), f"not printed: {line}\n{printed[-1500:]}")
         for promised in ("compare.png", "figures-mine/stress_strain.svg", "runs/wall/figures/temperature_history.png",
-                         "runs/four/figures/seeds.png", "matters-study/report/report.html", "runs/soft/summary.json"):
+                         "runs/four/figures/seeds.png", "matters-study/report/report.html", "runs/soft/summary.json",
+                         "runs/tail/summary.json"):
             self.assertTrue((folder / promised).exists(), promised)
 
     def test_another_number_is_told(self):

@@ -126,9 +126,10 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
     EXPECT_NE(said.front().find(slip.said), std::string::npos) << said.front();
   }
   for (const char* name :
-       {"biaxial", "biaxial_3d", "brazilian", "compression", "cube_3d", "cyclic", "delamination_heat",
-        "direct_tension", "disc_3d", "fire_long", "fire_one_side", "hot_compression", "kalifa_m100", "notched_beam",
-        "restrained_heating", "ring_cooling", "starter", "thermal_wall", "transient_heating", "wall_bent"})
+       {"biaxial",       "biaxial_3d",        "brazilian",      "compression",       "cube_3d",
+        "cyclic",        "delamination_heat", "direct_tension", "disc_3d",           "fire_long",
+        "fire_one_side", "hot_compression",   "kalifa_m100",    "notched_beam",      "restrained_heating",
+        "ring_cooling",  "starter",           "thermal_wall",   "transient_heating", "wall_bent"})
     for (const auto& said : warned(shipped_case(name))) ADD_FAILURE() << name << ": " << said;
   EXPECT_EQ(warned(shipped_case("residual_capacity")).size(), 1u);  // properties come back on cooling
 }
@@ -567,6 +568,22 @@ TEST(WithBlockSize, IsRefusedWhereNothingHasOne) {
   for (const char* key : {"second_slope = \"fixed\"", "mode_2_energy = \"block size\""})
     EXPECT_NE(message(deck).find(std::string(key) + ": has no meaning here"), std::string::npos)
         << message(deck);
+}
+
+// Promise: a choice of contacts whose laws have all gone is refused, and the message says whose it was.
+TEST(ChoiceOfALaw, IsRefusedWhereNoInterfaceHasTheLaw) {
+  std::string deck = paper_deck();
+  for (const char* line :
+       {"f_t = \"2.5 MPa\"", "G_f1 = \"60 N/m\"", "f_cm = \"31 MPa\"", "beta = 0.05", "c_o = \"3.8 MPa\"",
+        "c_res = \"0.038 MPa\"", "phi = \"34 deg\"", "phi_res = \"34 deg\"", "G_f2 = \"240 N/m\""})
+    deck = with(deck, line, "");
+  deck = with(deck, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"elastic\"");
+  EXPECT_NE(
+      message(deck).find("contacts.compression = \"irreversible\": has no meaning here: it is a choice of "
+                         "the law \"cohesive\", which no interface of this deck has; leave it out"),
+      std::string::npos)
+      << message(deck);
+  EXPECT_EQ(message(deck).find("unknown key"), std::string::npos) << message(deck);
 }
 
 }  // namespace

@@ -237,7 +237,9 @@ TEST(ExchangeReports, TellsTheLoadOrTheThrust) {
   const Finished free(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("30 degC")));
   EXPECT_EQ(std::get<std::string>(value_of(free.report(2), "platen")), "force");
   EXPECT_NEAR(number(free.report(2), "load_stress_MPa"), 0.5, 1e-3);
-  EXPECT_EQ(free.report(2).lines.back(), std::string("load 0.50 MPa: no failure ") + kConditions);
+  EXPECT_EQ(free.report(2).lines.back(),
+            fmt::format("load 0.50 MPa: no failure {}; strain {:.4f} at the end, compression positive",
+                        kConditions, free.run.history().values("strain", free.run.courses()[2].rows).back()));
   EXPECT_EQ(free.report(2).lines.front().find("20 to 30 degC in 2 exchanges of up to 5 K"), 0u);
   const Finished fixed(deck(kUniform + kSettle + heat("30 degC", "fixed")));
   const auto stress = fixed.run.history().values("stress_MPa", fixed.run.courses()[1].rows);

@@ -12,7 +12,7 @@ from ..writing import make_folder
 from .driver import StudyForecast
 from .study import Study
 
-_DISK = {"summary": (20e3, "summary"), "history": (700e3, "history too"), "all": (30e6, "whole folder")}
+_DISK = {"summary": (20e3, "summary"), "history": (700e3, "summary and history"), "all": (30e6, "whole folder")}
 """Bytes of a run, of the order of those that 5,000 blocks leave, and their name, by `keep`."""
 
 
@@ -29,7 +29,7 @@ def foresee(study: Study, say: Callable[[str], None]) -> None:
     if setup.runner.kind == "pyroclast":
         there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
         disk, what = _DISK[setup.keep]
-        say(f"disk            about {seen.left * disk / 1e6:.0f} MB to keep of each run its {what}; "
+        say(f"disk            about {seen.left * disk / 1e6:.0f} MB to keep the {what} of each run; "
             f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
 
 

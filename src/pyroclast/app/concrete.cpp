@@ -36,6 +36,8 @@ namespace {
 
 /// Blocks in the diameter of the largest aggregate, where that gives a usual number of blocks.
 constexpr double kBlocksInAggregate = 5.0;
+/// The same where a load is held in a fire: coarser ones scatter critical temperatures by 100 K.
+constexpr double kBlocksInHeatedAggregate = 6.1;
 /// Blocks across the smallest stone of a body in space; smaller stones would be a block or two, whatever
 /// their shape.
 constexpr double kBlocksInStone = 3.0;
@@ -43,6 +45,7 @@ constexpr double kBlocksInStone = 3.0;
 constexpr double kLeastRange = 1.1;
 constexpr const char *kWidth = "150 mm", *kHeight = "300 mm";  // of a specimen where nothing is said
 constexpr int kFewestBlocks = 1000, kMostBlocks = 5000;
+constexpr int kLeastCount = 100, kMostCount = 1000000;  // of blocks that can be stated
 /// Diameter of a cylinder over its largest stone, its height over its diameter, and its blocks, of which a
 /// stone of two thirds of the largest then has three across.
 constexpr double kDiameterOverStone = 4.0, kSlenderness = 2.0;
@@ -75,7 +78,8 @@ struct Found {
   double mortar_modulus = 0.0;
   MortarContacts contacts{};
   int blocks = 0;
-  double factor = 1.0;  ///< over the strengths of the first guess's deck
+  double factor = 1.0;      ///< over the strengths of the first guess's deck
+  bool is_resized = false;  ///< true where the specimen has another size than the one that was calibrated
 };
 
 /// Concrete as it is asked for, SI.
@@ -209,7 +213,7 @@ double rounded(double value, int digits) {
 int block_count(const Asked& asked, std::int64_t stated) {
   if (stated > 0) return static_cast<int>(stated);
   if (asked.is_solid) return kBlocksInSpace;
-  const double size = asked.d_max / kBlocksInAggregate;
+  const double size = asked.d_max / (asked.fire ? kBlocksInHeatedAggregate : kBlocksInAggregate);
   const double count = std::clamp(asked.extent() / (size * size), static_cast<double>(kFewestBlocks),
                                   static_cast<double>(kMostBlocks));
   return static_cast<int>(std::round(rounded(count, 2)));
@@ -415,6 +419,8 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
       {"GRADING", grading(a)},
       {"BLOCKS", std::to_string(found.blocks)},
       {"SIZE", fmt::format("{:.2g}", 1e3 * size)},
+      {"COUNT_SOURCE", found.is_resized ? "so many have the size that was calibrated, on which f_c depends"
+                                        : "f_c depends on the block size: calibrate again for another count"},
       {"ROCK_E", sourced(quoted(in(a.rock->modulus.value, 1.0, "GPa")), a.rock->modulus)},
       {"ROCK_NU", sourced(fmt::format("{:g}", a.rock->poisson.value), a.rock->poisson)},
       {"ROCK_DENSITY", sourced(quoted(in(a.rock->density.value, 1.0, "kg/m3")), a.rock->density)},
@@ -490,8 +496,8 @@ Found guess(const Asked& a, const ConcreteOptions& o, int blocks) {
   return found;
 }
 
-/// Reads mortar and contacts from a deck, and takes the size of its specimen. Throws Error where it is not of
-/// the concrete that is asked for.
+/// Reads mortar and contacts from a deck, and takes the size of its specimen. Throws Error where the deck is
+/// not of the concrete that is asked for.
 Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a) {
   const Deck deck = Deck::open(file);
   const Setup setup = read_setup(deck, file.parent_path());  // refuses what is no deck
@@ -513,12 +519,8 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
                             file.string()));
   a.is_solid = is_solid;
   const Section body = root.section("specimen");
-  const double width = value_of(body, is_solid ? "diameter" : "width", unit::length);
-  const double height = value_of(body, "height", unit::length);
-  if (!o.width.empty()) require("width, in m,", width, a.width, "--width");
-  if (!o.height.empty()) require("height, in m,", height, a.height, "--height");
-  a.width = width;
-  a.height = height;
+  a.width = value_of(body, is_solid ? "diameter" : "width", unit::length);
+  a.height = value_of(body, "height", unit::length);
   Found found{.blocks = setup.specimen.blocks.count};
   leave_small_stones(a, found.blocks);
   require("share of aggregate", setup.specimen.aggregates.fraction, a.fraction, "--fraction or --stones");
@@ -548,6 +550,22 @@ Found read(const std::filesystem::path& file, const ConcreteOptions& o, Asked& a
   }
   found.factor = found.contacts.f_t / known.contacts.f_t;
   return found;
+}
+
+/// Gives a specimen the size that is asked for, of blocks as large as those that were calibrated.
+void resize(Asked& a, Found& found, double width, double height) {
+  if (are_alike(width, a.width) && are_alike(height, a.height)) return;
+  const double block = a.extent() / found.blocks;
+  a.width = width;
+  a.height = height;
+  const double blocks = std::round(a.extent() / block);
+  if (!(blocks >= kLeastCount && blocks <= kMostCount))
+    throw Error(fmt::format(
+        "--width, --height: blocks of {:.3g} mm, as the calibrated deck has them, would be {:.0f}; choose a "
+        "size with {} to {} of them",
+        1e3 * std::pow(block, 1.0 / a.dimension()), blocks, kLeastCount, kMostCount));
+  found.blocks = static_cast<int>(blocks);
+  found.is_resized = true;
 }
 
 /// Returns the line of a deck that begins so; empty where there is none.
@@ -653,10 +671,14 @@ int write_concrete(const ConcreteOptions& options) {
         "or "
         "--fire, such as --fire iso834 --minutes 90");
   if (!is_guess && o.blocks > 0)
-    throw Error("--blocks has no meaning beside --from, whose number of blocks is kept");
+    throw Error("--blocks has no meaning beside --from, whose size of a block is kept");
   const int blocks = block_count(asked, o.blocks);
   if (is_guess) leave_small_stones(asked, blocks);
-  const Found found = is_guess ? guess(asked, o, blocks) : read(o.from, o, asked);
+  const double width = asked.width, height = asked.height;
+  Found found = is_guess ? guess(asked, o, blocks) : read(o.from, o, asked);
+  const bool has_first_guesses = !is_guess && is_first_guess(found, asked, o);
+  if (!is_guess)
+    resize(asked, found, o.width.empty() ? asked.width : width, o.height.empty() ? asked.height : height);
   if (asked.fire && asked.is_solid)
     throw Error("--fire burns plane specimens alone: a cylinder has no sides left and right");
   std::vector<std::pair<std::filesystem::path, std::string>> files;
@@ -688,7 +710,10 @@ int write_concrete(const ConcreteOptions& options) {
         "the mortar\n",
         asked.fraction, 1e3 * asked.d_min);
   if (!is_guess) {
-    if (is_first_guess(found, asked, o))
+    if (found.is_resized)
+      fmt::print("blocks          {} of {:.3g} mm, the size that was calibrated\n", found.blocks,
+                 1e3 * asked.block_size(found.blocks));
+    if (has_first_guesses)
       fmt::print(
           "warning         {} has the first guesses: run its calibration, and take the deck of its best "
           "point\n",
@@ -741,19 +766,20 @@ Command add_concrete(CLI::App& cli) {
   concrete->add_option(
       "--width", options->width,
       "Width of the specimen (default: 150 mm), diameter of a cylinder (default: 4 times its "
-      "largest aggregate); with --from: as in its deck");
+      "largest aggregate); with --from as in its deck, or another one with blocks of the same size");
   concrete->add_option("--height", options->height,
                        "Height of the specimen (default: 300 mm, of a cylinder twice its diameter); with "
-                       "--from: as in its deck");
+                       "--from likewise");
   concrete->add_flag(
       "--cylinder", options->cylinder,
       "Make a body in space: stones of three blocks across and more; smaller ones belong to the "
       "mortar");
   concrete
-      ->add_option("--blocks", options->blocks,
-                   "Number of blocks (default: 5 across the largest aggregate, but between 1000 and 5000 "
-                   "blocks; 10000 of a cylinder)")
-      ->check(whole_number(100, 1000000));
+      ->add_option(
+          "--blocks", options->blocks,
+          "Number of blocks (default: 5 across the largest aggregate, 6.1 with --fire, but between 1000 and "
+          "5000 blocks; 10000 of a cylinder)")
+      ->check(whole_number(kLeastCount, kMostCount));
   concrete->add_option("--hot", options->hot,
                        "Also write a deck of a test at this temperature: --hot '400 degC'");
   auto* fire = concrete->add_option("--fire", options->fire,

@@ -997,8 +997,9 @@ bool KitReport::passed() const {
 
 std::string KitReport::text() const {
   std::string text =
-      fmt::format("{}: {} paths in each of {} dimensions, seed {}: {}\n", law->name, options.paths,
-                  options.dimensions.size(), options.seed, passed() ? "passed" : "FAILED");
+      fmt::format("{}: {} paths {}in {}D, seed {}: {}\n", law->name, options.paths,
+                  options.dimensions.size() > 1 ? "each " : "", fmt::join(options.dimensions, "D and "),
+                  options.seed, passed() ? "passed" : "FAILED");
   for (const KitFinding& f : findings) {
     text += fmt::format("  {:<18} {:>10} checks, {:>8} failed", f.property, f.checks, f.failures);
     if (f.allowed > 0.0) text += fmt::format(", worst {:8.2g} of {:g} allowed", f.worst, f.allowed);

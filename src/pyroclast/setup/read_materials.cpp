@@ -398,6 +398,27 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
   return pairs;
 }
 
+/// Adds an error for each choice of a built-in law that [contacts] states for interfaces whose laws lack it.
+void refuse_choices_of_no_law(const Section& s, const std::vector<InterfaceParameters>& interfaces) {
+  const auto has = [](const LawTable& law, std::string_view key) {
+    return std::ranges::any_of(law.choices, [key](const ChoiceInfo& info) { return info.key == key; });
+  };
+  std::vector<std::string_view> refused;
+  for (const LawTable* const law : built_in_laws())
+    for (const ChoiceInfo& info : law->choices) {
+      const std::string_view key = info.key;
+      if (!s.has(info.key) || std::ranges::find(refused, key) != refused.end() ||
+          std::ranges::any_of(interfaces, [&](const auto& i) { return has(*i.contact.law, key); }))
+        continue;
+      refused.push_back(key);
+      s.know({info.key});
+      s.error(info.key,
+              fmt::format("has no meaning here: it is a choice of the law \"{}\", which no interface "
+                          "of this deck has; leave it out",
+                          law->name));
+    }
+}
+
 /// Reader of the interfaces, which are tables of [contacts].
 class InterfaceReader {
  public:
@@ -714,6 +735,7 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
     s.know({"platen_friction"});
   InterfaceReader reader(s, phases, of_stones, on_cooling, find_law, curves);
   c.interfaces = reader.read();
+  refuse_choices_of_no_law(s, c.interfaces);
   const auto go_with_size = [&](bool stated, const char* key, Role role, const char* lacking) {
     if (!stated) return;
     const auto has_one = [role](const InterfaceParameters& interface) {

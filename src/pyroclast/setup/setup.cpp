@@ -237,9 +237,16 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
                          1e3 * size, share, kCoarsestStudied));
   else if (is_heated_under_load && share > kCoarsestHeated)
     blocks.warn(
-        key, fmt::format("blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
-                         "100 K and more from seed to seed",
-                         1e3 * size, share, kCoarsestHeated));
+        key,
+        fmt::format(
+            "blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
+            "100 K and more from seed to seed{}",
+            1e3 * size, share, kCoarsestHeated,
+            s.blocks.finer.empty()
+                ? fmt::format("; {:.0f} blocks are as fine as that, and strengths are calibrated "
+                              "with as many",
+                              std::ceil(s.blocks.count * std::pow(share / kCoarsestHeated, s.dimension())))
+                : ""));
 }
 
 /// Tells whether a curve is a property other than expansion and creep that follows the temperature.

@@ -224,7 +224,8 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   else if (kept_.has_press && coupling().platen == PlatenControl::fixed)
     report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
   else if (bears_load)
-    report.lines.push_back(load + "no failure " + conditions);
+    report.lines.push_back(fmt::format("{}no failure {}; strain {:.4f} at the end, compression positive",
+                                       load, conditions, history.values("strain", rows).back()));
   else
     report.lines.push_back("no load by a platen: the run does not tell whether the specimen fails under one");
   tell_water(history, rows, report);
