@@ -81,8 +81,8 @@ class Mechanics {
   double time_step() const { return body_->time_step(); }
 
  private:
-  template <class Change>
-  void change_properties(Change change);
+  template <class Before, class Change>
+  void change_properties(Before before, Change change);
   int steps_to_hand_over();
 
   std::unique_ptr<Body<Dim>> body_;
