@@ -185,7 +185,8 @@ std::vector<std::string> calls_of(const Asked& asked,
 
 // Promise: a batch of steps makes no collective between its first and its last step, and few beside them.
 // Those of a press are three: one asks whether to stop, one is for the point of the curve and the next
-// velocity, one for the row and the verdict. What a control by forces steers by travels with the first.
+// velocity, one for the row and the verdict. What a control by forces steers by travels with the first. Where
+// temperatures change, two are for the hand-over, one for the motion foreseen, and one asks whether to stop.
 TEST_F(RunOnRanks, ABatchTakesThreeCollectives) {
   const Asked press{deck(kUniform + kSettle + kFailure + kControl), 0, 60};
   const Asked heated{deck(kUniform + kSettle + load("stress = \"2 MPa\"") + heat("60 degC"))};
@@ -196,10 +197,31 @@ TEST_F(RunOnRanks, ABatchTakesThreeCollectives) {
       EXPECT_GT(batches.size(), 60U);
       for (const std::string& batch : batches) {
         const auto first = batch.find('x'), last = batch.rfind('x');
-        if (first == std::string::npos) continue;  // temperatures change
-        EXPECT_LE(std::ranges::count(batch, 'c'), 3) << batch;
+        const bool temperatures_change = first == std::string::npos;
+        EXPECT_LE(std::ranges::count(batch, 'c'), temperatures_change ? 4 : 3) << batch;
+        if (temperatures_change) continue;
         EXPECT_EQ(batch.substr(first, last - first).find('c'), std::string::npos) << batch;
       }
+    });
+}
+
+// Promise: handing temperatures over takes a collective before properties change, and one after; as many
+// again where creep is under way, which ends first.
+TEST_F(RunOnRanks, AHandOverTakesTwoCollectives) {
+  const Asked rests{deck(kUniform + kSettle)}, creeps{shipped_case("anderberg_thelandersson"), 80};
+  for (const Asked* asked : {&rests, &creeps})
+    RanksInThreads::run(2, [&](const std::shared_ptr<RanksInThreads::OfThread>& ranks) {
+      const auto simulation = make_simulation(small_setup(*asked), std::make_shared<Team>(1), ranks);
+      simulation->motion().advance(10);
+      for (const double temperature : {60.0, 100.0}) {
+        simulation->field().set_uniform(temperature);
+        ranks->note('|');
+        simulation->hand_over();
+        ranks->note('|');
+      }
+      const auto calls = split(ranks->events(), '|');
+      EXPECT_EQ(calls[1], "cc");
+      EXPECT_EQ(calls[3], asked == &creeps ? "cccc" : "cc");
     });
 }
 

@@ -26,14 +26,6 @@ void Masses<Dim>::measure_stiffness() {
     body_.stiffness[g] = body_.state.stiffness[body_.layout.gridpoint_slot[g]];
   if constexpr (Dim == 2)
     if (body_.found) FoundContacts(body_).add_stiffness(body_.stiffness);
-  set_least_force();
-}
-
-/// Sets the sum of the forces that a strain of kNoStrain puts on all gridpoints.
-template <int Dim>
-void Masses<Dim>::set_least_force() {
-  body_.least_force = kNoStrain * body_.mean_height *
-                      chunked_sum(body_.layout.chunks.gridpoints, [&](int g) { return body_.stiffness[g]; });
 }
 
 template <int Dim>
@@ -52,14 +44,14 @@ void Masses<Dim>::set(const std::vector<double>& densities) {
     body_.refresh_views();
   }
 
-  if (body_.parameters.mass == MassChoice::real) {
+  if (!are_scaled()) {
     body_.mass = body_.gravity_mass;
     body_.moving_mass = body_.real_mass;
     body_.state.time_step = real_mass_limit().step;
-    set_step_over_mass();
-  } else {
-    scale();
   }
+  const std::vector<double> before = scale();
+  take(body_.model.ranks().together([&] { return sums(before); }));
+  if (!are_scaled()) set_step_over_mass();
 }
 
 /// Returns the mass with which a gridpoint's own limit is the common step (density scaling).
@@ -70,21 +62,14 @@ double Masses<Dim>::scaled_mass(int gridpoint) const {
 }
 
 template <int Dim>
-void Masses<Dim>::scale() {
+std::vector<double> Masses<Dim>::scale() {
+  if (!are_scaled()) return body_.mass;
   body_.state.time_step = body_.parameters.time_step;
   body_.mass.resize(body_.stiffness.size());
-  // the half step already begun had the old mass; nothing moves yet when the first masses are made
-  body_.books.begun_mass_scaling += chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
-    const Vec<Dim> v = Reader<Dim>(body_).velocity(g);
-    return 0.5 * (scaled_mass(g) - body_.mass[g]) * dot(v, v);
-  });
-  set_moving_mass();
-}
-
-template <int Dim>
-void Masses<Dim>::set_moving_mass() {
-  for (int g = 0; g < body_.model.gridpoint_count(); ++g) body_.mass[g] = scaled_mass(g);
-  forget_gone();
+  std::vector<double> before = body_.mass;
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g)
+    body_.mass[g] = body_.gravity_mass[g] > 0.0 ? scaled_mass(g) : 0.0;  // none where it is gone
+  return before;
 }
 
 template <int Dim>
@@ -93,6 +78,31 @@ void Masses<Dim>::forget_gone() {
     if (body_.gravity_mass[g] == 0.0) body_.mass[g] = 0.0;
   body_.moving_mass = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) { return body_.mass[g]; });
   set_step_over_mass();
+}
+
+template <int Dim>
+MassSums Masses<Dim>::sums(const std::vector<double>& before) const {
+  const ChunkList& gridpoints = body_.layout.chunks.gridpoints;
+  MassSums all;
+  all.stiffness = chunked_sum(gridpoints, [&](int g) { return body_.stiffness[g]; });
+  if (!are_scaled()) return all;
+  all.moving = chunked_sum(gridpoints, [&](int g) { return body_.mass[g]; });
+  all.scaling = chunked_sum(gridpoints, [&](int g) {
+    const Vec<Dim> v = Reader<Dim>(body_).velocity(g);
+    return 0.5 * (body_.mass[g] - before[g]) * dot(v, v);
+  });
+  return all;
+}
+
+template <int Dim>
+void Masses<Dim>::take(const MassSums& sums) {
+  body_.least_force = kNoStrain * body_.mean_height * sums.stiffness;
+  if (are_scaled()) {
+    body_.moving_mass = sums.moving;
+    // the half step already begun had the old mass; nothing moves yet when the first masses are made
+    body_.books.begun_mass_scaling += sums.scaling;
+    set_step_over_mass();
+  }
 }
 
 template <int Dim>
@@ -124,11 +134,9 @@ TimeStepLimit Masses<Dim>::real_mass_limit() const {
 
 template <int Dim>
 void Masses<Dim>::follow_state() {
-  set_least_force();
-  if (body_.parameters.mass == MassChoice::scaled)
-    set_moving_mass();
-  else
-    forget_gone();
+  scale();
+  take(body_.model.ranks().together([&] { return sums(body_.mass); }));
+  if (!are_scaled()) forget_gone();
 }
 
 template class Masses<2>;

@@ -12,6 +12,13 @@ struct TimeStepLimit {
   int gridpoint = 0;  ///< gridpoint that sets it; where several ranks hold the body, the strictest of a part
 };
 
+/// Sums over the whole body of what its masses rest on.
+struct MassSums {
+  double stiffness = 0.0;
+  double moving = 0.0;   ///< scaled masses, kg
+  double scaling = 0.0;  ///< kinetic energy that the change of the masses brings, J
+};
+
 /// Masses of a body, and the stiffness on which scaled masses and stable steps rest.
 template <int Dim>
 class Masses {
@@ -25,8 +32,12 @@ class Masses {
   /// matrix, zones and contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the
   /// step is safe for any shape.
   void measure_stiffness();
-  /// Scales the masses anew after a change of the stiffness.
-  void scale();
+  /// Scales the masses to the stiffness, and returns those before; real masses stay. `take` ends it.
+  std::vector<double> scale();
+  /// Returns the sums of stiffness and masses: a collective, for `take`.
+  /// \param before  masses before they were scaled
+  MassSums sums(const std::vector<double>& before) const;
+  void take(const MassSums& sums);
   /// Takes the mass of gone blocks away, see GoneBlocks.
   void forget_gone();
   /// Sets what follows from stiffness and parameters of a state that was read.
@@ -36,8 +47,7 @@ class Masses {
 
  private:
   double scaled_mass(int gridpoint) const;
-  void set_least_force();
-  void set_moving_mass();
+  bool are_scaled() const { return body_.parameters.mass == MassChoice::scaled; }
   void set_step_over_mass();
 
   Body<Dim>& body_;

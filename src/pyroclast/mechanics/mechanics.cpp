@@ -48,10 +48,13 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
   if (!properties.creep.empty() && !body.creeps())
     throw Error("a body made of materials that do not creep cannot begin to creep");
   GoneBlocks<Dim>(body).leave_out_of(properties);
-  change_properties([&] {
-    Properties<Dim>(body).begin_creep(properties.creep);
-    std::swap(body.properties, properties);
-  });
+  Ranks& ranks = body.model.ranks();
+  change_properties(
+      [&] { return body.creeps() && ranks.any(Properties<Dim>(body).creep_here(properties.creep)); },
+      [&](bool creep) {
+        if (creep) Properties<Dim>(body).begin_creep(properties.creep);
+        std::swap(body.properties, properties);
+      });
   return properties;
 }
 
@@ -63,36 +66,32 @@ void Mechanics<Dim>::remove(const std::vector<int>& blocks) {
   commit_creep();
   GoneBlocks<Dim> gone(body);
   gone.book(blocks);
-  const Added added = change_at_last_forces([&] {
-    gone.remove(blocks);
-    if constexpr (Dim == 2)
-      if (body.found) FoundContacts(body).forget_gone();
+  const double held_before = held(), pushed_before = totals().work_of_pore_pressure();
+  const auto old_force = read().forces(), velocity = read().velocities();
+  gone.remove(blocks);
+  if constexpr (Dim == 2)
+    if (body.found) FoundContacts(body).forget_gone();
+  body.books.pore_pressure += pushed_before - totals().work_of_pore_pressure();
+  const double begun = measure_at_last_forces();
+  body.books.removed += held_before - held();
+  body.books.begun_removed += chunked_sum(body.layout.chunks.gridpoints, [&](int g) {
+    return 0.5 * begun * dot(read().force(g) - old_force[g], velocity[g]);
   });
-  body.books.removed -= added.now;
-  body.books.begun_removed -= added.begun;
   Masses<Dim>(body).forget_gone();
 }
 
+/// Returns the energy that zones and contacts hold or have lost, J.
 template <int Dim>
-void Mechanics<Dim>::commit_creep() {
-  if (!body_->creep_under_way.empty()) change_properties([&] { Properties<Dim>(*body_).end_creep(); });
+double Mechanics<Dim>::held() const {
+  const EnergyLedger energy = totals().energy();
+  return energy.zones + energy.contacts + energy.dissipated.total();
 }
 
-/// Makes a change of the body. The ledger counts the work of forces by the trapezoidal rule. So the change is
-/// made at the displacements of the last step's forces, and the half step already begun with the old ones is
-/// made good.
-///
-/// \param change  function that changes properties, creep or blocks
+/// Puts changed properties in their places, and takes the forces anew at the displacements at which the last
+/// step took them. Returns the time by which positions have run ahead of these, s.
 template <int Dim>
-template <class Change>
-Mechanics<Dim>::Added Mechanics<Dim>::change_at_last_forces(Change change) {
+double Mechanics<Dim>::measure_at_last_forces() {
   Body<Dim>& body = *body_;
-  const EnergyLedger before = totals().energy();
-  const double held_before = before.zones + before.contacts + before.dissipated.total();
-  const double pushed_before = totals().work_of_pore_pressure();
-  const auto old_force = read().forces(), velocity = read().velocities();
-  change();
-  body.books.pore_pressure += pushed_before - totals().work_of_pore_pressure();
   Properties<Dim>(body).place();
   if constexpr (Dim == 2)
     if (body.found) FoundContacts(body).follow_properties();
@@ -103,34 +102,62 @@ Mechanics<Dim>::Added Mechanics<Dim>::change_at_last_forces(Change change) {
     displacement[slot] -= vector_at<Dim>(body.state.velocity, static_cast<int>(slot)) * begun;
   mover_.sweep(1, Pass::measure);
   std::copy(next.begin(), next.end(), displacement.begin());
-
-  const EnergyLedger after = totals().energy();
-  const double begun_work = chunked_sum(body.layout.chunks.gridpoints, [&](int g) {
-    return 0.5 * begun * dot(read().force(g) - old_force[g], velocity[g]);
-  });
-  return {after.zones + after.contacts + after.dissipated.total() - held_before, -begun_work};
+  return begun;
 }
 
-/// \param change  function that changes properties or creep
 template <int Dim>
-template <class Change>
-void Mechanics<Dim>::change_properties(Change change) {
+void Mechanics<Dim>::commit_creep() {
+  if (body_->creep_under_way.empty()) return;
+  Properties<Dim> of_body(*body_);
+  const auto end = of_body.end_of_creep();
+  change_properties([&] { return end.work.totals(body_->model.ranks()).front(); },
+                    [&](double work) { of_body.end_creep(end, work); });
+}
+
+/// All sums before the change travel in one message, and all sums after it.
+/// \param before  function that reads what the change needs of all ranks
+/// \param change  function that takes it and changes properties or creep
+template <int Dim>
+template <class Before, class Change>
+void Mechanics<Dim>::change_properties(Before before, Change change) {
+  // The ledger counts the work of forces by the trapezoidal rule. So the change is made at the displacements
+  // of the last step's forces, and the half step already begun with the old ones is made good.
   Body<Dim>& body = *body_;
-  const Added added = change_at_last_forces(change);
-  body.books.property_change += added.now;
-  body.books.begun_property_change += added.begun;
+  Ranks& ranks = body.model.ranks();
+  struct Seen {
+    double held, pushed;
+    decltype(before()) for_change;
+  };
+  const Seen seen = ranks.together([&] { return Seen{held(), totals().work_of_pore_pressure(), before()}; });
+  change(seen.for_change);
+  body.books.pore_pressure += seen.pushed - totals().work_of_pore_pressure();
+  const auto old_force = read().forces();
+  const double begun = measure_at_last_forces();
 
   Masses<Dim> masses(body);
   masses.measure_stiffness();
-  if (body.parameters.mass == MassChoice::scaled) {
-    masses.scale();
-  } else if (const double limit = masses.real_mass_limit().step / body.parameters.safety;
-             limit < time_step() * (1.0 - 1e-9)) {
+  const std::vector<double> mass_before = masses.scale();
+  struct After {
+    double held, begun_change, limit;
+    MassSums of_masses;
+  };
+  const bool are_real = body.parameters.mass == MassChoice::real;
+  const After after = ranks.together([&] {
+    return After{
+        held(),
+        chunked_sum(
+            body.layout.chunks.gridpoints,
+            [&](int g) { return 0.5 * begun * dot(read().force(g) - old_force[g], read().velocity(g)); }),
+        are_real ? masses.real_mass_limit().step / body.parameters.safety : 0.0, masses.sums(mass_before)};
+  });
+  body.books.property_change += after.held - seen.held;
+  body.books.begun_property_change -= after.begun_change;
+  masses.take(after.of_masses);
+  if (are_real && after.limit < time_step() * (1.0 - 1e-9))
     throw Error(fmt::format(
         "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
         "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
-        time_step(), limit));
-  }
+        time_step(), after.limit));
 }
 
 template <int Dim>

@@ -87,14 +87,10 @@ class Mechanics {
   double time_step() const { return body_->time_step(); }
 
  private:
-  /// Energy that a change adds to a body, J: at once, and through the half step already begun.
-  struct Added {
-    double now = 0.0, begun = 0.0;
-  };
-  template <class Change>
-  Added change_at_last_forces(Change change);
-  template <class Change>
-  void change_properties(Change change);
+  template <class Before, class Change>
+  void change_properties(Before before, Change change);
+  double held() const;
+  double measure_at_last_forces();
   int steps_to_hand_over();
 
   std::unique_ptr<Body<Dim>> body_;

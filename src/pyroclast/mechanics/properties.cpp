@@ -158,13 +158,16 @@ void Properties<Dim>::place_pore_pressure() {
 }
 
 template <int Dim>
-void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
-  if (!body_.creeps()) return;
-  const Reader<Dim> reader(body_);
+bool Properties<Dim>::creep_here(const std::vector<CreepIncrement>& creep) const {
+  if (!body_.creeps()) return false;
   const auto [first, last] = body_.layout.chunks.zones.own();
-  const bool none = std::none_of(creep.begin() + first, creep.begin() + last,
-                                 [](const CreepIncrement& i) { return i.compliance != 0.0; });
-  if (!body_.model.ranks().any(!none)) return;
+  return std::any_of(creep.begin() + first, creep.begin() + last,
+                     [](const CreepIncrement& i) { return i.compliance != 0.0; });
+}
+
+template <int Dim>
+void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
+  const Reader<Dim> reader(body_);
   body_.creep_under_way.resize(creep.size());
   for (int z = 0; z < body_.model.zone_count(); ++z) {
     CreepUnderWay<Dim>& zone = body_.creep_under_way[z];
@@ -180,28 +183,36 @@ void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
 }
 
 template <int Dim>
-void Properties<Dim>::end_creep() {
+typename Properties<Dim>::EndOfCreep Properties<Dim>::end_of_creep() const {
   const Reader<Dim> reader(body_);
   const auto crept = [&](const CreepUnderWay<Dim>& zone, const SymmetricTensor<Dim>& stress) {
     auto strain = creep_direction<Dim>(stress, zone.poisson);
     for (double& component : strain) component *= zone.split.compliance;
     return strain;
   };
-  std::vector<SymmetricTensor<Dim>> last(body_.creep_under_way.size());
-  body_.books.creep_work += chunked_sum(body_.layout.chunks.zones, [&](int z) {
+  EndOfCreep end;
+  end.strain.resize(body_.creep_under_way.size());
+  end.work.keep(body_.layout.chunks.zones, [&](int z) {
     const CreepUnderWay<Dim>& zone = body_.creep_under_way[z];
     Rotation<double> rotation;
     const auto stress = reader.stress_in_own_frame(z, rotation);
-    last[z] = crept(zone, stress);
+    end.strain[z] = crept(zone, stress);
     SymmetricTensor<Dim> all, twice_mean;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i] = zone.split.known[i] + last[z][i];
+      all[i] = zone.split.known[i] + end.strain[z][i];
       twice_mean[i] = zone.stress[i] + stress[i];
     }
     return energy_density<Dim>(twice_mean, all) * body_.geometry.volume[z];
   });
+  return end;
+}
+
+/// \param work  total of all ranks
+template <int Dim>
+void Properties<Dim>::end_creep(const EndOfCreep& end, double work) {
+  body_.books.creep_work += work;
   for (int z = 0; z < body_.model.zone_count(); ++z)
-    for (std::size_t i = 0; i < last[z].size(); ++i) body_.creep_strain[z][i] += last[z][i];
+    for (std::size_t i = 0; i < end.strain[z].size(); ++i) body_.creep_strain[z][i] += end.strain[z][i];
   body_.creep_under_way.clear();
 }
 

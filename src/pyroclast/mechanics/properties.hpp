@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "pyroclast/base/kept_sums.hpp"
 #include "pyroclast/mechanics/body.hpp"
 
 namespace pyroclast {
@@ -15,10 +16,18 @@ class Properties {
 
   /// Puts zone and contact parameters in their places.
   void place();
+  /// Tells whether zones of this rank creep.
+  bool creep_here(const std::vector<CreepIncrement>& creep) const;
   /// Begins creep with the stress that zones have by the properties that there are.
   void begin_creep(const std::vector<CreepIncrement>& creep);
-  /// Ends creep with the present stress, which stays as it is.
-  void end_creep();
+  /// Strains of the second half of the creep under way, and the work of both halves.
+  struct EndOfCreep {
+    std::vector<SymmetricTensor<Dim>> strain;  ///< strains by zone
+    KeptSums work;                             ///< J
+  };
+  /// Returns the end of the creep under way with the present stress, which stays as it is.
+  EndOfCreep end_of_creep() const;
+  void end_creep(const EndOfCreep& end, double work);
   /// Breaks a contact from the start: neither tension nor cohesion ever held it. Returns false where the law
   /// of the contact has no damage; the contact then holds.
   [[nodiscard]] bool break_contact(int contact);

@@ -153,18 +153,21 @@ class MpiProcesses final : public Processes {
   }
 
   /// Waits for requests. A rank that waits long sleeps: who sleeps gets a shared processor back as soon as a
-  /// message is there, while one that merely yields it waits until others have used up their time.
+  /// message is there, while one that merely yields it waits until others have used up their time. The longer
+  /// it has waited, the longer it sleeps, as each look takes a processor from those for which it waits.
   void wait(std::vector<MPI_Request>& requests, CallPlace at) const {
     constexpr int kSpins = 1000;
-    constexpr std::chrono::microseconds kSleep{20};
+    constexpr Seconds kShortestSleep{20e-6}, kLongestSleep{500e-6};
+    constexpr double kSleepOverWait = 0.125;
     const auto begun = WaitClock::now();
     int done = 0;
     for (int spins = 0;; ++spins) {
       MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
       if (done != 0) return;
       if (spins < kSpins) continue;
-      std::this_thread::sleep_for(kSleep);
-      if (longest_wait_ > 0.0 && Seconds(WaitClock::now() - begun).count() > longest_wait_)
+      const Seconds waited = WaitClock::now() - begun;
+      std::this_thread::sleep_for(std::clamp(kSleepOverWait * waited, kShortestSleep, kLongestSleep));
+      if (longest_wait_ > 0.0 && waited.count() > longest_wait_)
         throw Error("it waits for other ranks in " + at.text());
     }
   }

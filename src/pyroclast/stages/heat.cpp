@@ -75,8 +75,10 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
       coupling().predictor ? strain_change(simulation, now, field.mean()) : StrainChange();
   exchange.hand_over(simulation);
   if (coupling().predictor) {
-    const Press::EvenMotion strain{.axial = -simulation.press().specimen_strain(),
-                                   .lateral = simulation.press().lateral_strain()};
+    const Press& press = simulation.press();
+    const auto strain = simulation.ranks().together([&] {
+      return Press::EvenMotion{.axial = -press.specimen_strain(), .lateral = press.lateral_strain()};
+    });
     if (last_change_ > 0.0) {
       const auto foreseen = [&](double after, double before, const Interval& bounds) {
         return std::clamp((after - before) * change / last_change_, bounds.lower, bounds.upper);

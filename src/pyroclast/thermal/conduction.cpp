@@ -163,8 +163,7 @@ void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
   if (!gaps_) throw Error("heat conduction: nothing says how heat crosses gaps");
   drop_trial();
   const bool changes = gaps_->set_gaps(std::move(gaps), gridpoint_temperatures(grid_.range().lower));
-  if (!model_.ranks().any(changes)) return;
-  auto nodes = join_through_contacts(model_, conducts_, gaps_->parts());
+  auto nodes = changes ? join_through_contacts(model_, conducts_, gaps_->parts()) : nodes_;
   if (model_.ranks().any(nodes.of_gridpoint != nodes_.of_gridpoint)) move_heat_to(std::move(nodes), [] {});
 }
 

@@ -131,7 +131,6 @@ double Loads::way(const Entry& entry) const {
   return size > 0.0 ? dot(moved, along) / size : 0.0;
 }
 
-/// Returns the ways of all loaded sets.
 std::vector<double> Loads::ways() const {
   return motion_.model().ranks().together([&] {
     std::vector<double> ways;
@@ -140,9 +139,8 @@ std::vector<double> Loads::ways() const {
   });
 }
 
-void Loads::mark() {
-  const std::vector<double> now = ways();
-  for (std::size_t i = 0; auto& [name, entry] : entries_) entry.marked = now[i++];
+void Loads::mark(const std::vector<double>& ways) {
+  for (std::size_t i = 0; auto& [name, entry] : entries_) entry.marked = ways[i++];
 }
 
 double Loads::give() const {

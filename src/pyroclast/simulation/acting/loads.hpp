@@ -41,8 +41,10 @@ class Loads {
   /// act on a component that is held or driven, or a pressure on a set without faces.
   void set(const std::map<std::string, SetLoad>& loads);
 
-  /// Marks the present place of the loaded sets, from which `give` counts.
-  void mark();
+  /// Returns the ways of all loaded sets along their loads, m.
+  std::vector<double> ways() const;
+  /// Marks the place from which `give` counts: the ways of the loaded sets there.
+  void mark(const std::vector<double>& ways);
   /// Returns the longest way that a loaded set has gone along its load since the mark, over the size of the
   /// body.
   double give() const;
@@ -63,7 +65,6 @@ class Loads {
   Entry& entry(const std::string& set);
   void list_loaded();
   double way(const Entry& entry) const;
-  std::vector<double> ways() const;
   std::vector<Vec<3>> forces(const Entry& entry) const;
   void apply();
 

@@ -108,6 +108,7 @@ Press::Press(Motion& motion, Specimen between)
   if (const auto [first, last] = bottom.chunks.own(); first < last)
     heights.push_back(motion_.model().place(bottom.gridpoints[first])[between_.axis]);
   bottom_ = motion_.model().ranks().collect(heights).at(0);
+  middle_ = motion_.model().ranks().together([&] { return middle_across(); });
   for (int g : set("bottom_platen_support"))
     for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))
@@ -252,7 +253,7 @@ Press::EvenMotion Press::to_touch() const {
   if (!motion_.model().symmetry.empty()) {
     for (std::size_t d = 0; d < across_.size(); ++d)
       if (symmetry_across(d) == nullptr) tilt[d] = -rise_of_stand(d);
-    middle = middle_across();
+    middle = middle_;
   } else if (across_.size() == 1) {
     tilt[0] = -rise_of_stand(0);
     // This middle is not that of the motion, so the lift is off by the tilt times their distance: too little
@@ -260,7 +261,7 @@ Press::EvenMotion Press::to_touch() const {
     middle[0] = mean_position(motion_.model(), specimen(), across_[0]);
   } else {
     for (int d = 0; const double slope : slopes_of_stand()) tilt[d++] = -slope;
-    middle = middle_across();
+    middle = middle_;
   }
   const auto up = [&](int g) {
     double way = motion_.read().displacement(g)[between_.axis];
@@ -335,16 +336,15 @@ double Press::stress_bottom() const {
 
 void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
   const auto& model = motion_.model();
-  const std::array<double, 2> middle = middle_across();
   const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
     const Vec<3> x = model.place(g);
     double turned = 0.0;
     for (std::size_t d = 0; d < across_.size(); ++d) {
-      turned += motion.tilt[d] * (x[across_[d]] - middle[d]);
+      turned += motion.tilt[d] * (x[across_[d]] - middle_[d]);
       const double aside = -motion.tilt[d] * (x[between_.axis] - bottom_);
-      motion_.constraints().prescribe_velocity(g, across_[d],
-                                               rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
+      motion_.constraints().prescribe_velocity(
+          g, across_[d], rate * (motion.lateral * (x[across_[d]] - middle_[d]) + aside));
     }
     motion_.constraints().prescribe_velocity(
         g, between_.axis, rate * (motion.axial * (x[between_.axis] - bottom_) + motion.lift + turned));

@@ -127,6 +127,7 @@ class Press {
   Specimen between_;
   std::vector<int> across_;                                  ///< components across the axis
   double bottom_ = 0.0;                                      ///< place of the lower end along the axis, m
+  std::array<double, 2> middle_{};                           ///< see middle_across
   std::map<std::string, GridpointSet, std::less<>> summed_;  ///< sets that are read, in the order of sums
 
   /// All that lasts from one batch to the next.

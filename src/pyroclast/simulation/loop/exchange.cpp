@@ -99,9 +99,11 @@ bool Exchange::go_on(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
   if (kept_.is_handed_over && !kept_.is_cut_short) {
-    simulation.loads().mark();
-    kept_.strain_before = kept_.last_strain =
-        simulation.ranks().together([&] { return shortening(simulation); });
+    const auto [strain, ways] = simulation.ranks().together([&] {
+      return std::pair(simulation.has_press() ? shortening(simulation) : 0.0, simulation.loads().ways());
+    });
+    simulation.loads().mark(ways);
+    kept_.strain_before = kept_.last_strain = strain;
   }
   kept_.is_handed_over = kept_.is_cut_short = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;
