@@ -118,6 +118,7 @@ struct Body {
   const LawTable& law_of_pack(int face_pack) const { return *laws[arrays.law_of_faces[face_pack]]; }
   /// Tells whether a block has left the body, see Mechanics::remove.
   bool is_gone(int block) const { return !gone.empty() && gone[block]; }
+  bool has_left(int gridpoint) const { return !left.empty() && left[gridpoint]; }
   /// Leaves a face out: its contact points keep what they remember, and bear nothing.
   void leave_out(int face);
   bool leaves_out(int face) const { return !is_left_out.empty() && is_left_out[face]; }
@@ -181,6 +182,7 @@ struct Body {
   std::unique_ptr<FoundData> found;  ///< contacts that are found; null where contacts are the first ones
 
   std::vector<bool> gone;            ///< by block, see is_gone; empty as long as none is
+  std::vector<bool> left;            ///< by gridpoint: those of gone blocks; empty as long as none is
   std::vector<bool> is_left_out;     ///< by face, see leaves_out; empty as long as none is
   FlatArray<std::uint8_t> left_out;  ///< bits of these faces, see State::left_out
 

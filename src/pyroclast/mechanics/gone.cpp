@@ -29,11 +29,13 @@ template <int Dim>
 void GoneBlocks<Dim>::remove(const std::vector<int>& blocks) {
   const ModelOf<Dim>& model = body_.model;
   body_.gone.resize(static_cast<std::size_t>(model.block_count()));
+  body_.left.resize(model.position.size());
   for (const int block : blocks) {
     body_.gone[block] = true;
     for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g) {
       const int slot = body_.layout.gridpoint_slot[g];
       set_vector<Dim>(body_.state.velocity, slot, {});
+      body_.left[g] = true;
       body_.gravity_mass[g] = 0.0;
       if (body_.state.weighs()) body_.arrays.real_mass[slot] = 0.0;
       --body_.gridpoints_of_whole;

@@ -68,14 +68,14 @@ std::vector<double> Masses<Dim>::scale() {
   body_.mass.resize(body_.stiffness.size());
   std::vector<double> before = body_.mass;
   for (int g = 0; g < body_.model.gridpoint_count(); ++g)
-    body_.mass[g] = body_.gravity_mass[g] > 0.0 ? scaled_mass(g) : 0.0;  // none where it is gone
+    body_.mass[g] = body_.has_left(g) ? 0.0 : scaled_mass(g);
   return before;
 }
 
 template <int Dim>
 void Masses<Dim>::forget_gone() {
   for (int g = 0; g < body_.model.gridpoint_count(); ++g)
-    if (body_.gravity_mass[g] == 0.0) body_.mass[g] = 0.0;
+    if (body_.has_left(g)) body_.mass[g] = 0.0;
   body_.moving_mass = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) { return body_.mass[g]; });
   set_step_over_mass();
 }
@@ -110,7 +110,7 @@ void Masses<Dim>::set_step_over_mass() {
   auto& step_over_mass = body_.arrays.step_over_mass;
   std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle slots never move
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
-    if (body_.mass[g] > 0.0)
+    if (!body_.has_left(static_cast<int>(g)))
       step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
   if constexpr (Dim == 2)
     if (body_.found) FoundContacts(body_).follow_masses();
@@ -122,7 +122,7 @@ TimeStepLimit Masses<Dim>::real_mass_limit() const {
   TimeStepLimit limit{std::numeric_limits<double>::infinity(), 0};
   const auto [first, last] = body_.layout.chunks.gridpoints.own();
   for (int g = first; g < last; ++g) {
-    if (body_.gravity_mass[g] == 0.0) continue;  // gone
+    if (body_.has_left(g)) continue;
     const double step =
         body_.parameters.safety * 2.0 *
         std::sqrt(body_.gravity_mass[g] / (body_.stiffness[g] * (1.0 + body_.parameters.local_damping)));

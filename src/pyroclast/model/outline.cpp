@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -71,6 +75,9 @@ std::vector<bool> blocks_of(const Model& model, const std::vector<bool>& materia
 
 template <int Dim>
 std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part) {
+  if (std::ssize(takes_part) != model.block_count())
+    throw Error(fmt::format("{} blocks are said to take part or not, but the model has {}", takes_part.size(),
+                            model.block_count()));
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) result[g] = takes_part[b];

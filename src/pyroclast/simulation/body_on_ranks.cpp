@@ -40,8 +40,9 @@ ThermalNodes joined_nodes(const Model& model, const HeatConditions& heat,
   if (heat.uniform) return {};
   std::vector<bool> conducts;
   for (const BlockMaterial& material : block_materials) conducts.push_back(!material.is_of_bearing);
-  return with_dimension(
-      model, [&](const auto& of_dimension) { return join_through_contacts(of_dimension, conducts); });
+  return with_dimension(model, [&](const auto& of_dimension) {
+    return join_through_contacts(of_dimension, blocks_of(model, conducts));
+  });
 }
 
 /// Returns the bytes of messages of so many items each, by rank.
