@@ -90,7 +90,7 @@ class Refused(Slab):
     def test_a_body_of_which_no_stage_exchanges_temperatures(self):
         text = CASE.read_text()
         stages = text.index("[[stages]]                   # ... and stands in the fire")
-        self.assertIn("[spalling]: has no meaning: no stage exchanges temperatures",
+        self.assertIn("spalling: has no meaning: no stage exchanges temperatures",
                       self.refusal((text[stages:text.index("[coupling]")], "")))
 
     def test_keys_out_of_range(self):

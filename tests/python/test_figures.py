@@ -782,7 +782,8 @@ FIGURES = {
     WALL: ["temperature_history", "temperature", "temperature_profile", "isotherm"],
     "kalifa_m100": ["temperature_history", "temperature", "water", "water_profile", "temperature_profile"],
     "spalling_slab": ["total_strain", "heating_cracks", "heating_energy", "convergence", "temperature_history",
-                      "temperature", "water", "water_profile", "spalling", "temperature_profile", "heating_fracture"],
+                      "temperature", "water", "water_profile", "spalling", "temperature_profile", "isotherm",
+                      "heating_fracture"],
 }
 
 

@@ -20,6 +20,7 @@ from ..stored.compressed import Compressed
 from ..stored.frames import Frame
 from ..stored.mesh import BlockMesh, ContactMesh, specimen_box
 from ..stored.results import Results
+from ..stored.spalled import blocks_at
 from ..writing import whole
 from . import style
 from .crack_styles import can_crack, count_cracks, crack_legend, cracked, cracks_of, material_legend, size_of_cracks
@@ -424,7 +425,7 @@ def _enlarged(box: tuple[np.ndarray, np.ndarray], scale: float, room: tuple[floa
 
 def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
     run, frame = panel.run, panel.frame
-    blocks, contacts = run.blocks_at(frame), run.mesh.contacts
+    blocks, contacts = blocks_at(run, frame), run.mesh.contacts
     draw_blocks(axes, blocks, _moved(panel, look.magnification), view=look.view)
     cells = (contacts.points + look.magnification * run.contact_displacement(frame))[contacts.cells]
     thinning = _thinning(blocks, contacts, look.across if style.page().is_column else max(look.across, _PANELS))

@@ -15,6 +15,7 @@ from ..stored.frames import Frame
 from ..stored.heated import Heated
 from ..stored.mesh import BlockMesh
 from ..stored.results import Results
+from ..stored.spalled import blocks_at
 from . import style
 from .fields import colours_of, draw_colour_bar, draw_field
 from .fractures import Panel, Rows, broken_share
@@ -147,7 +148,7 @@ def temperature_field(run: Results) -> Figure:
     blocks, page = run.mesh.blocks, style.page()
     frames = page.chosen(_spread(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
-    parts = [run.blocks_at(frame) for frame in frames]
+    parts = [blocks_at(run, frame) for frame in frames]
     within = [field[np.unique(part.zones[~part.of_bearing])] for part, field in zip(parts, fields)]
     colours = colours_of(within)
     across = min(page.fitting(_NARROWEST) if page.is_column else _FIELDS, len(frames))
@@ -176,7 +177,7 @@ def temperature_field(run: Results) -> Figure:
 
 def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
     """Draws the specimen's temperature, alone in its axes, coloured up to its hottest; returns what has the colours."""
-    blocks = run.blocks_at(frame)
+    blocks = blocks_at(run, frame)
     field = run.gridpoint_temperature(frame)
     within = field[np.unique(blocks.zones[~blocks.of_bearing])]
     colours = colours_of([within])

@@ -17,6 +17,7 @@ from ..stored.cut import Plane, Polygons, joined, outline, section, surface, tra
 from ..stored.mesh import BlockMesh, Mesh, specimen_box
 from ..stored.frames import Frame
 from ..stored.results import Results
+from ..stored.spalled import blocks_at
 from . import style
 from .crack_styles import can_crack, crack_legend, cracked, cracks_of, material_legend
 from .fields import colours_of, draw_colour_bar, draw_field
@@ -396,7 +397,7 @@ def plane_section(run: Results, frame: Frame, axis: str, at: float = 0.5, magnif
     or "temperature", with isotherms, where the body was before it moved. magnification: of displacements. The picture
     is as large as the specimen is along the other axes. Raises Error for another axis, share or colour.
     """
-    blocks = run.blocks_at(frame)
+    blocks = blocks_at(run, frame)
     if axis not in _IN_PLANE:
         raise Error(f"axis is {axis!r}; it must be one of {', '.join(_IN_PLANE)}")
     if not 0.0 <= at <= 1.0:

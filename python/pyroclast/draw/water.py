@@ -15,6 +15,7 @@ from ..stored.heated import Heated
 from ..stored.mesh import specimen_box
 from ..stored.results import Results
 from ..stored.run_facts import WATER
+from ..stored.spalled import blocks_at
 from . import style
 from .progress import MINUTES_LABEL
 
@@ -96,7 +97,7 @@ def _means_over_depth(run: Results, frame: Frame, name: str, face: str) -> tuple
     low, high = specimen_box(blocks)
     place = blocks.points[blocks.zones, axis].mean(axis=1)
     depth = high[axis] - place if is_upper else place - low[axis]
-    inner = ~blocks.of_bearing & ~run.gone(frame)
+    inner = ~blocks.of_bearing & np.isin(blocks.block, blocks_at(run, frame).block)
     edges = np.linspace(0.0, high[axis] - low[axis], _SLABS + 1)
     weight, of_slab = (np.histogram(depth[inner], edges, weights=weights)[0]
                        for weights in (blocks.sizes[inner], (blocks.sizes * values)[inner]))

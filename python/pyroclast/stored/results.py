@@ -19,9 +19,9 @@ from ..libraries import library
 from ..writing import shell_path
 from .files import MESH, GrowingTable, Lock, Table, Writer, is_number, read_array, read_json
 from .frames import Frame, frames_of
-from .mesh import BlockMesh, Mesh, read_mesh
+from .mesh import Mesh, read_mesh
 from .reference import References, read_references
-from .run_facts import PROBE, SPALLING, RunFacts
+from .run_facts import PROBE, RunFacts
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -249,25 +249,6 @@ class Results:
     def mesh(self) -> Mesh:
         """mesh.h5: the zones of all blocks and the contact points, where they were made."""
         return read_mesh(self.folder / "fields" / MESH)
-
-    def gone(self, frame: Frame) -> np.ndarray:
-        """Tells of each zone (Z,) whether its block has left the body by this frame."""
-        zones = len(self.mesh.blocks.zones)
-        if not self.facts.of_role(SPALLING):
-            return np.zeros(zones, dtype=bool)
-        return self._field("blocks", frame, "CellData/gone [1]", (zones,)) > 0.5
-
-    def blocks_at(self, frame: Frame) -> BlockMesh:
-        """Returns the blocks of the mesh without those that have left the body by this frame."""
-        gone = self.gone(frame)
-        if not gone.any():
-            return self.mesh.blocks
-        return self._without.setdefault(gone.tobytes(), self.mesh.blocks.of(~gone))
-
-    @cached_property
-    def _without(self) -> dict[bytes, BlockMesh]:
-        """Meshes without blocks, so that each is made once."""
-        return {}
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
         """Returns the displacement (N, dimension), m."""
