@@ -16,8 +16,8 @@ tables gets records.png; one without platens gets energy.png and fracture.png be
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png; one with water in its pores
 water.png and, with fields, water_profile.png; one that pieces may leave spalling.png, with fields. A run that keeps
-no fields gets those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside fracture.png,
-unless no law of its contacts has a damage.
+no fields gets those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside
+fracture.png, unless no law of its contacts has a damage.
 
 Prints the path of each figure. Ends with 1 and a line on stderr for each thing that is missing or malformed; figures
 that need none of these are drawn.

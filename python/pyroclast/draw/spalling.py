@@ -1,4 +1,4 @@
-"""Pieces that left the heated face of a specimen: depths over the time, temperatures at the depths of bars, and the face."""
+"""Pieces that left the heated face of a specimen: depths and temperatures over the time, and the face that is left."""
 
 from __future__ import annotations
 
@@ -25,11 +25,13 @@ def spalling(run: Results) -> Figure:
     depths of bars, where the deck states some; and how deep the face stands along itself at up to six times."""
     minutes = run.history["heating_time_s"] / 60.0
     bars = run.facts.of_role(BAR)
-    figure, panels, beside = style.panels(7.2 if bars else 5.4, rows=(1.0, 0.9, 1.2) if bars else (1.0, 1.2), beside=0.25)
+    rows = (1.0, 0.9, 1.2) if bars else (1.0, 1.2)
+    figure, panels, beside = style.panels(7.2 if bars else 5.4, rows=rows, beside=0.25)
     style.number(figure, panels)
     depths, profile = panels[0], panels[-1]
     depths.set_title(style.title_of(run))
-    for of, label, colour in (("largest_depth", "at most", style.VERMILLION), ("mean_depth", "in the mean", style.BLUE)):
+    for of, label, colour in (("largest_depth", "at most", style.VERMILLION),
+                              ("mean_depth", "in the mean", style.BLUE)):
         column = next(column.name for column in run.facts.of_role(SPALLING, of))
         depths.plot(minutes, style.MILLI * run.history[column], color=colour, label=label)
     depths.legend(loc="upper left")

@@ -16,7 +16,8 @@ from ..stored.compressed import Compressed
 from ..stored.heated import Heated
 from ..stored.reference import TRANSIENT_STRAIN, strain_band
 from ..stored.results import Results
-from ..stored.run_facts import BAR, BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE, PROBE_PRESSURE, SPALLING, WATER
+from ..stored.run_facts import (BAR, BROKEN, DAMAGED, DAMAGED_EXTENT, HELD, OPENING, PROBE, PROBE_PRESSURE, SPALLING,
+                                WATER)
 from .marks import Mark, marks
 from .packing import packed_floats
 

@@ -26,9 +26,11 @@ from .packing import packed_floats, packed_steps, packed_whole
 
 MEET = 1e-9  # of the size of a body: points so near to each other are one
 FINE = 1e-6  # of the size of a body: the step of places and displacements
-STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "pore": 0.01, "saturation": 0.005, "gone": 1.0}
+STEPS = {"stress": 0.1, "temperature": 0.5, "opening": 1e-7, "creep": 1e-5, "pore": 0.01, "saturation": 0.005,
+         "gone": 1.0}
 """Wanted steps: MPa, K, m, 1, MPa, 1."""
-OF_BLOCKS = {"pore_pressure": ("pore_pressure [Pa]", 1e-6), "saturation": ("saturation [1]", 1.0), "gone": ("gone [1]", 1.0)}
+OF_BLOCKS = {"pore_pressure": ("pore_pressure [Pa]", 1e-6), "saturation": ("saturation [1]", 1.0),
+             "gone": ("gone [1]", 1.0)}
 """Fields of zones that are alike in a block, and their factors to the units of the page."""
 _LOST_SHARE = 1e-5  # of all energy that contacts lost: the step of what one of them lost
 _LOST = re.compile(r"lost_(\w+) \[J m-2\]")

@@ -203,7 +203,8 @@ export class Tabs {
   }
 
   drawSpalling() {
-    this.drawOverMinutes("spalled_depths", "depths", "depth lost [mm]", ["spalled_largest_depth", "spalled_mean_depth"]);
+    const depths = ["spalled_largest_depth", "spalled_mean_depth"];
+    this.drawOverMinutes("spalled_depths", "depths", "depth lost [mm]", depths);
     this.drawOverMinutes("spalled_mass", "mass", "mass that left [kg]", ["spalled_mass"]);
     this.drawOverMinutes("bars", "bars", "temperature at the depth of a bar [°C]", [], "bar ");
   }
