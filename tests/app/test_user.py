@@ -1024,7 +1024,7 @@ class Running(UserTest):
 
     def test_every_shipped_case_is_valid(self):
         for deck in sorted(CASES.glob("*.toml")):
-            blocks = 300 if deck.stem.endswith("_3d") else 1000
+            blocks = 300 if deck.stem.endswith("_3d") else 1200
             self.assertEqual(self.pyroclast("check", deck, "--set", f"blocks.count={blocks}").returncode, 0, deck)
 
 

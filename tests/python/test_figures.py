@@ -806,7 +806,7 @@ class HeatedRunsMakePictures(CommandTest):
                 self.assertEqual((code, err), (0, ""))
                 self.assertEqual([Path(path).stem for path in printed],
                                  [name for name in names if not name.endswith("fracture")
-                                  and name not in ("temperature", "water_profile")])
+                                  and name not in ("temperature", "water_profile", "spalling")])
                 with writing_alone():
                     self.assert_fails(["run", folder, "--temperatures", "300"], "keeps no fields, so --temperatures")
 

@@ -114,7 +114,8 @@ double crack(const R& r, int contact) {
 
 /// Returns the step at which a contact was first found cracked, as `crack` tells it.
 double crack_step(const R& r, int contact) {
-  if (r.model().is_of_bearing(r.model().joint(contact))) return kNotCracked;
+  if (r.model().is_of_bearing(r.model().joint(contact)) || r.is_gone(Item::contact, contact))
+    return kNotCracked;
   return r.motion().read().crack_step(contact);
 }
 
@@ -183,9 +184,8 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
     {"gone", unit::dimensionless, Item::zone, ValueKind::number, true, loses_pieces,
      [](R& r, int i, double* to) { *to = r.is_gone(Item::zone, i) ? 1.0 : 0.0; },
      "1 in blocks that have left the body, else 0; only where [pieces leave](../understand/spalling.md). All "
-     "other fields of such blocks and of their contacts are 0, their temperature 20 °C and their "
-     "displacement "
-     "that with which they left"},
+     "other fields of such blocks and of their contacts are 0, `crack_step` -1, their temperature 20 °C and "
+     "their displacement that with which they left"},
 });
 
 constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, ValueKind::vector,
@@ -392,7 +392,9 @@ void values_in_slices(const std::vector<Field>& fields, const Simulation& simula
       fields.front().item, simulation.model(), width_of(fields, simulation),
       [&](int item, T* row) {
         for (const Field& field : fields) {
-          if (field.item != Item::gridpoint && field.name != "gone" && reader.is_gone(field.item, item))
+          const bool tells_itself =
+              field.item == Item::gridpoint || field.name == "gone" || field.name == "crack_step";
+          if (!tells_itself && reader.is_gone(field.item, item))
             value.fill(0.0);
           else
             field.read(reader, item, value.data());

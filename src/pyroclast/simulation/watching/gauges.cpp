@@ -536,7 +536,7 @@ std::vector<Column> possible_gauge_columns() {
   append(columns, columns_of(kGaps));
   append(columns, columns_of(kWater));
   append(columns, columns_of(kSpalling));
-  columns.push_back(bar_column("DEPTH"));
+  columns.push_back(bar_column("NAME"));
   columns.push_back(probe_column("NAME"));
   columns.push_back(probe_pressure_column("NAME"));
   return columns;
