@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "loose_blocks.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/base/state_copy.hpp"
+#include "pyroclast/mechanics/found/found_points.hpp"
 
 /// Blocks that leave a body: the rest goes on as a body without them, and the ledger knows where their energy
 /// went.
@@ -123,6 +125,44 @@ TEST(GoneBlocks, LeaveABodyThatMovesAsIfItWereAlone) {
       EXPECT_EQ(norm(m.read().displacement(g) - alone.read().displacement(g)), 0.0);
     EXPECT_DOUBLE_EQ(m.totals().unbalanced_ratio(), alone.totals().unbalanced_ratio());
   }
+}
+
+/// Promise: contacts that were found forget a block that goes, but for what they lost; what lay on it falls.
+TEST(GoneBlocks, AreForgottenByFoundContacts) {
+  ModelOf<2> model = empty_model();
+  const int floor = add_block(model, rectangle(0.0, -0.02, 0.06, 0.02));
+  const int lower = add_block(model, rectangle(0.01, 0.0, 0.02, 0.02));
+  const int upper = add_block(model, rectangle(0.015, 0.0201, 0.02, 0.02));
+  auto parameters = flying(kGravity, 0.3);
+  parameters.loses_blocks = true;
+  parameters.local_damping = 0.2;
+  const auto make = [&] {
+    auto m = mechanics<2>(model, rubbing(1e11, 0.4), parameters, 30e9);
+    hold(m, floor);
+    return m;
+  };
+  auto m = make();
+  while (m.time() < 0.02) m.advance(500);
+  ASSERT_FALSE(found_points(m.body()).empty());
+  const EnergyLedger before = m.totals().energy();
+  m.remove({lower});
+  m.advance(1);
+  const EnergyLedger now = m.totals().energy();
+  EXPECT_NEAR(now.error(), before.error(), 1e-9 * turnover(before));
+  EXPECT_GE(now.dissipated.total(), before.dissipated.total());
+  EXPECT_TRUE(found_points(m.body()).empty());
+  StateCopy copy;
+  copy.take([&](StateVisitor& visitor) { m.visit_state(visitor); });
+  auto resumed = make();
+  copy.put([&](StateVisitor& visitor) { resumed.visit_state(visitor); });
+  for (auto* body : {&m, &resumed})
+    while (body->time() < 0.12) body->advance(500);
+  EXPECT_LT(lowest(m, upper), 0.01);  // it fell through the place of the other, and jumps back from the floor
+  EXPECT_GT(lowest(m, upper), -0.001);
+  for (const FoundPoint& point : found_points(m.body()))
+    for (const int block : point.blocks) EXPECT_NE(block, lower);
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    EXPECT_EQ(norm(m.read().displacement(g) - resumed.read().displacement(g)), 0.0);
 }
 
 TEST(GoneBlocks, StayGoneInAState) {

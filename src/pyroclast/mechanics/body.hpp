@@ -119,6 +119,8 @@ struct Body {
   /// Tells whether a block has left the body, see Mechanics::remove.
   bool is_gone(int block) const { return !gone.empty() && gone[block]; }
   bool has_left(int gridpoint) const { return !left.empty() && left[gridpoint]; }
+  /// Tells whether a contact has a gone block on a side.
+  bool has_left(const Contact<Dim>& contact) const { return has_left(contact.a) || has_left(contact.b); }
   /// Leaves a face out: its contact points keep what they remember, and bear nothing.
   void leave_out(int face);
   bool leaves_out(int face) const { return !is_left_out.empty() && is_left_out[face]; }

@@ -8,7 +8,6 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/mechanics/reader.hpp"
-#include "pyroclast/model/sets.hpp"
 
 namespace pyroclast {
 
@@ -155,16 +154,12 @@ Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds) 
   for (std::size_t k = 0; k < kinds.size(); ++k)
     of_interface[kinds[k].interface].push_back({k, mode_of(kinds[k].damage)});
   const std::vector<std::uint8_t> bits_of_slots = damages(body);
-  const std::vector<int> block_of = body.gone.empty() ? std::vector<int>() : gridpoint_blocks(model);
-  const auto is_of_gone = [&](const Contact<Dim>& contact) {
-    return body.gone[block_of[contact.a]] || body.gone[block_of[contact.b]];
-  };
   // the last sums are those of all kinds
   const auto add = [&](int i, std::span<CrackSums> sums) {
     const int c = layout.contacts_by_chunk[i];
     const std::uint8_t bits = bits_of_slots[layout.contact_slot[c]];
     const auto& contact = model.contacts[c];
-    if (bits == 0 || (!body.gone.empty() && is_of_gone(contact))) return;
+    if (bits == 0 || body.has_left(contact)) return;
     const double extent = model.extent(c);
     bool apart = false;
     for (const auto [kind, mode] : of_interface[contact.interface]) {

@@ -4,7 +4,6 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/mechanics/reader.hpp"
-#include "pyroclast/model/sets.hpp"
 
 namespace pyroclast {
 
@@ -12,15 +11,12 @@ template <int Dim>
 void GoneBlocks<Dim>::book(const std::vector<int>& blocks) {
   const Reader<Dim> read(body_);
   const ModelOf<Dim>& model = body_.model;
-  if (body_.state.weighs())
-    for (const int block : blocks)
-      for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-        body_.books.gravity +=
-            body_.gravity_mass[g] * dot(body_.state.gravity, read.displacement_of_force(g));
-  // the energy of motion at the half step that has begun
   for (const int block : blocks)
     for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g) {
-      const Vec<Dim> v = read.velocity(g);
+      if (body_.state.weighs())
+        body_.books.gravity +=
+            body_.gravity_mass[g] * dot(body_.state.gravity, read.displacement_of_force(g));
+      const Vec<Dim> v = read.velocity(g);  // of the half step that has begun
       body_.books.begun_removed += 0.5 * body_.mass[g] * dot(v, v);
     }
 }
@@ -42,16 +38,9 @@ void GoneBlocks<Dim>::remove(const std::vector<int>& blocks) {
     }
   }
   body_.real_mass = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) { return body_.gravity_mass[g]; });
-  leave_faces_out();
+  for (const Contact<Dim>& contact : model.contacts)
+    if (body_.has_left(contact)) body_.leave_out(contact.face);
   leave_out_of(body_.properties);
-}
-
-template <int Dim>
-void GoneBlocks<Dim>::leave_faces_out() {
-  const ModelOf<Dim>& model = body_.model;
-  const std::vector<int> block_of = gridpoint_blocks(model);
-  for (const auto& contact : model.contacts)
-    if (body_.gone[block_of[contact.a]] || body_.gone[block_of[contact.b]]) body_.leave_out(contact.face);
 }
 
 template <int Dim>
@@ -64,12 +53,8 @@ void GoneBlocks<Dim>::leave_out_of(BodyProperties& properties) const {
         if (!properties.creep.empty()) properties.creep[z] = {};
         if (body_.creeps()) body_.creep_strain[z] = {};
       }
-  if (!properties.pore_pressure.empty() && !body_.gone.empty()) {
-    const std::vector<int> block_of = gridpoint_blocks(model);
-    for (int c = 0; c < model.contact_count(); ++c)
-      if (body_.gone[block_of[model.contacts[c].a]] || body_.gone[block_of[model.contacts[c].b]])
-        properties.pore_pressure[c] = 0.0;
-  }
+  for (std::size_t c = 0; c < properties.pore_pressure.size(); ++c)
+    if (body_.has_left(model.contacts[c])) properties.pore_pressure[c] = 0.0;
 }
 
 template <int Dim>

@@ -13,7 +13,7 @@ class GoneBlocks {
  public:
   explicit GoneBlocks(Body<Dim>& body) : body_(body) {}
 
-  /// Books the work that weight and pore pressures have done on blocks, before these go.
+  /// Books the work of the weight of blocks, and the energy of their motion, before they go.
   void book(const std::vector<int>& blocks);
   /// Lets blocks go.
   void remove(const std::vector<int>& blocks);
@@ -23,8 +23,6 @@ class GoneBlocks {
   void visit_state(StateVisitor& visitor);
 
  private:
-  void leave_faces_out();
-
   Body<Dim>& body_;
 };
 

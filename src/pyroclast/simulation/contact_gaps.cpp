@@ -25,6 +25,15 @@ double damage_in_tension(const Motion& motion, int contact) {
                   motion.read().remembered(contact, Remembers::mixed_damage));
 }
 
+double largest_damage(const Motion& motion, int contact) {
+  const LawTable& law = motion.law_of(contact);
+  double most = -1.0;
+  for (const Remembers mode : kCrackModes)
+    if (place_of(law, mode, motion.model().dimension()) >= 0)
+      most = std::max(most, motion.read().remembered(contact, mode));
+  return most;
+}
+
 std::vector<ContactGap> contact_gaps(const Model& model, const std::vector<StatedGap>& stated,
                                      const Motion* motion) {
   std::vector<ContactGap> gaps(model.contact_count());

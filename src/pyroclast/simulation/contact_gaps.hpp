@@ -18,6 +18,8 @@ struct StatedGap {
 
 /// Returns the damage of a contact in tension or mixed mode, 0 to 1; 0 where its law knows none.
 double damage_in_tension(const Motion& motion, int contact);
+/// Returns the largest damage of a contact by any mode; -1 where its law knows none.
+double largest_damage(const Motion& motion, int contact);
 
 /// Returns the gap of each contact of a body for heat, from the stated gaps and the present damage and
 /// opening.

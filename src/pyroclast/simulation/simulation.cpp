@@ -242,7 +242,7 @@ void Simulation::let_pieces_go() {
           throw Error(
               fmt::format("block {} leaves the body at {:g} s of heating, but the load on the set "
                           "\"{}\" acts on it: load other sets, or leave [spalling] out",
-                          model_->block_of(g), field_.time(), set));
+                          model_->block_of(g), heating_time_, set));
     spall.heating_time = heating_time_;
     motion_->remove(spall.blocks);
     remove(spall.blocks);

@@ -11,6 +11,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/outline.hpp"
 #include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/simulation/moisture_field.hpp"
 
 namespace pyroclast {
@@ -22,16 +23,6 @@ constexpr double kPressed = 1e-6;
 /// Share of the rim's edges that counts as `rim_opening` does.
 constexpr double kShareOfEdge = 0.05;
 
-/// Returns the share of its strength that a contact point has lost; -1 where its law knows no damage.
-double damage(const Motion& motion, int contact) {
-  const LawTable& law = motion.law_of(contact);
-  double most = -1.0;
-  for (const Remembers mode : kCrackModes)
-    if (place_of(law, mode, motion.model().dimension()) >= 0)
-      most = std::max(most, motion.read().remembered(contact, mode));
-  return most;
-}
-
 /// Returns the length of the edge of a contact's face, m: in the plane a face has two points, in space the
 /// extent of a point is about the square of an edge.
 double edge_of(const Model& model, int contact) {
@@ -39,7 +30,7 @@ double edge_of(const Model& model, int contact) {
 }
 
 bool holds(const Motion& motion, int contact, double bond) {
-  const double lost = damage(motion, contact);
+  const double lost = largest_damage(motion, contact);
   if (lost >= 0.0 && lost < 1.0 - bond) return true;
   const ContactState state = motion.read().contact(contact);
   if (lost < 0.0) return state.normal_traction != 0.0 || norm(state.shear_traction) != 0.0;
@@ -74,9 +65,11 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
   if (model.ranks().count() > 1)
     throw Error("[spalling]: one process alone lets pieces go: leave --mpi out, and give it more --threads");
   const std::vector<double> volumes = model.zone_volumes();
+  std::vector<bool> takes_part;
   for (int b = 0; b < model.block_count(); ++b) {
+    takes_part.push_back(!model.is_of_bearing(b));
     double volume = 0.0;
-    if (!model.is_of_bearing(b))
+    if (takes_part[b])
       for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) volume += volumes[z];
     block_volume_.push_back(volume);
     volume_ += volume;
@@ -84,8 +77,6 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
   }
   is_gone_.resize(block_volume_.size());
   is_outside_.resize(block_volume_.size());
-  std::vector<bool> takes_part;
-  for (int b = 0; b < model.block_count(); ++b) takes_part.push_back(!model.is_of_bearing(b));
   with_dimension(model, [&]<int Dim>(const ModelOf<Dim>& of_dimension) {
     const auto faces = outline(of_dimension, zone_geometry(of_dimension), takes_part);
     std::vector<bool> is_hot(faces.size());
@@ -207,7 +198,6 @@ Spall Spalling::describe(Leaving piece, const TemperatureField& field, const Moi
   Spall spall;
   spall.blocks = std::move(piece.blocks);
   spall.sign = piece.sign;
-  spall.heating_time = field.time();
   std::vector<bool> is_of_piece(is_gone_.size());
   for (const int block : spall.blocks) {
     is_of_piece[block] = true;

@@ -36,7 +36,7 @@ std::string name_of_bar(double depth);
 /// Piece that left the body.
 struct Spall {
   std::vector<int> blocks;     ///< ascending
-  double heating_time = 0.0;   ///< s
+  double heating_time = 0.0;   ///< s; whoever lets the piece go sets it
   double area = 0.0;           ///< area of its back, seen across the faces that heat acts on, m2
   double volume = 0.0;         ///< m3
   double mass = 0.0;           ///< at 20 degC, without its water, kg

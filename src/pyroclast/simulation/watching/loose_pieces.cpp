@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/disjoint_sets.hpp"
-#include "pyroclast/mechanics/cracks.hpp"
+#include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/simulation/watching/items.hpp"
 
 namespace pyroclast {
@@ -29,10 +29,8 @@ using PairOfBlocks = std::array<int, 2>;
 bool connects(const Motion& motion, int contact) {
   const ContactState state = motion.read().contact(contact);
   if (state.normal_traction != 0.0 || norm(state.shear_traction) != 0.0) return true;
-  double most = -1.0;  // without a damage nothing holds a contact that bears nothing
-  for (const Remembers mode : kCrackModes)
-    if (place_of(*state.law, mode, state.dimension) >= 0) most = std::max(most, state.remembered(mode));
-  return most >= 0.0 && most < 1.0;
+  const double damage = largest_damage(motion, contact);
+  return damage >= 0.0 && damage < 1.0;  // without a damage nothing holds a contact that bears nothing
 }
 
 /// Calls `take(a, b, connects)` for the blocks of each contact of the whole body, on the first rank: a
