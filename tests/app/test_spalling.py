@@ -40,7 +40,11 @@ class Slab(InAFolder):
 
 class PiecesLeave(Slab):
     def test_they_are_told_and_what_they_take_along_is_booked(self):
-        summary = self.slab()
+        heights = range(5, 100, 10)
+        watched = [f'[[probes]]\nname = "at_{y}"\nx = "1 mm"\ny = "{y} mm"\n' for y in heights]
+        watched += ['[[record]]\nname = "way"\nkind = "displacement"\nset = "left"\ndirection = "x"\n', "[spalling] "]
+        summary = self.slab(("[spalling] ", "\n".join(watched)))
+        self.assertEqual(summary["stages"][2]["outcome_id"], "completed")
         told, pieces, blocks = summary["spalling"], self.table("out/spalls.csv"), self.table("out/spalled_blocks.csv")
         history = self.table("out/history.csv")
         self.assertGreater(told["pieces"], 2)
@@ -60,6 +64,12 @@ class PiecesLeave(Slab):
         self.assertGreater(last["heat_removed_J"], 0.01 * last["heat_stored_J"])
         self.assertLess(abs(last["water_error_kg"]), 1e-9 * last["water_kg"])
         self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.01)
+        self.assertTrue(history[1]["way_m"] and not history[-1]["way_m"])
+        for name in ("probe_at_{}_degC", "probe_at_{}_pore_MPa"):
+            columns = [name.format(y) for y in heights]
+            self.assertTrue(all(history[1][column] for column in columns))
+            self.assertTrue(any(not history[-1][column] for column in columns))
+        self.assertNotIn("nan", (self.folder / "out/history.csv").read_text())
         self.assertIn("pieces left the body, from", (self.folder / "out/run.log").read_text())
 
     def test_none_leaves_where_the_pressure_acts_on_nothing(self):

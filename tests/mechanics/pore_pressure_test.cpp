@@ -147,5 +147,62 @@ TEST(PorePressure, LeavesMomentumAndEnergyInBalance) {
   }
 }
 
+/// Pressed body whose pressure falls as contacts open by more than they are open now.
+template <int Dim>
+BodyProperties with_reserve(const Mechanics<Dim>& m, BodyProperties properties, double reserve) {
+  properties.pore_reserve = reserve;
+  for (int c = 0; c < static_cast<int>(properties.pore_pressure.size()); ++c)
+    properties.pore_opening.push_back(m.read().opening(c));
+  return properties;
+}
+
+// Promise: as a contact opens, the pressure falls to w / (w + further opening) of its value.
+TEST(PorePressureVerification, AReserveFallsAsTheContactOpens) {
+  const ModelOf<2> model = column(2, 0.01);
+  auto m = dry(model, elastic_contact(), settling<2>(40));
+  const double pressure = 3e6, reserve = 20e-6, stiffness = elastic_contact().normal_stiffness;
+  m.set_properties(with_reserve(m, pressed(model, elastic_contact(), 0.0, pressure), reserve));
+  m.advance(3000);
+  const double k = stiffness * reserve;  // u K = p w / (w + u)
+  const double exact = 0.5 * reserve * (std::sqrt(1.0 + 4.0 * pressure / k) - 1.0);
+  expect_known({"Opening of a contact under a pressure of 3 MPa with a reserve of 20 um",
+                "root of K u = p w / (w + u)", "m"},
+               m.read().opening(0), exact, 1e-9 * exact);
+  const double broken = 50e-6;  // a broken contact, drawn open
+  for (const double opening : {-1e-6, 0.0, broken})
+    EXPECT_NEAR(m.body().properties.work_of_pore_pressure(0, opening),
+                pressure * (opening > 0.0 ? reserve * std::log(1.0 + opening / reserve) : opening),
+                1e-9 * pressure * broken);
+}
+
+TEST(PorePressure, ThatFallsKeepsMomentumAndTheLedger) {
+  const ModelOf<2> model = tessellated(40, 0.05, 0.05, 3);
+  for (const auto kinematics : {Kinematics::small, Kinematics::finite}) {
+    auto parameters = quasi_static<2>(0.0);
+    parameters.kinematics = kinematics;
+    parameters.safety = 0.2;
+    auto m = dry(model, elastic_contact(), parameters);
+    Random random(4);
+    std::vector<Vec<2>> velocities(model.position.size());
+    for (auto& v : velocities) v = {{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)}};
+    m.begin_moving(velocities);
+    m.advance(200);
+    auto properties = pressed(model, elastic_contact(), 0.0, 0.0);
+    for (double& p : properties.pore_pressure) p = random.uniform(0.0, 5e6);
+    m.set_properties(with_reserve(m, properties, 5e-6));
+    m.advance(400);
+    Vec<2> force{};
+    double size = 0.0;
+    for (int g = 0; g < model.gridpoint_count(); ++g) {
+      force += m.read().force(g);
+      size += norm(m.read().force(g));
+    }
+    EXPECT_LT(norm(force), 1e-12 * size);
+    const EnergyLedger e = m.totals().energy();
+    EXPECT_GT(e.pore_pressure, 1e-2 * turnover(e));
+    EXPECT_LT(std::abs(e.error()), 1e-5 * turnover(e));  // a force that falls is no spring: 1.6e-6
+  }
+}
+
 }  // namespace
 }  // namespace pyroclast::pore_pressure_test

@@ -192,6 +192,20 @@ TEST(HeatConditions, TemperatureRangeWithAFluxIsRefusedUnlessStated) {
   EXPECT_EQ(temperature_range(heat, kDuration), (Interval{20.0, 900.0}));
 }
 
+TEST(HeatConditions, AFireIsWhatGivesHeatOrWarmsHalfAsFarAsTheHottest) {
+  const Curve iso = fire_curves().at("iso834").curve;
+  const auto fires = [](std::vector<HeatBoundaryCondition> boundaries) {
+    return are_fires(heat_conditions(std::move(boundaries)));
+  };
+  EXPECT_EQ(fires({on("left", convection(25.0, iso)), on("right", convection(9.0, Curve::constant(35.0))),
+                   on("top", PrescribedTemperature{Curve::constant(700.0)}), on("bottom", Adiabatic{})}),
+            (std::vector<bool>{true, false, true, false}));
+  EXPECT_EQ(fires({on("left", convection(25.0, iso)), on("right", HeatFlux{Curve::constant(1e4)}),
+                   on("top", HeatFlux{Curve::constant(-1e4)})}),
+            (std::vector<bool>{false, true, false}));
+  EXPECT_EQ(fires({on("left", PrescribedTemperature{Curve::constant(-10.0)})}), std::vector<bool>{false});
+}
+
 TEST(HeatConditions, BoundaryValuesAreConstantFromTheEndOfARamp) {
   const Curve ramp = Curve::table({0.0, 600.0, 1e9}, {20.0, 70.0, 70.0}, time_axis());
   const auto from = [](const Curve& gas) {

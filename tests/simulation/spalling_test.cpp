@@ -77,6 +77,7 @@ TEST(Spalling, APieceThatFliesLeavesMotionHeatAndWater) {
   const auto simulation = made(slab());
   heat(*simulation);
   const int block = block_at_the_face(*simulation);
+  simulation->record("face").require_there(*simulation, "until");
   simulation->motion().advance(100);
   EXPECT_FALSE(simulation->pieces_fly());
   draw_out(*simulation, block);
@@ -106,6 +107,8 @@ TEST(Spalling, APieceThatFliesLeavesMotionHeatAndWater) {
   const int gridpoint = simulation->model().block_gridpoints[block];
   EXPECT_TRUE(std::isnan(simulation->field().gridpoints()[gridpoint]));
   EXPECT_TRUE(std::isnan(simulation->record("face").read(*simulation)));
+  expect_in("until: blocks of the record \"face\" have left the body",
+            message([&] { simulation->record("face").require_there(*simulation, "until"); }));
   EXPECT_TRUE(std::isfinite(simulation->field().mean()));
 
   // what is left goes on
@@ -152,6 +155,20 @@ TEST(Spalling, ALoadOnAPieceThatLeavesIsAnErrorThatNamesTheBlock) {
   const std::string text = message([&] { simulation->let_pieces_go(); });
   expect_in("block " + std::to_string(block) + " leaves the body", text);
   expect_in("the load on the set \"left\"", text);
+}
+
+// Promise: depths count from the fire, whatever the other side has.
+TEST(Spalling, DepthsCountFromTheFaceInTheFireAlone) {
+  const auto simulation = made(slab());
+  const Spalling& spalling = *simulation->spalling();
+  EXPECT_NEAR(spalling.depth({{0.03, 0.1, 0.0}}), 0.03, 1e-9);
+  EXPECT_NEAR(spalling.depth({{0.08, 0.1, 0.0}}), 0.08, 1e-9);
+}
+
+TEST(Spalling, ABarWhereNoBlockLiesIsRefusedAtItsPlace) {
+  const std::string text = message([] { made(with(slab(), "\"35 mm\"]", "\"35 cm\"]")); });
+  expect_in("spalling.bars: no block lies 350 mm below the faces that fire acts on", text);
+  expect_in("deck.toml:", text);
 }
 
 // Promise: a block that a stated pressure pushes off a held one leaves in the increment in which its share

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -54,6 +55,19 @@ struct BodyProperties {
   std::vector<int> of_interface = {};
   /// Pressure of pore water that parts the sides of each contact, Pa; empty where water presses on none.
   std::vector<double> pore_pressure = {};
+  /// Opening of each contact at which its pressure stands, m: a further opening du lowers it to its share
+  /// pore_reserve / (pore_reserve + du). Empty where no opening lowers any.
+  std::vector<double> pore_opening = {};
+  double pore_reserve = 0.0;  ///< m, with pore_opening
+
+  /// Returns the work by area that the pressure of a contact has done on its way to an opening, up to a
+  /// constant, J/m2.
+  double work_of_pore_pressure(int contact, double opening) const {
+    const double pressure = pore_pressure[contact];
+    if (pore_opening.empty()) return pressure * opening;
+    const double further = opening - pore_opening[contact];
+    return pressure * (further > 0.0 ? pore_reserve * std::log1p(further / pore_reserve) : further);
+  }
 };
 
 /// Returns the properties of a body whose contacts differ by interface alone.

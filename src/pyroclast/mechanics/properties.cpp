@@ -151,9 +151,14 @@ void Properties<Dim>::place_pore_pressure() {
   const std::vector<double>& pressure = body_.properties.pore_pressure;
   auto& lines = body_.arrays.pore_pressure;
   if (!pressure.empty() && lines.empty()) lines = body_.template made<Line>(body_.layout.points.size());
+  const std::vector<double>& opening = body_.properties.pore_opening;
+  auto& openings = body_.arrays.pore_opening;
+  if (!opening.empty() && openings.empty()) openings = body_.template made<Line>(body_.layout.points.size());
+  body_.state.pore_reserve = body_.properties.pore_reserve;
   for (std::size_t c = 0; c < pressure.size(); ++c) {
     const int slot = body_.layout.contact_slot[c];
     lines[slot / kLanes].number[slot % kLanes] = pressure[c];
+    if (!opening.empty()) openings[slot / kLanes].number[slot % kLanes] = opening[c];
   }
 }
 
@@ -260,6 +265,8 @@ void Properties<Dim>::visit_state(StateVisitor& visitor) {
   visit_contacts_sets(visitor);
   if (body_.has_pore_pressure())
     visit_contacts(visitor, "pore_pressure", body_.model, body_.properties.pore_pressure, state::number());
+  if (!body_.properties.pore_opening.empty())
+    visit_contacts(visitor, "pore_opening", body_.model, body_.properties.pore_opening, state::number());
   if (visitor.replaces()) place();
 }
 

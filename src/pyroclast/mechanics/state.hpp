@@ -140,6 +140,8 @@ struct StateArrays {
 
   /// Pressure of pore water that parts the sides of the points of each pack, Pa; empty where there is none.
   Array<Line> pore_pressure;
+  /// Opening at which it stands, m; empty where a further opening does not lower it.
+  Array<Line> pore_opening;
 
   Array<int> constraints_of_bundle;  ///< -1 for a bundle that nothing holds, drives or loads now
   Array<BundleConstraints> constraints;
@@ -186,6 +188,7 @@ struct StateArrays {
     f(ArrayInfo{"own_constants", Per::entry, Touched::all}, s.own_constants...);
     f(ArrayInfo{"first_own_constant", Per::face_pack_end, Touched::all}, s.first_own_constant...);
     f(ArrayInfo{"pore_pressure", Per::point_pack, Touched::all}, s.pore_pressure...);
+    f(ArrayInfo{"pore_opening", Per::point_pack, Touched::all}, s.pore_opening...);
     f(ArrayInfo{"constraints_of_bundle", Per::bundle, Touched::all, Touched::none, Lasts::kept},
       s.constraints_of_bundle...);
     f(ArrayInfo{"constraints", Per::entry, Touched::all, Touched::all, Lasts::kept}, s.constraints...);
@@ -208,9 +211,10 @@ struct StepParameters {
   double time_step = 0.0, local_damping = 0.0, viscous_damping = 0.0;
   DampingForm damping_form = DampingForm::local;
   Kinematics kinematics = Kinematics::small;
-  double thickness = 1.0;   ///< m
-  double block_size = 0.0;  ///< root of the mean area or volume of a block that is of no bearing, m
-  bool by_bundle = false;   ///< true where all zones of a block have the same properties
+  double thickness = 1.0;     ///< m
+  double block_size = 0.0;    ///< root of the mean area or volume of a block that is of no bearing, m
+  double pore_reserve = 0.0;  ///< see BodyProperties, m
+  bool by_bundle = false;     ///< true where all zones of a block have the same properties
 };
 
 template <int Dim>

@@ -169,7 +169,7 @@ double Totals<Dim>::work_of_pore_pressure() const {
   const auto& contacts = body_.layout.contacts_by_chunk;
   return chunked_sum(body_.layout.chunks.contacts, [&](int i) {
     const int c = contacts[i];
-    return body_.properties.pore_pressure[c] * body_.model.contacts[c].area * read_.opening(c);
+    return body_.properties.work_of_pore_pressure(c, read_.opening(c)) * body_.model.contacts[c].area;
   });
 }
 

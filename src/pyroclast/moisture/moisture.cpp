@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostIterations = 20;
 constexpr double kTolerance = 1e-6;     ///< of the balance of a cell in a step, kg/m3
 constexpr double kLargestChange = 1.0;  ///< of ln p in an iteration
-constexpr double kLeastStep = 1e-4;     ///< s
+constexpr double kLeastStep = 1e-9;     ///< s, in which a crack that steam flows through keeps its water
 constexpr double kGrowth = 1.5;         ///< of steps, where one converged
 /// Share of a cell's water that a crack takes at most where it opens.
 constexpr double kMostTaken = 0.1;

@@ -20,6 +20,9 @@ namespace {
 constexpr double kAirCoefficient = 0.018;  // m/s
 constexpr double kAirHumidity = 0.8;
 
+// A pressure that falls is a spring of its own beside the contact: with less it would need a smaller step.
+constexpr double kLeastReserve = 5e-6;  // m
+
 // Growth of the permeability with the highest temperature so far (Gawin, Majorana and Schrefler 1999, their
 // form).
 constexpr double kDecades = 0.008;  // 1/K
@@ -210,12 +213,19 @@ void read_coupling(const Section& s, bool moves, MoistureConditions& conditions)
   coupling.crack_width =
       s.quantity("crack_width", unit::length, Range::positive().usually(1e-6, 1e-4), coupling.crack_width,
                  "mean opening of a face from which it drains as a crack");
+  if (s.has("reserve"))
+    coupling.reserve = s.quantity("reserve", unit::length, Range{.lower = kLeastReserve}.usually(1e-5, 1e-2),
+                                  "w in the share w / (w + further opening) to which the pressure of a "
+                                  "contact falls as it opens within "
+                                  "an exchange; without this key it stays as it is until the next one");
   conditions.parameters.roughness =
       s.number("roughness", Range{.lower = 1.0}.usually(1.0, 5.0), conditions.parameters.roughness,
                "of the walls of cracks: they pass vapour as smooth ones do, over this number");
   if (!moves)
-    for (const char* key : {"acts", "biot", "exchange_pressure", "crack_width", "roughness"})
+    for (const char* key : {"acts", "biot", "exchange_pressure", "crack_width", "reserve", "roughness"})
       if (s.has(key)) s.error(key, "has no meaning: no stage moves the body");
+  if (coupling.acts != PressureActs::all && s.has("reserve"))
+    s.error("reserve", "has no meaning where the pressure does not act on contacts: acts = \"all\"");
   if (coupling.acts == PressureActs::no)
     for (const char* key : {"biot", "exchange_pressure"})
       if (s.has(key)) s.error(key, "has no meaning beside acts = \"no\"");

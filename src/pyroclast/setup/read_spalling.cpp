@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace pyroclast {
 
 std::optional<SpallingRule> read_spalling(const Section& root,
@@ -24,6 +26,7 @@ std::optional<SpallingRule> read_spalling(const Section& root,
     rule.bars = s->quantities("bars", unit::length, Range::positive().usually(0.005, 0.2),
                               "depths of steel bars below the heated faces: the summary tells when pieces "
                               "bare them, and how hot it is there. The bars themselves are not in the body");
+    rule.bars_place = fmt::format("{}: {}.bars", s->where("bars"), s->path());
     std::ranges::sort(rule.bars);
   }
   return rule;

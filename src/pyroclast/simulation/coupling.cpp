@@ -184,7 +184,11 @@ BodyProperties properties_at(const Model& model, const ConcreteMaterials& materi
                              const std::optional<PorePressures>& water, BodyProperties memory) {
   const std::vector<int> zone_materials = materials_of_zones(model);
   BodyProperties p = std::move(memory);
-  p.pore_pressure = water ? water->of_contacts : std::vector<double>();
+  const PorePressures none;
+  const PorePressures& pressures = water ? *water : none;
+  p.pore_pressure = pressures.of_contacts;
+  p.pore_opening = pressures.at_openings;
+  p.pore_reserve = pressures.reserve;
   find_creep_increments(zone_materials, materials, field, before, p.creep);
   if (field.is_uniform() && before.stress_free_zones().empty() && !water) {
     BodyProperties even = properties_at_one_temperature(model, zone_materials, materials, field.mean(),

@@ -64,6 +64,8 @@ class HottestTemperatures {
 struct PorePressures {
   std::vector<double> of_blocks;    ///< times Biot's coefficient, Pa, of each block
   std::vector<double> of_contacts;  ///< times that of the contact, Pa, of each; empty: on none
+  std::vector<double> at_openings;  ///< of contacts, m; see BodyProperties::pore_opening
+  double reserve = 0.0;             ///< m
 };
 
 /// Returns the parameters of every zone and contact at the field's temperatures, and the creep of zones on

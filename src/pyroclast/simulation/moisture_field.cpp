@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/moisture_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -246,6 +247,12 @@ std::optional<PorePressures> MoistureField::pressures(const Motion* motion) cons
   for (int b = 0; b < model_.block_count(); ++b) found.of_blocks.push_back(coupling_.biot * pore_pressure(b));
   if (coupling_.acts == PressureActs::zones) return found;
   found.of_contacts.resize(model_.contact_count());
+  if (std::isfinite(coupling_.reserve)) {
+    found.reserve = coupling_.reserve;
+    found.at_openings.resize(model_.contact_count());
+    for (int c = 0; motion && c < model_.contact_count(); ++c)
+      found.at_openings[c] = motion->read().opening(c);
+  }
   for (int f = 0; f < std::ssize(face_of_); ++f)
     for (int c = face_contacts_[face_of_[f]]; c < face_contacts_[face_of_[f] + 1]; ++c) {
       const double damage = motion ? damage_in_tension(*motion, c) : 0.0;

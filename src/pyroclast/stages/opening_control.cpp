@@ -41,6 +41,7 @@ void OpeningControl::check(const Simulation& simulation) const {
 
 void OpeningControl::begin(const Simulation& simulation) {
   steps_per_adjustment_ = 0;
+  simulation.record(keys().record).require_there(simulation, keys().place);
   read(simulation);
   kept_.first_opening = kept_.last_opening = opening_;
 }

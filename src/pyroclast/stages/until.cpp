@@ -48,6 +48,8 @@ void RecordWatch::begin(const Simulation& simulation) {
   kept_.peaks.assign(drive_.until.size(), {});
   kept_.last.clear();
   const Seen seen = read(simulation);
+  for (const EndCondition& until : drive_.until)
+    simulation.record(until.record).require_there(simulation, until.place);
   for (const EndCondition& until : drive_.until) kept_.last.push_back(value(seen, until.record));
   kept_.first_work = seen.energy.loading;
   kept_.most_kinetic = std::abs(seen.energy.kinetic);

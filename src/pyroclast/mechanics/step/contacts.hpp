@@ -77,8 +77,8 @@ struct FaceFrames {
   }
 };
 
-/// Pressure of pore water between the sides of contact points. It parts them by a traction that no jump
-/// changes, beside that of the law.
+/// Pressure of pore water between the sides of contact points. It parts them by a traction beside that of the
+/// law, which no jump changes, or which a further opening lowers.
 template <int Dim, class Set>
 struct PorePressure {
   using R = Packs<Dim, Set>;
@@ -86,11 +86,14 @@ struct PorePressure {
 
   /// Implements StepPasses::add_pore_pressure.
   static void add(State<Dim>& s, int first, int last) {
-    with_kinematics(s, [&](auto kinematics) { add_to<kinematics()>(s, first, last); });
+    with_kinematics(s, [&](auto kinematics) {
+      s.pore_opening.empty() ? add_to<kinematics(), false>(s, first, last)
+                             : add_to<kinematics(), true>(s, first, last);
+    });
   }
 
  private:
-  template <Kinematics kKinematics>
+  template <Kinematics kKinematics, bool kFalls>
   [[gnu::flatten, gnu::noinline]] static void add_to(State<Dim>& __restrict s, int first_pack,
                                                      int last_pack) {
     const auto put = [](const auto& more, Vec<Dim>* to) { R::store(R::load(to) + more, to); };
@@ -100,10 +103,17 @@ struct PorePressure {
       Real turning = 0.0;
       for (int at = first; at < last; ++at) {
         const PointPack& point = s.layout.points[at];
-        const Real force = Real::load(s.pore_pressure[at].number) * Real::load(point.area);
+        Real force = Real::load(s.pore_pressure[at].number) * Real::load(point.area);
+        Vec<Dim, Real> jump{};
+        if constexpr (kFalls || kKinematics == Kinematics::finite)
+          jump = R::gather_differences(s.displacement, point.b, point.a);
+        if constexpr (kFalls) {
+          const Real further = dot(jump, frame.normal) - Real::load(s.pore_opening[at].number);
+          const Real reserve = s.pore_reserve;
+          force = force * (reserve / (reserve + larger(further, Real(0.0))));
+        }
         put(frame.normal * -force, &s.contact_force[slot_of(at, 0)]);
-        if constexpr (kKinematics == Kinematics::finite)
-          turning += force * dot(R::gather_differences(s.displacement, point.b, point.a), frame.tangents[0]);
+        if constexpr (kKinematics == Kinematics::finite) turning += force * dot(jump, frame.tangents[0]);
       }
       if constexpr (kKinematics == Kinematics::finite) {
         const auto turns = frame.turning_force(turning);

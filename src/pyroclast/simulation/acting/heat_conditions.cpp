@@ -208,6 +208,18 @@ std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
   return conduction;
 }
 
+/// Returns how far a boundary warms above a temperature, K; infinite where it gives heat.
+double rise_of(const HeatCondition& condition, double initial) {
+  constexpr double kLongest = 86400.0;  // s
+  const auto most = [&](const Curve& curve) {
+    return curve.maximum(std::max(0.0, curve.range().lower), std::min(kLongest, curve.range().upper));
+  };
+  if (const auto* flux = std::get_if<HeatFlux>(&condition))
+    return most(flux->flux) > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  const Curve* const temperature = curves_of(condition).temperature;
+  return temperature ? most(*temperature) - initial : 0.0;
+}
+
 /// Returns how far a boundary takes temperatures away from the initial one, K.
 double drive_of(const HeatCondition& condition, double initial, double duration) {
   if (const auto* flux = std::get_if<HeatFlux>(&condition))
@@ -255,6 +267,16 @@ BoxSide most_heated_side_of(const ModelOf<Dim>& model, const std::vector<BlockMa
 }
 
 }  // namespace
+
+std::vector<bool> are_fires(const HeatConditions& heat) {
+  std::vector<double> rise;
+  for (const HeatBoundaryCondition& boundary : heat.boundaries)
+    rise.push_back(rise_of(boundary.condition, heat.initial));
+  const double most = rise.empty() ? 0.0 : std::ranges::max(rise);
+  std::vector<bool> found;
+  for (const double r : rise) found.push_back(r > 0.0 && r >= 0.5 * most);
+  return found;
+}
 
 BoxSide most_heated_side(const Model& model, const std::vector<BlockMaterial>& block_materials,
                          const HeatConditions& heat, double duration) {

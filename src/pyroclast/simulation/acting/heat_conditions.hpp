@@ -83,6 +83,10 @@ bool heats_or_cools(const HeatConditions& heat, double duration);
 /// is no such time.
 double constant_from(const HeatConditions& heat, double duration);
 
+/// Tells for each boundary whether it is a fire: it gives heat, or warms at least half as far above the
+/// initial temperature as the hottest one. A boundary that keeps or takes heat is none.
+std::vector<bool> are_fires(const HeatConditions& heat);
+
 /// Side of the box around a body.
 struct BoxSide {
   int axis = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,10 @@ struct PoreCoupling {
   /// Biot's coefficient b of zones and of intact contacts; a contact with damage D bears b + (1 - b) D of the
   /// pressure.
   double biot = 0.5;
-  double crack_width = 5e-6;       ///< mean opening of a face from which it is a crack that drains, m
+  double crack_width = 5e-6;  ///< mean opening of a face from which it is a crack that drains, m
+  /// Further opening within an exchange that halves the pressure of a contact, m; infinite where none lowers
+  /// it.
+  double reserve = std::numeric_limits<double>::infinity();
   double exchange_pressure = 2e5;  ///< change of a pore pressure between two exchanges, about, Pa
 };
 

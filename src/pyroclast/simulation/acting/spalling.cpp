@@ -81,9 +81,11 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
     const auto faces = outline(of_dimension, zone_geometry(of_dimension), takes_part);
     std::vector<bool> is_hot(faces.size());
     bool any = false;
-    for (const HeatBoundaryCondition& boundary : heat.boundaries) {
-      if (std::holds_alternative<Adiabatic>(boundary.condition)) continue;
-      for (const int face : faces_of(of_dimension, faces, boundary.faces)) is_hot[face] = any = true;
+    const std::vector<bool> is_fire = are_fires(heat);
+    for (std::size_t i = 0; i < is_fire.size(); ++i) {
+      if (!is_fire[i]) continue;
+      for (const int face : faces_of(of_dimension, faces, heat.boundaries[i].faces))
+        is_hot[face] = any = true;
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
       is_outside_[block_of_[faces[f].gridpoints[0]]] = true;
@@ -102,6 +104,10 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
     for (std::size_t bar = 0; bar < at_bar_.size(); ++bar)
       if (std::abs(d - rule_.bars[bar]) < 0.5 * size) at_bar_[bar].push_back(g);
   }
+  for (std::size_t bar = 0; bar < at_bar_.size(); ++bar)
+    if (at_bar_[bar].empty())
+      throw Error(fmt::format("{}: no block lies {:.6g} mm below the faces that fire acts on",
+                              rule_.bars_place, 1e3 * rule_.bars[bar]));
 }
 
 double Spalling::temperature_at(std::size_t bar, const TemperatureField& field) const {

@@ -21,7 +21,8 @@ class MoistureField;
 struct SpallingRule {
   double bond = 0.05;           ///< share of its strength up to which a contact holds nothing any more
   double rim_opening = 0.2e-3;  ///< m, see Spalling::find
-  std::vector<double> bars;     ///< depths of bars below the faces that heat acts on, ascending, m
+  std::string bars_place;       ///< in the deck, for messages
+  std::vector<double> bars;     ///< depths of bars below the faces that fire acts on, ascending, m
 };
 
 /// What tells that a loose piece moves away.
@@ -37,10 +38,10 @@ std::string name_of_bar(double depth);
 struct Spall {
   std::vector<int> blocks;     ///< ascending
   double heating_time = 0.0;   ///< s; whoever lets the piece go sets it
-  double area = 0.0;           ///< area of its back, seen across the faces that heat acts on, m2
+  double area = 0.0;           ///< area of its back, seen across the faces that fire acts on, m2
   double volume = 0.0;         ///< m3
   double mass = 0.0;           ///< at 20 degC, without its water, kg
-  double mean_depth = 0.0;     ///< of its back below the faces of the start that heat acts on, m
+  double mean_depth = 0.0;     ///< of its back below the faces of the start that fire acts on, m
   double largest_depth = 0.0;  ///< of the piece, m
   double pressure = 0.0;       ///< largest pore pressure of the blocks behind it, Pa
   double temperature = 0.0;    ///< mean at its back, degC
@@ -74,21 +75,21 @@ class Spalling {
   bool is_gone(int block) const { return is_gone_[block]; }
   std::int64_t blocks_gone() const;
   double mass_gone() const;      ///< kg
-  double mean_depth() const;     ///< volume that left over the area of the faces that heat acts on, m
+  double mean_depth() const;     ///< volume that left over the area of the faces that fire acts on, m
   double largest_depth() const;  ///< m
   double lost_section() const;   ///< volume that left over that of the specimen
   /// Returns the mean temperature of what is left at the depth of a bar, degC; NaN where nothing is.
   double temperature_at(std::size_t bar, const TemperatureField& field) const;
   /// Returns when a piece first reached to the depth of a bar, s of heating; empty where none did.
   std::optional<double> bare_from(std::size_t bar) const;
-  /// Returns the depth of a place below the faces of the start that heat acts on, m.
+  /// Returns the depth of a place below the faces of the start that fire acts on, m.
   double depth(const Vec<3>& place) const;
 
   /// Shows the pieces that have left to a visitor.
   void visit_state(StateVisitor& visitor);
 
  private:
-  /// Face of the start that heat acts on.
+  /// Face of the start that fire acts on.
   struct HotFace {
     Vec<3> centre, normal;
     double area;

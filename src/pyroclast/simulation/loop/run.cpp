@@ -231,7 +231,8 @@ std::vector<std::optional<double>> Run::measure() const {
   for (const Gauge& gauge : gauges_) {
     if (gauge.of_motion && stage && !stage->needs().mechanics) continue;
     const std::vector<double> values = gauge.read(simulation_);
-    for (std::size_t i = 0; i < values.size(); ++i) set(gauge.columns[i], values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!gauge.of_places || !std::isnan(values[i])) set(gauge.columns[i], values[i]);
   }
   if (!stage) return row;
   const auto columns = stage->columns();

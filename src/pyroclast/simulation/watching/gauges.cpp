@@ -162,10 +162,10 @@ constexpr auto kSpalling = std::to_array<ColumnOf<Sp>>({
     {"spalled_mass_kg", "kg", ColumnRole::spalling, "mass", "mass of these pieces at 20 °C, without water",
      [](const Sp& s) { return s.mass_gone(); }},
     {"spalled_depth_mean_m", "m", ColumnRole::spalling, "mean_depth",
-     "volume of these pieces over the area of the faces that heat acts on",
+     "volume of these pieces over the area of the faces that fire acts on",
      [](const Sp& s) { return s.mean_depth(); }},
     {"spalled_depth_max_m", "m", ColumnRole::spalling, "largest_depth",
-     "largest depth of these pieces below the faces of the start that heat acts on",
+     "largest depth of these pieces below the faces of the start that fire acts on",
      [](const Sp& s) { return s.largest_depth(); }},
     {"lost_section", "1", ColumnRole::spalling, "lost_section",
      "volume of these pieces over that of the specimen", [](const Sp& s) { return s.lost_section(); }},
@@ -409,6 +409,7 @@ Gauge record_gauge(const Simulation& simulation, bool of_motion) {
     return values;
   };
   gauge.of_motion = of_motion;
+  gauge.of_places = true;
   return gauge;
 }
 
@@ -424,6 +425,7 @@ Column bar_column(const std::string& name) {
 
 Gauge bar_gauge(const Spalling& spalling) {
   Gauge gauge;
+  gauge.of_places = true;
   for (const double depth : spalling.rule().bars) gauge.columns.push_back(bar_column(name_of_bar(depth)));
   gauge.read = [](const Simulation& s) {
     std::vector<double> values;
@@ -493,6 +495,7 @@ std::vector<Gauge> transport_gauges(const Simulation& simulation) {
 
 std::vector<Gauge> probe_gauges(const Simulation& simulation) {
   Gauge gauge;
+  gauge.of_places = true;
   for (const auto& probe : simulation.probes()) gauge.columns.push_back(probe_column(probe.name()));
   gauge.read = [](const Simulation& s) {
     std::vector<double> values;
@@ -502,6 +505,7 @@ std::vector<Gauge> probe_gauges(const Simulation& simulation) {
   std::vector<Gauge> gauges{std::move(gauge)};
   if (!simulation.moisture()) return gauges;
   Gauge& pressures = gauges.emplace_back();
+  pressures.of_places = true;
   for (const auto& probe : simulation.probes())
     pressures.columns.push_back(probe_pressure_column(probe.name()));
   pressures.read = [](const Simulation& s) {

@@ -14,6 +14,7 @@ struct Gauge {
   /// Function that returns the values in the order of the columns.
   std::function<std::vector<double>(const Simulation&)> read;
   bool of_motion = false;  ///< true where there is nothing to read in a stage that does not move the body
+  bool of_places = false;  ///< true where NaN stands for blocks that have left the body
 };
 
 /// Returns gauges of the steps and the time of the mechanics.

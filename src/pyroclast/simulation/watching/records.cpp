@@ -177,7 +177,11 @@ double Record::read(const Simulation& simulation) const {
   return measure(simulation) - (counts_from_zero() ? zero_ : 0.0);
 }
 
-/// Tells whether a block that the record counts on has left the body.
+void Record::require_there(const Simulation& simulation, const std::string& place) const {
+  if (has_lost(simulation))
+    throw Error(fmt::format("{}: blocks of the record \"{}\" have left the body", place, parameters_.name));
+}
+
 bool Record::has_lost(const Simulation& simulation) const {
   if (!simulation.spalling() || simulation.spalling()->spalls().empty()) return false;
   const Model& model = simulation.model();

@@ -74,6 +74,9 @@ class Record {
   double mobility(const Simulation& simulation) const;
 
   void visit_state(StateVisitor& visitor) { visitor.visit(parameters_.name, zero_); }
+  /// Throws Error, with the place of what needs the record, where a block that it counts on has left the
+  /// body.
+  void require_there(const Simulation& simulation, const std::string& place) const;
 
  private:
   bool counts_from_zero() const {
