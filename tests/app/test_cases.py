@@ -1,6 +1,6 @@
 """Cases beyond the paper's, in their small forms: what they show follows from what their decks say.
 
-PYROCLAST names the program, SMALL_FORMS the folder of runs that `validation/reference check --cases small --keep FOLDER`
+PYROCLAST names the program, SMALL_FORMS the folder of runs that `validation/reference check --keep FOLDER`
 left.
 """
 

@@ -289,6 +289,43 @@ class Concrete(InAFolder):
         self.assertEqual((self.folder / "mine.toml").read_bytes(), before)
         self.assertFalse((self.folder / "mine-calibrate.toml").exists())
 
+    def contents(self) -> dict:
+        return {path.name: path.read_bytes() if path.is_file() else None for path in self.folder.iterdir()}
+
+    def test_files_of_an_earlier_call_are_overwritten_all_or_none(self):
+        hot = (*LIMESTONE, *FULLER, "--hot", "400 degC")
+        self.concrete(*hot)
+        first = self.contents()
+        self.assertEqual(len(first), 3)
+        (self.folder / "mine.toml").write_text(first["mine.toml"].decode().replace("seed = 1 ", "seed = 2 "))
+        for name, spoil in (("mine-hot.toml", lambda path: path.write_text('title = "another"\n')),
+                            ("mine-hot.toml", lambda path: path.mkdir()),
+                            ("mine-calibrate.toml", lambda path: path.write_bytes(first["mine.toml"])),
+                            ("mine-hot.toml.partial", lambda path: path.mkdir())):
+            kept = (self.folder / name).read_bytes() if (self.folder / name).exists() else None
+            (self.folder / name).unlink(missing_ok=True)
+            spoil(self.folder / name)
+            before = self.contents()
+            with self.subTest(name):
+                self.assertIn("mine-", self.concrete(*hot, "--overwrite", code=1).stderr)
+                self.assertEqual(self.contents(), before)
+            if (self.folder / name).is_dir():
+                (self.folder / name).rmdir()
+            if kept is not None:
+                (self.folder / name).write_bytes(kept)
+        self.assertNotEqual(self.contents(), first)
+        self.concrete(*hot, "--overwrite")
+        self.assertEqual(self.contents(), first)
+        self.concrete(*hot[:-1], "300 degC", "--overwrite")
+        self.assertEqual(self.deck("mine-hot.toml")["stages"][2]["to"], "300 degC")
+
+    def test_the_deck_that_is_read_is_not_overwritten(self):
+        self.concrete(*LIMESTONE, *FULLER)
+        before = self.contents()
+        error = self.concrete(*LIMESTONE, *FULLER, "--hot", "400 degC", "--from", "mine.toml", "--overwrite", code=1).stderr
+        self.assertIn('--from "mine.toml": would be replaced', error)
+        self.assertEqual(self.contents(), before)
+
 
 class StrengthOfARun(unittest.TestCase):
     """A load as a share of the strength that another run measured."""

@@ -1009,7 +1009,7 @@ class Running(UserTest):
             self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
         self.assert_that_overwriting_clears("out")
 
-    def test_new_writes_a_deck_that_is_valid_and_never_overwrites_one(self):
+    def test_new_writes_a_deck_that_is_valid_and_overwrites_one_only_when_told(self):
         self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
         line, rest = (self.folder / "mine.toml").read_text().split("\n", 1)
         self.assertEqual(rest, STARTER)
@@ -1020,7 +1020,15 @@ class Running(UserTest):
         self.assertEqual(check.returncode, 0, check.stderr)
         for word in ("zones", "contacts", "shortest edge", "time step", "set by gridpoint", "E about", "memory"):
             self.assertIn(word, check.stdout)
-        self.assertEqual(self.pyroclast("new", "mine").returncode, 1)
+        again = self.pyroclast("new", "mine", "--from", "compression")
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("mine.toml: exists already", again.stderr)
+        self.assertEqual((self.folder / "mine.toml").read_text(), f"{line}\n{rest}")
+        self.assertEqual(self.pyroclast("new", "mine", "--from", "compression", "--overwrite").returncode, 0)
+        self.assertEqual((self.folder / "mine.toml").read_text(), f"{line}\n{(CASES / 'compression.toml').read_text()}")
+        (self.folder / "other.toml").write_text("[project]\n")
+        self.assertIn("is no file of an earlier call", self.pyroclast("new", "other", "--overwrite").stderr)
+        self.assertEqual((self.folder / "other.toml").read_text(), "[project]\n")
 
     def test_every_shipped_case_is_valid(self):
         for deck in sorted(CASES.glob("*.toml")):

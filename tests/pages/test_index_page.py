@@ -1,6 +1,6 @@
 """The index of a folder of runs in Debian's Chromium.
 
-SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+SMALL_FORMS names the folder of runs that `validation/reference check --keep FOLDER` left.
 """
 
 import io

@@ -1,6 +1,6 @@
 """What a page says of a run's results is what the program judged.
 
-SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+SMALL_FORMS names the folder of runs that `validation/reference check --keep FOLDER` left.
 """
 
 import json

@@ -1,6 +1,6 @@
 """The page of a run in Debian's Chromium: its numbers are the run's, and it answers to mouse and keys.
 
-SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+SMALL_FORMS names the folder of runs that `validation/reference check --keep FOLDER` left.
 """
 
 import fcntl

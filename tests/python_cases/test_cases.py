@@ -1,6 +1,6 @@
 """Every case in its small form: a run of the package writes what the program writes, byte by byte.
 
-SMALL_FORMS names the folder of runs that `validation/reference check --cases small --keep FOLDER` left.
+SMALL_FORMS names the folder of runs that `validation/reference check --keep FOLDER` left.
 """
 
 import json

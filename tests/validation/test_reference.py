@@ -154,8 +154,8 @@ class Reference(unittest.TestCase):
             return reference.run_renew(options)
 
     def test_a_stored_value_is_renewed_only_if_its_change_is_listed(self):
-        here, reference.HERE = reference.HERE, self.folder
-        self.addCleanup(setattr, reference, "HERE", here)
+        committed, reference.COMMITTED = reference.COMMITTED, self.folder / "reference_small.json"
+        self.addCleanup(setattr, reference, "COMMITTED", committed)
         self.renew(self.made("first", HISTORY))
         stored = (self.folder / "reference_small.json").read_bytes()
         changed = self.made("second", self.with_cell("largest_jump", 2, "0.3"), version=2)
@@ -170,7 +170,13 @@ class Reference(unittest.TestCase):
         reference.RULES["changed"] = [
             {"physics_version": 2, "cases": ["case"], "columns": ["largest_*"], "reason": "mended"}]
         self.renew(changed)
-        self.assertNotEqual((self.folder / "reference_small.json").read_bytes(), stored)
+        renewed = (self.folder / "reference_small.json").read_bytes()
+        self.assertNotEqual(renewed, stored)
+        full = json.loads(renewed) | {"form": "full"}
+        (self.folder / "full.json").write_text(json.dumps(full))
+        with self.assertRaisesRegex(reference.Fault, "is of full forms"):
+            self.renew(self.folder / "full.json")
+        self.assertEqual((self.folder / "reference_small.json").read_bytes(), renewed)
 
 
 if __name__ == "__main__":

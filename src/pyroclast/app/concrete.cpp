@@ -17,13 +17,13 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/concrete_fire.hpp"
 #include "pyroclast/app/concrete_template.hpp"
+#include "pyroclast/app/written_decks.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/shell_words.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/first_guess.hpp"
 #include "pyroclast/material/rocks.hpp"
-#include "pyroclast/results/text_file.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/setup/sieve_curve.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -681,24 +681,21 @@ int write_concrete(const ConcreteOptions& options) {
     resize(asked, found, o.width.empty() ? asked.width : width, o.height.empty() ? asked.height : height);
   if (asked.fire && asked.is_solid)
     throw Error("--fire burns plane specimens alone: a cylinder has no sides left and right");
-  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  std::vector<TextFile> files;
   if (is_guess) {
-    files.emplace_back(o.out, deck_text(asked, found, o, false));
-    files.emplace_back(beside("calibrate"), study_text(asked, o));
+    files.push_back({o.out, deck_text(asked, found, o, false)});
+    files.push_back({beside("calibrate"), study_text(asked, o)});
   }
   const std::string missed = is_guess ? std::string() : line_of(o.from, kMissed);
   const std::filesystem::path heated = is_guess ? beside(asked.fire ? "fire" : "hot") : o.out;
   if (is_heated)
-    files.emplace_back(heated, (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true));
-  if (asked.fire) read_setup(Deck::parse(files.back().second, heated.string()), o.out.parent_path());
-  for (const auto& [file, text] : files)
-    if (std::filesystem::exists(file))
-      throw Error(
-          fmt::format("{}: exists already, so nothing is written; choose another name", file.string()));
-  for (const auto& [file, text] : files) {
-    write_text_file(file, text);
-    fmt::print("{} is written\n", file.string());
-  }
+    files.push_back({heated, (missed.empty() ? "" : missed + "\n") + deck_text(asked, found, o, true)});
+  if (asked.fire) read_setup(Deck::parse(files.back().text, heated.string()), o.out.parent_path());
+  std::error_code no_such_file;
+  if (!is_guess && std::filesystem::equivalent(o.from, o.out, no_such_file))
+    throw Error(fmt::format("--from \"{}\": would be replaced by the new deck; choose another name for it",
+                            o.from.string()));
+  write_decks(files, o.overwrite);
   if (asked.is_solid)
     fmt::print(
         "coarse          {:.3g} of the volume: stones from {:.3g} mm on, {:g} blocks; smaller ones belong to "
@@ -804,8 +801,10 @@ Command add_concrete(CLI::App& cli) {
       "Take mortar and contacts of the hot test or the fire from this deck, such as the calibrated "
       "one");
   concrete->add_option("-o,--out", options->out, "File for the deck")->required();
+  concrete->add_flag("--overwrite", options->overwrite, kOverwriteDecks);
   return {concrete, [options](std::vector<std::string> typed) {
             typed[0] = "pyroclast";
+            std::erase(typed, "--overwrite");  // a deck names how it is made, whatever was there before
             options->typed = std::move(typed);
             return write_concrete(*options);
           }};

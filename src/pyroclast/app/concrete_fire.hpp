@@ -20,6 +20,7 @@ struct ConcreteOptions {
   bool cylinder = false;             ///< true for a body in space
   std::filesystem::path from;        ///< deck whose mortar and contacts are taken; empty: they are guessed
   std::filesystem::path out;
+  bool overwrite = false;
   std::vector<std::string> typed;  ///< words of the command as typed
 };
 

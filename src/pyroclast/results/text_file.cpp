@@ -17,25 +17,41 @@ namespace {
   throw Error(fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
 }
 
+/// Writes a text beside the file whose name it is to have, and returns its path. Throws Error naming the
+/// file.
+std::filesystem::path written_aside(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  const int file = open_aside(partial);
+  if (file < 0 || !write_all(file, text.data(), text.size())) {
+    const int cause = errno;
+    if (file >= 0) {
+      close(file);
+      unlink(partial.c_str());
+    }
+    errno = cause;
+    fail(path);
+  }
+  close(file);
+  return partial;
+}
+
 }  // namespace
 
 void write_text_file(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty()) return;
-  std::filesystem::path partial = path;
-  partial += ".partial";
-  {
-    const int file = open_aside(partial);
-    if (file < 0 || !write_all(file, text.data(), text.size())) {
-      const int cause = errno;
-      if (file >= 0) close(file);
-      std::error_code ignored;
-      std::filesystem::remove(partial, ignored);
-      errno = cause;
-      fail(path);
-    }
-    close(file);
+  if (!path.empty()) publish(written_aside(path, text), path);
+}
+
+void write_text_files(const std::vector<TextFile>& files) {
+  std::vector<std::filesystem::path> partials;
+  try {
+    for (const TextFile& file : files) partials.push_back(written_aside(file.path, file.text));
+  } catch (const Error&) {
+    std::error_code ignored;
+    for (const auto& partial : partials) std::filesystem::remove(partial, ignored);
+    throw;
   }
-  publish(partial, path);
+  for (std::size_t i = 0; i < files.size(); ++i) publish(partials[i], files[i].path);
 }
 
 LineFile::LineFile(std::filesystem::path path, const std::string& text) : path_(std::move(path)) {

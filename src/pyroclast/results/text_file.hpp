@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace pyroclast {
 
@@ -14,6 +15,16 @@ inline std::filesystem::path file_in(const std::filesystem::path& folder, const 
 /// Writes a whole file: all of it appears under its name, or none (see publish). Throws Error naming the
 /// file. With an empty path it writes nothing.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
+
+/// A file that is to be written, whole.
+struct TextFile {
+  std::filesystem::path path;
+  std::string text;
+};
+
+/// Writes several files: where the disk does not take all texts, the files are as they were. Throws Error
+/// naming the file.
+void write_text_files(const std::vector<TextFile>& files);
 
 /// Text file that grows line by line; each line is handed to the system before the next. Throws Error naming
 /// the file when a line cannot be written.
