@@ -96,7 +96,7 @@ class Ranks(InAFolder):
     def test_a_batch_takes_a_message_a_step_and_three_collectives(self):
         """A batch of s steps sends each neighbour s + 1 messages, as long as `check` foretells, and no collective.
 
-        Three at most follow, but where a frame is written. A gather that has grown is sent once more.
+        Three at most follow, but where a stage begins. A gather that has grown is sent once more.
         """
         for case, ranks, blocks in (("starter", 2, 120), ("starter_3d", 3, 60)):
             changes = ["--set", f"blocks.count={blocks}", *PRESS]
@@ -117,6 +117,16 @@ class Ranks(InAFolder):
                 self.assertLessEqual(max(look.count("allgather") for look in looks), 3)
                 self.assertLessEqual(sum(look.count("allgatherv") for look in looks), 4)
             self.assert_foretold(sent, "step", case, *changes)
+
+    @NEEDS_MPI
+    def test_a_frame_takes_nine_collectives(self):
+        """However large it is: all ranks write it."""
+        for blocks in (120, 480):
+            changes = [*PRESS, "--set", f"blocks.count={blocks}", "--set", "output.frame_strain=0.00005"]
+            for calls in self.calls(2, "starter", *changes, "--overwrite"):
+                counts = [len(group) for kind, group in calls if kind == "collective"]
+                self.assertGreaterEqual(counts.count(3 + 9), 3, counts)
+                self.assertEqual(max(count for count in counts if count < 20), 3 + 9)
 
     @NEEDS_MPI
     def test_a_heat_stage_takes_a_message_and_with_limits_two(self):
@@ -242,18 +252,22 @@ class Ranks(InAFolder):
                           self.pyroclast("resume", "whole", code=1).stderr)
 
     @NEEDS_MPI
-    def test_a_checkpoint_that_one_rank_cannot_write_ends_all(self):
+    def test_a_file_that_one_rank_cannot_write_ends_all(self):
         """Rank 1 does not see the file that the first one made, or its disk is full: it says so. No file is left."""
         program, deck = self.folder / "program", self.folder / "elsewhere"
         deck.mkdir()
-        for how, says in (("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")):
+        for (how, says), (name, *words) in itertools.product(
+                (("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")),
+                (("mesh.h5",), (".state", "--set", "output.fields=false"))):
             program.write_text(f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_RANK:-$PMI_RANK}}" = 1 ] && {how}\n'
                                f'exec {PROGRAM} "$@"\n')
             program.chmod(0o755)
-            error = self.refused(2, "run", CASE, *SMALL, "--mpi", "--out", "out", "--overwrite", program=str(program))
+            error = self.refused(2, "run", CASE, *SMALL, *words, "--mpi", "--out", "out", "--overwrite",
+                                 program=str(program))
             self.assertIn("rank 1", error)
             self.assertIn(says, error)
-            self.assertEqual(list(self.folder.rglob("*.state*")), [])
+            self.assertIn(name, error)
+            self.assertEqual(list(self.folder.rglob(f"*{name}*")), [])
 
     def test_copies_that_know_nothing_of_each_other_are_refused(self):
         """The count is that of the step at hand. A large allocation in which one copy runs is none."""

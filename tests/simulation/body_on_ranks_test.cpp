@@ -2,6 +2,7 @@
 
 #include "pyroclast/simulation/body_on_ranks.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <string>
 
@@ -90,29 +91,49 @@ TEST(HeldByRanks, AreRefusedWhereChunksAreTooFew) {
   }
 }
 
+constexpr int kColumns = 20000;  // so that a slice has few items
+
+/// Returns the function that writes the row of an item: its number in the whole, in the first and last
+/// column.
+auto row_of_number(Item item, const Model& model) {
+  return [item, &model](int i, double* row) {
+    const int ends = item == Item::contact_end ? ends_of_contact(model.dimension()) : 1;
+    int number = i / ends;
+    if (model.part)
+      number = item == Item::gridpoint ? model.part->gridpoint[number]
+               : item == Item::zone    ? model.part->zone[number]
+                                       : model.part->contact[number];
+    row[0] = number * ends + i % ends;
+    row[kColumns - 1] = -row[0];
+  };
+}
+
 /// Returns the numbers of items in the order in which slices have them.
 std::vector<double> in_order_of_slices(Item item, const Model& model) {
-  constexpr int kColumns = 20000;  // so that a slice has few items
-  const int ends = item == Item::contact_end ? ends_of_contact(model.dimension()) : 1;
   std::vector<double> all;
-  in_slices<double>(
-      item, model, kColumns,
-      [&](int i, double* row) {
-        int number = i / ends;
-        if (model.part)
-          number = item == Item::gridpoint ? model.part->gridpoint[number]
-                   : item == Item::zone    ? model.part->zone[number]
-                                           : model.part->contact[number];
-        row[0] = number * ends + i % ends;
-        row[kColumns - 1] = -row[0];
-      },
-      [&](std::int64_t first, const std::vector<double>& rows) {
-        EXPECT_EQ(first, std::ssize(all));
-        for (std::size_t row = 0; row < rows.size(); row += kColumns) {
-          all.push_back(rows[row]);
-          EXPECT_EQ(rows[row + kColumns - 1], -all.back());
-        }
-      });
+  in_slices(item, model, kColumns, row_of_number(item, model),
+            [&](std::int64_t first, const std::vector<double>& rows) {
+              EXPECT_EQ(first, std::ssize(all));
+              for (std::size_t row = 0; row < rows.size(); row += kColumns) {
+                all.push_back(rows[row]);
+                EXPECT_EQ(rows[row + kColumns - 1], -all.back());
+              }
+            });
+  return all;
+}
+
+/// Returns the numbers of the items of which a rank tells, as slices have them.
+std::vector<double> of_own_slices(Item item, const Model& model) {
+  std::vector<double> all;
+  in_own_slices<double>(item, model, kColumns, row_of_number(item, model),
+                        [&](std::int64_t first, const std::vector<double>& rows) {
+                          EXPECT_LE(rows.size(), std::max<std::size_t>(1 << 16, 4 * kColumns));
+                          for (std::size_t row = 0; row < rows.size(); row += kColumns) {
+                            all.push_back(static_cast<double>(first++));
+                            EXPECT_EQ(rows[row], all.back());
+                            EXPECT_EQ(rows[row + kColumns - 1], -all.back());
+                          }
+                        });
   return all;
 }
 
@@ -127,10 +148,16 @@ TEST(Slices, HaveTheOrderOfTheWholeOnAnyRanks) {
     for (int i = 0; i < count_of(item, whole->model()); ++i) ascending.push_back(i);
     EXPECT_GT(ascending.size(), 100U);
     EXPECT_EQ(in_order_of_slices(item, whole->model()), ascending);
+    EXPECT_EQ(of_own_slices(item, whole->model()), ascending);
     RanksInThreads::run(3, [&](const std::shared_ptr<Ranks>& ranks) {
       const auto simulation = make_simulation(setup, *whole->specimen(), nullptr, ranks);
       EXPECT_EQ(in_order_of_slices(item, simulation->model()),
                 ranks->is_first() ? ascending : std::vector<double>());
+      const std::vector<double> own = of_own_slices(item, simulation->model());
+      EXPECT_LT(own.size(), ascending.size());
+      auto all = ranks->collect(own);
+      std::ranges::sort(all);
+      EXPECT_EQ(all, ascending);
     });
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -28,25 +29,34 @@ std::string path_of(const FieldInfo& field) {
                      product_of(field.unit));
 }
 
-/// Writes the fields of an item.
-void write_fields(Hdf5File& file, const Simulation& simulation, Item item) {
-  auto fields = fields_of(simulation);
-  std::erase_if(fields, [&](const Field& field) { return !field.in_files || field.item != item; });
-  const int dimension = simulation.model().dimension(), count = count_of(item, simulation.model());
+/// Writes the fields of items.
+void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer_list<Item> items) {
+  const std::vector<Field> all = fields_of(simulation);
+  const int dimension = simulation.model().dimension();
   const auto components = [&](const Field& field) { return components_of(field.kind, dimension); };
   // vectors of the plane are written as vectors of space
   const auto padding = [&](const Field& field) { return components(field) == 2 ? 1 : 0; };
-  for (const Field& field : fields)
-    file.room<float>(path_of(field), count, components(field) == 1 ? 0 : components(field) + padding(field));
-  const int width = width_of(fields, simulation);
-  values_in_slices<float>(fields, simulation, [&](std::int64_t first, const std::vector<float>& rows) {
-    int column = 0;
-    for (const Field& field : fields) {
-      file.rows(path_of(field), first,
-                columns_of<float>(rows, width, column, components(field), padding(field)));
-      column += components(field);
-    }
-  });
+  std::vector<std::vector<Field>> of_items;
+  for (const Item item : items) {
+    const int count = count_of(item, simulation.model());
+    auto& fields = of_items.emplace_back(all);
+    std::erase_if(fields, [&](const Field& field) { return !field.in_files || field.item != item; });
+    for (const Field& field : fields)
+      file.room<float>(path_of(field), count,
+                       components(field) == 1 ? 0 : components(field) + padding(field));
+  }
+  file.share();
+  for (const std::vector<Field>& fields : of_items) {
+    const int width = width_of(fields, simulation);
+    own_values_in_slices(fields, simulation, [&](std::int64_t first, const std::vector<float>& rows) {
+      int column = 0;
+      for (const Field& field : fields) {
+        file.rows(path_of(field), first,
+                  columns_of<float>(rows, width, column, components(field), padding(field)));
+        column += components(field);
+      }
+    });
+  }
 }
 
 /// Writes the ends of pairs that press as lines to the middle of their overlap, with their fields.
@@ -152,14 +162,15 @@ void FieldFiles::write(const Simulation& simulation, const History& history, Fra
   FrameRows with_this = frames;
   with_this.rows.push_back(row);
   const auto times = frame_times(history, with_this);
-  blocks_.write(times, [&](Hdf5File& file) {
-    for (const Item item : {Item::gridpoint, Item::zone}) write_fields(file, simulation, item);
+  Ranks& ranks = simulation.model().ranks();
+  blocks_.write(times, ranks, [&](Hdf5File& file) {
+    write_fields(file, simulation, {Item::gridpoint, Item::zone});
   });
   if (contacts_)
-    contacts_->write(times, [&](Hdf5File& file) {
-      for (const Item item : {Item::contact_end, Item::contact}) write_fields(file, simulation, item);
+    contacts_->write(times, ranks, [&](Hdf5File& file) {
+      write_fields(file, simulation, {Item::contact_end, Item::contact});
     });
-  if (found_) found_->write(times, [&](Hdf5File& file) { write_found(file, simulation); });
+  if (found_) found_->write(times, ranks, [&](Hdf5File& file) { write_found(file, simulation); });
   frames_.line(frame_line(history, columns_, frames.rows.size(), row));
   frames.rows.push_back(row);
 }

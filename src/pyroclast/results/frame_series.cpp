@@ -72,7 +72,7 @@ void begin_grid(Hdf5File& file, const std::string& group, std::int64_t points, s
 /// \param place  returns the place of an item, m
 template <class Place>
 void write_points(Hdf5File& file, const std::string& group, Item item, const Model& model, Place place) {
-  in_slices<double>(
+  in_own_slices<double>(
       item, model, 3, [&](int i, double* row) { std::ranges::copy(place(i).c, row); },
       [&](std::int64_t first, const std::vector<double>& rows) {
         file.rows(group + "/Points", first, rows);
@@ -107,16 +107,17 @@ void write_blocks(Hdf5File& file, const Model& model) {
   const int corners = model.dimension() + 1, zones = count_of(Item::zone, model);
   begin_grid(file, "/blocks", count_of(Item::gridpoint, model), zones, corners,
              model.dimension() == 2 ? kVtkTriangle : kVtkTetrahedron);
-  write_points(file, "/blocks", Item::gridpoint, model,
-               [&](int gridpoint) { return model.place(gridpoint); });
   file.room<std::int64_t>("/blocks/Connectivity", std::int64_t{zones} * corners);
   file.room<std::int32_t>("/blocks/block", zones);
   file.room<std::uint8_t>("/blocks/material", zones);
   file.room<std::uint8_t>("/blocks/bearing", zones);
   file.dataset(names_of(MeshPart::blocks).second, model.material_names);
+  file.share();
+  write_points(file, "/blocks", Item::gridpoint, model,
+               [&](int gridpoint) { return model.place(gridpoint); });
   const std::vector<int> block_of = zone_blocks(model);
   const int width = corners + 3;
-  in_slices<double>(
+  in_own_slices<double>(
       Item::zone, model, width,
       [&](int zone, double* row) {
         for (const int g : model.gridpoints_of_zone(zone)) *row++ = model.part ? model.part->gridpoint[g] : g;
@@ -138,18 +139,19 @@ void write_contacts(Hdf5File& file, const Model& model) {
   const int ends = ends_of_contact(model.dimension()), contacts = count_of(Item::contact, model);
   const std::int64_t points = std::int64_t{ends} * contacts;
   begin_grid(file, "/contacts", points, contacts, ends, is_plane ? kVtkLine : kVtkQuad);
-  write_points(file, "/contacts", Item::contact_end, model, [&](int end) {
-    return at_end(model, end / ends, end % ends,
-                  [&](int contact) { return model.place(model.joint(contact).a); });
-  });
   write_sequence<std::int64_t>(file, "/contacts/Connectivity", points, [](std::int64_t end) { return end; });
   const char* const extent = is_plane ? "/contacts/length" : "/contacts/area";
   file.room<std::uint8_t>("/contacts/interface", contacts);
   file.dataset(names_of(MeshPart::contacts).second, model.interface_names);
   file.room<std::uint8_t>("/contacts/bearing", contacts);
   file.room<double>(extent, contacts);
+  file.share();
+  write_points(file, "/contacts", Item::contact_end, model, [&](int end) {
+    return at_end(model, end / ends, end % ends,
+                  [&](int contact) { return model.place(model.joint(contact).a); });
+  });
   constexpr int kWidth = 3;
-  in_slices<double>(
+  in_own_slices<double>(
       Item::contact, model, kWidth,
       [&](int contact, double* row) {
         const Joint& c = model.joint(contact);
@@ -180,7 +182,7 @@ void write_lines(Hdf5File& file, const std::vector<Vec<3>>& points) {
 }
 
 void write_mesh(const std::filesystem::path& folder, const Model& model) {
-  Hdf5File file(file_in(folder, kMeshFile));
+  Hdf5File file(file_in(folder, kMeshFile), model.ranks());
   write_blocks(file, model);
   write_contacts(file, model);
   file.close();
@@ -206,8 +208,9 @@ std::vector<std::string> FrameSeries::lost() const {
   return names;
 }
 
-void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
-  Hdf5File file(file_in(folder_, file_name(part_, count())));
+void FrameSeries::write(std::vector<double> times, Ranks& ranks,
+                        const std::function<void(Hdf5File&)>& fields) {
+  Hdf5File file(file_in(folder_, file_name(part_, count())), ranks);
   if (part_ != MeshPart::found) link_mesh(file, part_, dimension_);
   fields(file);
   file.close();

@@ -53,11 +53,11 @@ class FrameSeries {
   ///                   are removed
   FrameSeries(std::filesystem::path folder, MeshPart part, int dimension, std::vector<double> times = {});
 
-  /// Writes a frame.
+  /// Writes a frame: a collective.
   /// \param times   times of all frames so far and of this one, s
   /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData; of what is found
   ///                also the mesh, see write_lines
-  void write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields);
+  void write(std::vector<double> times, Ranks& ranks, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }
   /// Returns the names of the files of frames that are counted, but are missing or broken.

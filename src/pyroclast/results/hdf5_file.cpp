@@ -130,7 +130,7 @@ struct Hdf5Driver : H5FD_t {
   }
 };
 
-Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
+Hdf5File::Hdf5File(std::filesystem::path path, Ranks& ranks) : path_(std::move(path)), ranks_(&ranks) {
   if (path_.empty()) return;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   disk_.emplace(File::to_write(partial(), path_));
@@ -143,10 +143,14 @@ Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
 
 Hdf5File::~Hdf5File() {
   if (file_ >= 0) H5Fclose(file_);
+  give_up();
+}
+
+void Hdf5File::give_up() {
   if (!disk_) return;
   disk_.reset();
   std::error_code ignored;
-  std::filesystem::remove(partial(), ignored);
+  if (ranks_->is_first()) std::filesystem::remove(partial(), ignored);
 }
 
 void Hdf5File::fail(const std::string& what) const {
@@ -162,14 +166,15 @@ void Hdf5File::attempt(const std::function<void()>& act) {
 }
 
 void Hdf5File::group(const std::string& name) {
-  if (!disk_) return;
+  if (!describes()) return;
   const Hdf5Handle<H5Gclose> group{
       H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, Untimed(H5P_GROUP_CREATE), H5P_DEFAULT)};
   if (group.id < 0) fail("group " + name + " cannot be written");
 }
 
 void Hdf5File::make_room(const std::string& name, std::int64_t type, std::int64_t rows, int columns) {
-  if (!disk_) return;
+  Room& room = rooms_[name];
+  if (!describes()) return;
   const hsize_t width = columns > 0 ? static_cast<hsize_t>(columns) : 1;
   const hsize_t dims[2] = {static_cast<hsize_t>(rows), width};
   const Hdf5Handle<H5Sclose> space{H5Screate_simple(columns > 0 ? 2 : 1, dims, nullptr)};
@@ -182,7 +187,23 @@ void Hdf5File::make_room(const std::string& name, std::int64_t type, std::int64_
       H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, layout, H5P_DEFAULT)};
   const haddr_t place = set.id < 0 ? HADDR_UNDEF : H5Dget_offset(set.id);
   if (set.id < 0 || (rows > 0 && place == HADDR_UNDEF)) fail("dataset " + name + " cannot be written");
-  rooms_[name] = {place == HADDR_UNDEF ? 0 : place, width * H5Tget_size(type)};
+  room = {place == HADDR_UNDEF ? 0 : place, width * H5Tget_size(type)};
+}
+
+void Hdf5File::share() {
+  if (ranks_->count() == 1) return;
+  const std::string own = path_.string();
+  const auto path = ranks_->is_first() ? std::vector<char>(own.begin(), own.end()) : std::vector<char>();
+  std::vector<Room> rooms;
+  for (const auto& [name, room] : rooms_)
+    if (ranks_->is_first()) rooms.push_back(room);
+  const auto [of_first, places] =
+      ranks_->together([&] { return std::pair(ranks_->collect(path), ranks_->collect(rooms)); });
+  if (ranks_->is_first() || of_first.empty()) return;
+  path_ = std::string(of_first.begin(), of_first.end());
+  if (!disk_) attempt([&] { disk_.emplace(File::of_other(partial())); });
+  auto place = places.begin();
+  for (auto& [name, room] : rooms_) room = *place++;
 }
 
 template <class T>
@@ -196,13 +217,18 @@ template void Hdf5File::room<std::int32_t>(const std::string&, std::int64_t, int
 template void Hdf5File::room<std::uint8_t>(const std::string&, std::int64_t, int);
 
 void Hdf5File::write(const std::string& name, std::int64_t first, const void* data, std::size_t bytes) {
-  if (!disk_) return;
-  const Room& room = rooms_.at(name);
-  disk_->write(room.place + static_cast<std::uint64_t>(first) * room.row, data, bytes);
+  const Room& room = rooms_[name];
+  if (!disk_ || room.row == 0) return;  // not shared
+  const std::uint64_t from = room.place + static_cast<std::uint64_t>(first) * room.row;
+  if (ranks_->is_first())
+    disk_->write(from, data, bytes);
+  else
+    attempt([&] { disk_->write(from, data, bytes); });  // told by `close`
 }
 
 void Hdf5File::dataset(const std::string& name, const std::vector<std::string>& v) {
-  if (!disk_) return;
+  rooms_.try_emplace(name);
+  if (!describes()) return;
   std::size_t longest = 1;
   for (const std::string& text : v) longest = std::max(longest, text.size());
   std::string padded;
@@ -217,7 +243,7 @@ void Hdf5File::dataset(const std::string& name, const std::vector<std::string>& 
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, std::int64_t type,
                                std::int64_t space, const void* data) {
-  if (!disk_) return;
+  if (!describes()) return;
   const Hdf5Handle<H5Aclose> attribute{H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space,
                                                          H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
   if (attribute.id < 0 || H5Awrite(attribute.id, type, data) < 0)
@@ -245,7 +271,7 @@ void Hdf5File::attribute(const std::string& object, const std::string& name,
 }
 
 void Hdf5File::external_link(const std::string& name, const std::string& file, const std::string& object) {
-  if (!disk_) return;
+  if (!describes()) return;
   if (H5Lcreate_external(file.c_str(), object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0)
     fail("link " + name + " cannot be written");
 }
@@ -272,10 +298,19 @@ void Hdf5File::append(const std::function<std::string(const File&)>& more) {
 }
 
 void Hdf5File::close() {
+  if (describes()) end();
+  if (ranks_->count() > 1) {
+    if (disk_) attempt([&] { disk_->sync(); });
+    if (ranks_->any(failure_ != nullptr)) {
+      give_up();
+      ranks_->any(true);  // now the file is gone
+      if (failure_) std::rethrow_exception(failure_);
+      ranks_->any(true);  // the rank that failed ends all
+    }
+  }
   if (!disk_) return;
-  end();
   disk_.reset();
-  publish(partial(), path_);
+  if (ranks_->is_first()) publish(partial(), path_);
 }
 
 }  // namespace pyroclast

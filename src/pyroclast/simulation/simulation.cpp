@@ -331,7 +331,7 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
   const auto blocks = zone_blocks(model);
   double volume = 0.0, compliance = 0.0;
   constexpr int kShares = 2;  // volume, compliance
-  in_slices<double>(
+  in_slices(
       Item::zone, model, kShares,
       [&](int zone, double* share) {
         if (model.is_of_bearing(blocks[zone])) return;
@@ -345,7 +345,7 @@ double estimate_modulus(const Model& model, const ConcreteMaterials& materials, 
           compliance += shares[i + 1];
         }
       });
-  in_slices<double>(
+  in_slices(
       Item::contact, model, 1,
       [&](int number, double* share) {
         const Joint& c = model.joint(number);

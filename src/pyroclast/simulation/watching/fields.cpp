@@ -297,6 +297,22 @@ std::vector<const LawTable*> laws_in_order(const Motion& motion) {
   return laws;
 }
 
+/// Writes the components of one field after the other.
+template <class T>
+void put_row(const std::vector<Field>& fields, FieldReader& reader, int item, T* row) {
+  std::array<double, kMostComponents> value;
+  for (const Field& field : fields) {
+    const bool tells_itself =
+        field.item == Item::gridpoint || field.name == "gone" || field.name == "crack_step";
+    if (!tells_itself && reader.is_gone(field.item, item))
+      value.fill(0.0);
+    else
+      field.read(reader, item, value.data());
+    const int components = components_of(field.kind, reader.model().dimension());
+    for (int c = 0; c < components; ++c) *row++ = static_cast<T>(value[c]);
+  }
+}
+
 }  // namespace
 
 std::string product_of(const Unit& unit) {
@@ -381,43 +397,31 @@ int width_of(const std::vector<Field>& fields, const Simulation& simulation) {
   return width;
 }
 
-template <class T>
-void values_in_slices(const std::vector<Field>& fields, const Simulation& simulation,
-                      const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take) {
+void own_values_in_slices(
+    const std::vector<Field>& fields, const Simulation& simulation,
+    const std::function<void(std::int64_t first, const std::vector<float>& rows)>& take) {
   if (fields.empty()) return;
   FieldReader reader(simulation);
-  std::array<double, kMostComponents> value;
-  const int dimension = simulation.model().dimension();
-  in_slices<T>(
+  in_own_slices<float>(
       fields.front().item, simulation.model(), width_of(fields, simulation),
-      [&](int item, T* row) {
-        for (const Field& field : fields) {
-          const bool tells_itself =
-              field.item == Item::gridpoint || field.name == "gone" || field.name == "crack_step";
-          if (!tells_itself && reader.is_gone(field.item, item))
-            value.fill(0.0);
-          else
-            field.read(reader, item, value.data());
-          const int components = components_of(field.kind, dimension);
-          for (int c = 0; c < components; ++c) *row++ = static_cast<T>(value[c]);
-        }
-      },
-      take);
+      [&](int item, float* row) { put_row(fields, reader, item, row); }, take);
 }
-
-template void values_in_slices(const std::vector<Field>&, const Simulation&,
-                               const std::function<void(std::int64_t, const std::vector<float>&)>&);
 
 std::vector<std::vector<double>> values_of(const std::vector<Field>& fields, const Simulation& simulation) {
   std::vector<std::vector<double>> values(fields.size());
-  values_in_slices<double>(fields, simulation, [&](std::int64_t, const std::vector<double>& rows) {
-    for (auto next = rows.begin(); next != rows.end();)
-      for (std::size_t f = 0; f < fields.size(); ++f) {
-        const auto end = next + components_of(fields[f].kind, simulation.model().dimension());
-        values[f].insert(values[f].end(), next, end);
-        next = end;
-      }
-  });
+  if (fields.empty()) return values;
+  FieldReader reader(simulation);
+  in_slices(
+      fields.front().item, simulation.model(), width_of(fields, simulation),
+      [&](int item, double* row) { put_row(fields, reader, item, row); },
+      [&](std::int64_t, const std::vector<double>& rows) {
+        for (auto next = rows.begin(); next != rows.end();)
+          for (std::size_t f = 0; f < fields.size(); ++f) {
+            const auto end = next + components_of(fields[f].kind, simulation.model().dimension());
+            values[f].insert(values[f].end(), next, end);
+            next = end;
+          }
+      });
   return values;
 }
 

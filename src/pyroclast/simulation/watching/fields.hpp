@@ -71,12 +71,11 @@ std::vector<FieldInfo> possible_fields();
 
 /// Returns the numbers that all components of fields take.
 int width_of(const std::vector<Field>& fields, const Simulation& simulation);
-/// Hands out the values of fields of one item slice by slice, see in_slices: a collective. A row has the
-/// components of one field after the other.
-/// \tparam T  float, as in files, or double
-template <class T>
-void values_in_slices(const std::vector<Field>& fields, const Simulation& simulation,
-                      const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take);
+/// Hands out the values of fields of one item slice by slice, on each rank those of its own items, see
+/// in_own_slices. A row has the components of one field after the other.
+void own_values_in_slices(
+    const std::vector<Field>& fields, const Simulation& simulation,
+    const std::function<void(std::int64_t first, const std::vector<float>& rows)>& take);
 /// Returns the values of fields of one item, of each field item by item and component by component: a
 /// collective. Where several ranks hold the body the first gets the values of the whole, others get none.
 std::vector<std::vector<double>> values_of(const std::vector<Field>& fields, const Simulation& simulation);

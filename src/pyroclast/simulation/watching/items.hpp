@@ -49,15 +49,20 @@ Item item_of(std::string_view name);
 /// Returns the number of items of the whole body, not of those that are found: a collective.
 int count_of(Item item, const Model& model);
 
-/// Reads rows of numbers, one of each item, and hands them out in the order of the whole body, slice by
-/// slice: a collective. A slice takes half a megabyte, however large the body is. Where several ranks hold
-/// the body, each reads the items in its own chunks, and the first alone is handed the slices.
+/// Reads rows of numbers, one of each item, and hands them out slice by slice. A slice takes half a megabyte
+/// at most, however large the body is. Where several ranks hold the body, each reads the items in its own
+/// chunks and is handed their rows. The items of a slice follow each other in the whole body.
 /// \tparam T       float or double
 /// \param columns  numbers of a row
 /// \param read     writes the row of an item of this rank, over zeros
-/// \param take     called with the number of the first item of a slice, and its rows
+/// \param take     called with the number in the whole of the first item of a slice, and its rows
 template <class T>
-void in_slices(Item item, const Model& model, int columns, const std::function<void(int item, T* row)>& read,
-               const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take);
+void in_own_slices(Item item, const Model& model, int columns,
+                   const std::function<void(int item, T* row)>& read,
+                   const std::function<void(std::int64_t first, const std::vector<T>& rows)>& take);
+/// Hands rows out in the order of the whole body, to the first rank alone: a collective; else as above.
+void in_slices(Item item, const Model& model, int columns,
+               const std::function<void(int item, double* row)>& read,
+               const std::function<void(std::int64_t first, const std::vector<double>& rows)>& take);
 
 }  // namespace pyroclast

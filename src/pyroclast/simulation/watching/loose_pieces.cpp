@@ -43,7 +43,7 @@ void each_contact(const Simulation& simulation, bool asks_connects, Take take) {
     return static_cast<double>(model.part ? model.part->block[block] : block);
   };
   constexpr int kWidth = 3;
-  in_slices<double>(
+  in_slices(
       Item::contact, model, kWidth,
       [&](int contact, double* row) {
         row[0] = block_of(model.joint(contact).a);
@@ -61,7 +61,7 @@ void each_contact(const Simulation& simulation, bool asks_connects, Take take) {
 template <class Read, class Take>
 void each_gridpoint(const Simulation& simulation, int width, Read read, Take take) {
   const Model& model = simulation.model();
-  in_slices<double>(
+  in_slices(
       Item::gridpoint, model, width + 1,
       [&](int g, double* row) {
         const int block = model.block_of(g);
@@ -100,7 +100,7 @@ class PlacedBlocks {
           place_.push_back({{row[2], row[3]}});
         });
     std::vector<std::array<int, 3>> zones;
-    in_slices<double>(
+    in_slices(
         Item::zone, model, 3,
         [&](int zone, double* row) {
           for (const int g : model.gridpoints_of_zone(zone))
