@@ -22,6 +22,8 @@ std::string slab() {
   std::string text = with(shipped_case("spalling_slab"), "count = 1500", "count = 150");
   text = with(text, "size = \"2 mm\"", "size = \"8 mm\"");
   return with(text, "[[stages]]                   # the specimen",
+              "[[record]]\nname = \"stress\"\nkind = \"stress\"\nset = \"specimen\"\ndirection = \"y\"\n\n"
+              "[[record]]\nname = \"heat\"\nkind = \"temperature\"\nset = \"left\"\n\n"
               "[[record]]\nname = \"face\"\nkind = \"displacement\"\nset = \"left\"\ndirection = \"x\"\n\n"
               "[[stages]]                   # the specimen");
 }
@@ -110,6 +112,10 @@ TEST(Spalling, APieceThatFliesLeavesMotionHeatAndWater) {
   expect_in("until: blocks of the record \"face\" have left the body",
             message([&] { simulation->record("face").require_there(*simulation, "until"); }));
   EXPECT_TRUE(std::isfinite(simulation->field().mean()));
+  for (const char* name : {"stress", "heat"}) {
+    simulation->record(name).require_there(*simulation, "until");
+    EXPECT_TRUE(std::isfinite(simulation->record(name).read(*simulation))) << name;
+  }
 
   // what is left goes on
   heat(*simulation);

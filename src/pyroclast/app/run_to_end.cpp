@@ -34,8 +34,9 @@ std::int64_t broken(const History& history) {
   return count;
 }
 
-/// Describes a value of a record, in the unit in which figures draw it.
-std::string describe_record(const Record& record, double value) {
+/// Describes a value of a record, in the unit in which figures draw it; none: its blocks have left the body.
+std::string describe_record(const Record& record, const std::optional<double>& value) {
+  if (!value) return fmt::format("  {} gone", record.parameters().name);
   const Column column = column_of(record.parameters());
   struct Shown {
     std::string_view unit, as;
@@ -44,8 +45,8 @@ std::string describe_record(const Record& record, double value) {
   constexpr Shown kShown[] = {{"m", "mm", 1e3}, {"m2", "cm2", 1e4}, {"N", "kN", 1e-3}};
   for (const auto& [unit, as, factor] : kShown)
     if (column.unit == unit)
-      return fmt::format("  {} {:.4g} {}", record.parameters().name, factor * value, as);
-  return fmt::format("  {} {:.4g} {}", record.parameters().name, value, column.unit);
+      return fmt::format("  {} {:.4g} {}", record.parameters().name, factor * *value, as);
+  return fmt::format("  {} {:.4g} {}", record.parameters().name, *value, column.unit);
 }
 
 /// Describes the last row of the history, in short.
@@ -64,7 +65,7 @@ std::string describe_row(const Run& run) {
     text += fmt::format("  strain {:.5f}  stress {:6.2f} MPa", *last("strain"), *last("stress_MPa"));
   if (last("unbalanced_ratio")) {
     for (const Record& record : run.simulation().records())
-      text += describe_record(record, *last(column_of(record.parameters()).name.c_str()));
+      text += describe_record(record, last(column_of(record.parameters()).name.c_str()));
     text += fmt::format("  broken: {}", broken(history));
     text += fmt::format("  unbalanced {:.1e}", *last("unbalanced_ratio"));
   }

@@ -110,6 +110,7 @@ class Simulation {
   void let_pieces_go();
   /// Returns the pieces that have left; null where all blocks stay.
   const Spalling* spalling() const { return spalling_.get(); }
+  bool has_lost_blocks() const { return spalling_ && !spalling_->spalls().empty(); }
   /// Tells whether a block has left the body.
   bool is_gone(int block) const { return spalling_ && spalling_->is_gone(block); }
   /// Returns the time of the next exchange that the water asks for, s of heating.

@@ -17,6 +17,12 @@ namespace pyroclast {
 
 namespace {
 
+/// Tells whether a record is a mean over the blocks of its set that have not left the body; any other one is
+/// lost with the first block.
+bool is_of_what_is_left(RecordKind kind) {
+  return kind == RecordKind::stress || kind == RecordKind::temperature;
+}
+
 bool is_of_cracks(RecordKind kind) {
   return kind == RecordKind::crack_length || kind == RecordKind::crack_area ||
          kind == RecordKind::crack_opening;
@@ -183,19 +189,36 @@ void Record::require_there(const Simulation& simulation, const std::string& plac
 }
 
 bool Record::has_lost(const Simulation& simulation) const {
-  if (!simulation.spalling() || simulation.spalling()->spalls().empty()) return false;
+  if (!simulation.has_lost_blocks()) return false;
   const Model& model = simulation.model();
   const auto is_gone = [&](int g) { return simulation.is_gone(model.block_of(g)); };
   if (is_of_cracks(parameters_.kind))
     return std::ranges::any_of(items_,
                                [&](int c) { return is_gone(model.joint(c).a) || is_gone(model.joint(c).b); });
+  if (is_of_what_is_left(parameters_.kind)) return std::ranges::all_of(mean_.set.gridpoints, is_gone);
   return std::ranges::any_of(mean_.set.gridpoints, is_gone) ||
          std::ranges::any_of(mean_of_other_.set.gridpoints, is_gone);
 }
 
+/// Returns the mean of a value over the gridpoints that are left; they are those of one process.
+template <class Value>
+double Record::mean_of_what_is_left(const Simulation& simulation, Value value) const {
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < mean_.weights.size(); ++i) {
+    const int g = mean_.set.gridpoints[i];
+    if (simulation.is_gone(simulation.model().block_of(g))) continue;
+    sum += mean_.weights[i] * value(g);
+    weight += mean_.weights[i];
+  }
+  return sum / weight;
+}
+
 double Record::measure(const Simulation& simulation) const {
-  if (parameters_.kind == RecordKind::temperature)
-    return mean_.of<double>([&](int g) { return simulation.field().gridpoints()[g]; });
+  if (parameters_.kind == RecordKind::temperature) {
+    const auto temperature = [&](int g) { return simulation.field().gridpoints()[g]; };
+    return simulation.has_lost_blocks() ? mean_of_what_is_left(simulation, temperature)
+                                        : mean_.of<double>(temperature);
+  }
   const Motion& motion = simulation.motion();
   const auto displacement = [&](int g) { return motion.read().displacement(g); };
   const Vec<3>& d = parameters_.direction;
@@ -206,16 +229,21 @@ double Record::measure(const Simulation& simulation) const {
       return dot(mean_of_other_.of<Vec<3>>(displacement) - mean_.of<Vec<3>>(displacement), d);
     case RecordKind::force:
       return force(simulation);
-    case RecordKind::stress:
-      return chunked_sum(chunks_,
-                         [&](int i) {
-                           const SymmetricTensor<3> s = motion.read().stress(items_[i]);
-                           const double normal =
-                               d[0] * d[0] * s[0] + d[1] * d[1] * s[1] + d[2] * d[2] * s[2] +
-                               2.0 * (d[0] * d[1] * s[3] + d[1] * d[2] * s[4] + d[0] * d[2] * s[5]);
-                           return size_[i] * normal;
-                         }) /
-             whole_;
+    case RecordKind::stress: {
+      const Model& model = motion.model();
+      const auto size = [&](int i) {
+        const bool is_left = !simulation.has_lost_blocks() ||
+                             !simulation.is_gone(model.block_of(model.gridpoints_of_zone(items_[i])[0]));
+        return is_left ? size_[i] : 0.0;
+      };
+      const double sum = chunked_sum(chunks_, [&](int i) {
+        const SymmetricTensor<3> s = motion.read().stress(items_[i]);
+        const double normal = d[0] * d[0] * s[0] + d[1] * d[1] * s[1] + d[2] * d[2] * s[2] +
+                              2.0 * (d[0] * d[1] * s[3] + d[1] * d[2] * s[4] + d[0] * d[2] * s[5]);
+        return size(i) * normal;
+      });
+      return sum / (simulation.has_lost_blocks() ? chunked_sum(chunks_, size) : whole_);
+    }
     case RecordKind::crack_length:
     case RecordKind::crack_area:
       return chunked_sum(chunks_, [&](int i) { return is_damaged(motion, items_[i]) ? size_[i] : 0.0; });
