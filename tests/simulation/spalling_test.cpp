@@ -163,6 +163,38 @@ TEST(Spalling, ALoadOnAPieceThatLeavesIsAnErrorThatNamesTheBlock) {
   expect_in("the load on the set \"left\"", text);
 }
 
+// Promise: a plane of symmetry holds no piece: what leaves there leaves together with its image.
+TEST(Spalling, APieceLeavesAPlaneOfSymmetry) {
+  ModelOf<2> model = bodies::column(2, 0.01);
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    if (model.position[g][0] == 0.0) model.sets["left"].push_back(g);
+  PlaneOfSymmetry plane;
+  plane.side = "left";
+  add_symmetry(model, {plane});
+  auto contact = mortar_contact();
+  contact.tensile_strength = 2.5e6;
+  auto parameters = bodies::settling<2>(40);
+  parameters.loses_blocks = true;
+  BodyProperties p = by_interface(
+      model, std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(29.4e9, 0.2)), {contact});
+  p.pore_pressure.assign(model.contacts.size(), 3e6);
+  const auto motion = make_motion(model, {2400.0}, p, parameters, nullptr);
+  for (int g = 0; g < model.block_gridpoints[1]; ++g)
+    for (int i = 0; i < 2; ++i) motion->constraints().prescribe_velocity(g, i, 0.0);
+  for (const int g : model.set("left_symmetry")) motion->constraints().prescribe_velocity(g, 0, 0.0);
+  BlockMaterial mortar;
+  mortar.name = "mortar";
+  mortar.density = Curve::constant(2400.0);
+  const Spalling spalling(model, {mortar}, {}, {});
+  motion->advance(20000);
+  const auto spalls = spalling.find(*motion, TemperatureField(model, 20.0), nullptr);
+  ASSERT_EQ(spalls.size(), 1U);
+  EXPECT_EQ(spalls.front().blocks, std::vector<int>{1});
+  motion->remove(spalls.front().blocks);
+  motion->advance(100);
+  EXPECT_TRUE(std::isfinite(motion->totals().energy().error()));
+}
+
 // Promise: depths count from the fire, whatever the other side has.
 TEST(Spalling, DepthsCountFromTheFaceInTheFireAlone) {
   const auto simulation = made(slab());

@@ -39,15 +39,6 @@ bool holds(const Motion& motion, int contact, double bond) {
          norm(state.tangential_jump) < edge_of(motion.model(), contact);
 }
 
-bool is_held(const Motion& motion, int block) {
-  const Model& model = motion.model();
-  if (model.is_of_bearing(block)) return true;
-  for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
-    for (int i = 0; i < model.dimension(); ++i)
-      if (motion.read().is_prescribed(g, i)) return true;
-  return false;
-}
-
 /// Sums over the contacts between a part of a body and the others.
 struct Rim {
   double area = 0.0, opening = 0.0, way = 0.0, edge = 0.0;
@@ -88,6 +79,11 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
         is_hot[face] = any = true;
     }
     for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto lies_in = [&](const PlaneOfSymmetry& plane) {
+        return std::ranges::all_of(faces[f].gridpoints,
+                                   [&](int g) { return is_mirrored(g, plane.component); });
+      };
+      if (std::ranges::any_of(model_.symmetry, lies_in)) continue;
       is_outside_[block_of_[faces[f].gridpoints[0]]] = true;
       if (!is_hot[f] && any) continue;
       hot_faces_.push_back({resized<3>(faces[f].centre), resized<3>(faces[f].normal), faces[f].area});
@@ -133,6 +129,22 @@ const Spalling::HotFace& Spalling::nearest(const Vec<3>& place) const {
 double Spalling::depth(const Vec<3>& place) const {
   const HotFace& face = nearest(place);
   return std::max(0.0, dot(face.normal, face.centre - place));
+}
+
+/// Tells whether a bearing, or a gridpoint that is held or driven, belongs to a block. A plane of symmetry
+/// holds none: a piece leaves together with its image behind it.
+bool Spalling::is_held(const Motion& motion, int block) const {
+  if (model_.is_of_bearing(block)) return true;
+  for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g)
+    for (int i = 0; i < model_.dimension(); ++i)
+      if (motion.read().is_prescribed(g, i) && !is_mirrored(g, i)) return true;
+  return false;
+}
+
+bool Spalling::is_mirrored(int gridpoint, int component) const {
+  return std::ranges::any_of(model_.symmetry, [&](const PlaneOfSymmetry& plane) {
+    return plane.component == component && std::ranges::binary_search(model_.set(plane.set()), gridpoint);
+  });
 }
 
 std::vector<Spalling::Leaving> Spalling::leaving(const Motion& motion) const {

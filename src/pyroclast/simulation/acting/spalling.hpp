@@ -98,6 +98,8 @@ class Spalling {
     std::vector<int> blocks;
     SpallSign sign;
   };
+  bool is_held(const Motion& motion, int block) const;
+  bool is_mirrored(int gridpoint, int component) const;
   const HotFace& nearest(const Vec<3>& place) const;
   std::vector<Leaving> leaving(const Motion& motion) const;
   Spall describe(Leaving piece, const TemperatureField& field, const MoistureField* moisture) const;
