@@ -98,6 +98,26 @@ TEST(CollectivesTogether, GiveWhatEachGivesAlone) {
   });
 }
 
+// Promise: a change between sums is made once, though its function is called twice; the sums before it and
+// those after it travel in one message.
+TEST(CollectivesTogether, MayStandOnBothSidesOfAChange) {
+  const auto act = [](Ranks& ranks) {
+    std::int64_t own = 1, booked = 0;
+    ranks.together([&] {
+      const std::int64_t before = ranks.sum(own);
+      if (ranks.gives()) own += 10;
+      const std::int64_t after = ranks.sum(own);
+      if (ranks.has_all()) booked += after - before;
+    });
+    return std::pair(own, booked);
+  };
+  EXPECT_EQ(act(one_rank()), std::pair(std::int64_t{11}, std::int64_t{10}));
+  RanksInThreads::run(2, [&](const auto& ranks) {
+    EXPECT_EQ(act(*ranks), std::pair(std::int64_t{11}, std::int64_t{20}));
+    EXPECT_EQ(ranks->events(), "c");
+  });
+}
+
 // Promise: where it depends on a result which collectives are called, the call fails rather than to mix them
 // up, and the next one works.
 TEST(CollectivesTogether, MustNotDependOnEachOther) {

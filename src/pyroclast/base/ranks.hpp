@@ -114,8 +114,9 @@ class Ranks {
   /// Calls `f` and returns its result, with all collectives of `f` in one message. Where there are several
   /// ranks, `f` is called twice. First each collective puts down what this rank gives, and returns that
   /// alone. Then all of it travels, and at the second call each collective returns what all ranks gave. So
-  /// `f` must change nothing, and what it gives to a collective, and to which, must not depend on the result
-  /// of another one. Calls within `f` take part in its message.
+  /// what `f` gives to a collective, and to which, must not depend on the result of another one. What `f`
+  /// changes, it changes at one of the calls alone, see `gives` and `has_all`. Calls within `f` take part in
+  /// its message.
   template <class F>
   auto together(F f, CallPlace at = CallPlace::here()) {
     if (count() == 1 || gathering_) return f();
@@ -123,10 +124,19 @@ class Ranks {
     gathering_.emplace();
     f();
     send(at);
-    auto result = f();
-    require_all_taken();
-    return result;
+    if constexpr (std::is_void_v<decltype(f())>) {
+      f();
+      require_all_taken();
+    } else {
+      auto result = f();
+      require_all_taken();
+      return result;
+    }
   }
+  /// Tells whether collectives take what this rank gives: not at the second call of `together`.
+  bool gives() const { return !gathering_ || !gathering_->has_travelled; }
+  /// Tells whether collectives return what all ranks gave: not at the first call of `together`.
+  bool has_all() const { return !gathering_ || gathering_->has_travelled; }
 
   /// Tells whether numbers of foreign items are to be NaN wherever their owner has not sent them. Tests ask
   /// for it: whatever reads a number that is not there shows.

@@ -49,12 +49,17 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
     throw Error("a body made of materials that do not creep cannot begin to creep");
   GoneBlocks<Dim>(body).leave_out_of(properties);
   Ranks& ranks = body.model.ranks();
-  change_properties(
-      [&] { return body.creeps() && ranks.any(Properties<Dim>(body).creep_here(properties.creep)); },
-      [&](bool creep) {
-        if (creep) Properties<Dim>(body).begin_creep(properties.creep);
-        std::swap(body.properties, properties);
-      });
+  const auto seen = ranks.together([&] {
+    return std::pair(before_change(),
+                     body.creeps() && ranks.any(Properties<Dim>(body).creep_here(properties.creep)));
+  });
+  UnderChange under_change;
+  ranks.together([&] {
+    change_properties(seen.first, under_change, [&] {
+      if (seen.second) Properties<Dim>(body).begin_creep(properties.creep);
+      std::swap(body.properties, properties);
+    });
+  });
   return properties;
 }
 
@@ -106,58 +111,64 @@ double Mechanics<Dim>::measure_at_last_forces() {
 }
 
 template <int Dim>
-void Mechanics<Dim>::commit_creep() {
-  if (body_->creep_under_way.empty()) return;
-  Properties<Dim> of_body(*body_);
+void Mechanics<Dim>::commit_creep(const std::function<void()>& look) {
+  Body<Dim>& body = *body_;
+  Ranks& ranks = body.model.ranks();
+  if (body.creep_under_way.empty()) return ranks.together(look);
+  Properties<Dim> of_body(body);
   const auto end = of_body.end_of_creep();
-  change_properties([&] { return end.work.totals(body_->model.ranks()).front(); },
-                    [&](double work) { of_body.end_creep(end, work); });
+  UnderChange under_change;
+  ranks.together([&] {
+    const Before before = before_change();
+    const double work = end.work.totals(ranks).front();
+    if (ranks.has_all()) body.books.creep_work += work;
+    change_properties(before, under_change, [&] { of_body.end_creep(end); });
+    look();
+  });
 }
 
-/// All sums before the change travel in one message, and all sums after it.
-/// \param before  function that reads what the change needs of all ranks
-/// \param change  function that takes it and changes properties or creep
 template <int Dim>
-template <class Before, class Change>
-void Mechanics<Dim>::change_properties(Before before, Change change) {
+typename Mechanics<Dim>::Before Mechanics<Dim>::before_change() const {
+  return {held(), totals().work_of_pore_pressure()};
+}
+
+/// Changes properties or creep, within Ranks::together: all sums after the change travel in one message.
+/// \param before  sums before it; the change may need none of them
+/// \param change  makes the change, at one of the calls
+template <int Dim>
+template <class Change>
+void Mechanics<Dim>::change_properties(const Before& before, UnderChange& under_change, Change change) {
   // The ledger counts the work of forces by the trapezoidal rule. So the change is made at the displacements
   // of the last step's forces, and the half step already begun with the old ones is made good.
   Body<Dim>& body = *body_;
-  Ranks& ranks = body.model.ranks();
-  struct Seen {
-    double held, pushed;
-    decltype(before()) for_change;
-  };
-  const Seen seen = ranks.together([&] { return Seen{held(), totals().work_of_pore_pressure(), before()}; });
-  change(seen.for_change);
-  body.books.pore_pressure += seen.pushed - totals().work_of_pore_pressure();
-  const auto old_force = read().forces();
-  const double begun = measure_at_last_forces();
-
+  const Ranks& ranks = body.model.ranks();
   Masses<Dim> masses(body);
-  masses.measure_stiffness();
-  const std::vector<double> mass_before = masses.scale();
-  struct After {
-    double held, begun_change, limit;
-    MassSums of_masses;
-  };
-  const bool are_real = body.parameters.mass == MassChoice::real;
-  const After after = ranks.together([&] {
-    return After{
-        held(),
-        chunked_sum(
-            body.layout.chunks.gridpoints,
-            [&](int g) { return 0.5 * begun * dot(read().force(g) - old_force[g], read().velocity(g)); }),
-        are_real ? masses.real_mass_limit().step / body.parameters.safety : 0.0, masses.sums(mass_before)};
+  auto& [old_force, begun, mass_before] = under_change;
+  if (ranks.gives()) change();
+  const double pushed = totals().work_of_pore_pressure();
+  if (ranks.gives()) {
+    old_force = read().forces();
+    begun = measure_at_last_forces();
+    masses.measure_stiffness();
+    mass_before = masses.scale();
+  }
+  const double held_now = held();
+  const double begun_change = chunked_sum(body.layout.chunks.gridpoints, [&](int g) {
+    return 0.5 * under_change.begun * dot(read().force(g) - under_change.old_force[g], read().velocity(g));
   });
-  body.books.property_change += after.held - seen.held;
-  body.books.begun_property_change -= after.begun_change;
-  masses.take(after.of_masses);
-  if (are_real && after.limit < time_step() * (1.0 - 1e-9))
+  const bool are_real = body.parameters.mass == MassChoice::real;
+  const double limit = are_real ? masses.real_mass_limit().step / body.parameters.safety : 0.0;
+  const MassSums sums = masses.sums(mass_before);
+  if (!ranks.has_all()) return;
+  body.books.pore_pressure += before.pushed - pushed;
+  body.books.property_change += held_now - before.held;
+  body.books.begun_property_change -= begun_change;
+  masses.take(sums);
+  if (are_real && limit < time_step() * (1.0 - 1e-9))
     throw Error(fmt::format(
         "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
         "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
-        time_step(), after.limit));
+        time_step(), limit));
 }
 
 template <int Dim>

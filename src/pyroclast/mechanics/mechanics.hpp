@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -44,7 +45,9 @@ class Mechanics {
   /// Ends the creep of the last `set_properties` with the present stress, which stays as it is: strain that
   /// was elastic until now becomes creep strain. The ledger counts its work as "creep" in `dissipated`;
   /// `property_change` closes the ledger. Does nothing where no zone creeps.
-  void commit_creep();
+  /// \param look  reads the body then. It travels with the sums of the creep, see Ranks::together; so it may
+  ///              be called twice.
+  void commit_creep(const std::function<void()>& look = [] {});
 
   /// Takes blocks out of the body for good, with all that acts on them: they have no force, no mass and no
   /// motion any more. `EnergyLedger::removed` counts the energy that they hold, and what they cease to bear.
@@ -87,8 +90,19 @@ class Mechanics {
   double time_step() const { return body_->time_step(); }
 
  private:
-  template <class Before, class Change>
-  void change_properties(Before before, Change change);
+  /// Energies before properties or creep change.
+  struct Before {
+    double held, pushed;
+  };
+  /// What a change leaves to the call at which its sums have come.
+  struct UnderChange {
+    std::vector<Vec<Dim>> old_force;
+    double begun = 0.0;  ///< time by which positions have run ahead of the forces, s
+    std::vector<double> mass_before;
+  };
+  Before before_change() const;
+  template <class Change>
+  void change_properties(const Before& before, UnderChange& under_change, Change change);
   double held() const;
   double measure_at_last_forces();
   int steps_to_hand_over();

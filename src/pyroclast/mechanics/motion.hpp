@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -94,7 +95,7 @@ class Motion {
   virtual TimeStepLimit real_mass_limit() const = 0;
   virtual BodyProperties set_properties(BodyProperties properties) = 0;
   virtual void remove(const std::vector<int>& blocks) = 0;
-  virtual void commit_creep() = 0;
+  virtual void commit_creep(const std::function<void()>& look) = 0;
   virtual void note_cracks() = 0;
   [[nodiscard]] virtual bool break_contact(int contact) = 0;
   virtual void visit_state(StateVisitor& visitor) = 0;
@@ -146,7 +147,7 @@ class MotionOf final : public Motion {
     return mechanics_.set_properties(std::move(properties));
   }
   void remove(const std::vector<int>& blocks) override { mechanics_.remove(blocks); }
-  void commit_creep() override { mechanics_.commit_creep(); }
+  void commit_creep(const std::function<void()>& look) override { mechanics_.commit_creep(look); }
   void note_cracks() override { mechanics_.note_cracks(); }
   [[nodiscard]] bool break_contact(int contact) override { return mechanics_.break_contact(contact); }
   void visit_state(StateVisitor& visitor) override { mechanics_.visit_state(visitor); }

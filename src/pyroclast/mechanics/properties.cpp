@@ -212,10 +212,8 @@ typename Properties<Dim>::EndOfCreep Properties<Dim>::end_of_creep() const {
   return end;
 }
 
-/// \param work  total of all ranks
 template <int Dim>
-void Properties<Dim>::end_creep(const EndOfCreep& end, double work) {
-  body_.books.creep_work += work;
+void Properties<Dim>::end_creep(const EndOfCreep& end) {
   for (int z = 0; z < body_.model.zone_count(); ++z)
     for (std::size_t i = 0; i < end.strain[z].size(); ++i) body_.creep_strain[z][i] += end.strain[z][i];
   body_.creep_under_way.clear();

@@ -27,7 +27,7 @@ class Properties {
   };
   /// Returns the end of the creep under way with the present stress, which stays as it is.
   EndOfCreep end_of_creep() const;
-  void end_creep(const EndOfCreep& end, double work);
+  void end_creep(const EndOfCreep& end);
   /// Breaks a contact from the start: neither tension nor cohesion ever held it. Returns false where the law
   /// of the contact has no damage; the contact then holds.
   [[nodiscard]] bool break_contact(int contact);

@@ -156,6 +156,10 @@ void ExchangeStage::begin(Simulation& simulation) {
   kept_.last_interval = interval_of(simulation.field().mean());
 }
 
+void ExchangeStage::read(const Simulation& simulation) {
+  if (!kept_.is_settling) read_before_change(simulation);
+}
+
 bool ExchangeStage::advance(Simulation& simulation, int most_steps) {
   if (!kept_.is_settling) {
     kept_.is_settling = change(simulation, exchange_, most_steps);

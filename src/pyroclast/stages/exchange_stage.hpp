@@ -19,6 +19,7 @@ class ExchangeStage : public Stage {
   };
 
   void begin(Simulation& simulation) final;
+  void read(const Simulation& simulation) final;
   bool advance(Simulation& simulation, int most_steps) final;
   Verdict judge(Simulation& simulation) final;
   double exchange_increment() const final { return coupling().increment; }
@@ -38,6 +39,8 @@ class ExchangeStage : public Stage {
   }  ///< Returns the mean at the beginning, °C.
 
   virtual void begin_change(Simulation& simulation) = 0;
+  /// Reads what `change` needs of the body, see Stage::read.
+  virtual void read_before_change(const Simulation&) {}
   /// Changes the temperatures towards the next exchange by one batch, and hands them over at the end; returns
   /// true when done.
   virtual bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) = 0;

@@ -25,12 +25,11 @@ struct StrainChange {
 };
 
 /// Returns bounds that hold no change and the changes of all materials: their free thermal strain, and this
-/// strain with the creep under the stress on the platens.
-StrainChange strain_change(const Simulation& simulation, double from, double to) {
+/// strain with the creep under a stress on the platens.
+StrainChange strain_change(const Simulation& simulation, double stress, double from, double to) {
   const auto widen = [](Interval& change, double strain) {
     change = {std::min(change.lower, strain), std::max(change.upper, strain)};
   };
-  const double stress = -simulation.press().stress();  // tension positive
   const HottestTemperatures& hottest = simulation.hottest();
   StrainChange change;
   for (const BlockMaterial& material : simulation.materials().block_materials) {
@@ -60,6 +59,13 @@ void Heat::begin_change(Simulation&) {
   last_change_ = 0.0;
 }
 
+void Heat::read_before_change(const Simulation& simulation) {
+  if (!coupling().predictor) return;
+  const Press& press = simulation.press();
+  strain_ = {.axial = -press.specimen_strain(), .lateral = press.lateral_strain()};
+  stress_ = -press.stress();
+}
+
 /// Changes the temperature and hands it over. The predictor moves the body to where it will come to rest at
 /// its new temperature, as far as its last change foretells. Only the differences from place to place are
 /// left to the motion.
@@ -72,22 +78,18 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   field.set_uniform(last ? keys_.to : now + std::copysign(change, keys_.to - now));
   simulation.set_heating_time(simulation.heating_time() + change / keys_.rate);
   const StrainChange possible =
-      coupling().predictor ? strain_change(simulation, now, field.mean()) : StrainChange();
+      coupling().predictor ? strain_change(simulation, stress_, now, field.mean()) : StrainChange();
   exchange.hand_over(simulation);
   if (coupling().predictor) {
-    const Press& press = simulation.press();
-    const auto strain = simulation.ranks().together([&] {
-      return Press::EvenMotion{.axial = -press.specimen_strain(), .lateral = press.lateral_strain()};
-    });
     if (last_change_ > 0.0) {
       const auto foreseen = [&](double after, double before, const Interval& bounds) {
         return std::clamp((after - before) * change / last_change_, bounds.lower, bounds.upper);
       };
       exchange.move_evenly_first(
-          {.axial = foreseen(strain.axial, last_strain_.axial, possible.axial),
-           .lateral = foreseen(strain.lateral, last_strain_.lateral, possible.lateral)});
+          {.axial = foreseen(strain_.axial, last_strain_.axial, possible.axial),
+           .lateral = foreseen(strain_.lateral, last_strain_.lateral, possible.lateral)});
     }
-    last_strain_ = strain;
+    last_strain_ = strain_;
     last_change_ = change;
   }
   return true;

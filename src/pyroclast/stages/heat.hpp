@@ -22,11 +22,14 @@ class Heat : public ExchangeStage {
 
  private:
   void begin_change(Simulation& simulation) override;
+  void read_before_change(const Simulation& simulation) override;
   bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) override;
   double foreseen_change(Foreseen& foreseen) const override;
   void visit_change(StateVisitor& visitor) override;
 
   Keys keys_;
+  Press::EvenMotion strain_;       ///< even motion so far
+  double stress_ = 0.0;            ///< on the platens, Pa, tension positive
   Press::EvenMotion last_strain_;  ///< even motion before the last exchange
   double last_change_ = 0.0;       ///< change of temperature at the last exchange, K; 0 before any
 };

@@ -78,7 +78,8 @@ TemperatureField::TemperatureField(const Model& model, std::unique_ptr<HeatSolve
 void TemperatureField::set_uniform(double temperature) {
   if (!is_uniform()) throw Error("the temperature of a field that conduction computes cannot be set");
   for (int g : specimen_gridpoints_) gridpoints_[g] = temperature;
-  update();
+  follow_gridpoints();
+  mean_ = minimum_ = maximum_ = temperature;
 }
 
 void TemperatureField::begin_exposure(const Interval& temperatures) {
@@ -196,8 +197,8 @@ void TemperatureField::for_gone_gridpoints(F f) const {
       for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) f(g);
 }
 
-/// Computes all that follows from the temperatures of the gridpoints.
-void TemperatureField::update() {
+/// Takes zones and contacts to the temperatures of their gridpoints.
+void TemperatureField::follow_gridpoints() {
   for_gone_gridpoints([&](int g) { gridpoints_[g] = kReferenceTemperature; });
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     zones_[z] = mean_of_zone(model_, static_cast<int>(z), gridpoints_);
@@ -207,6 +208,11 @@ void TemperatureField::update() {
     contacts_[c] = 0.5 * (gridpoints_[a] + gridpoints_[b]);
   }
   for_gone_gridpoints([&](int g) { gridpoints_[g] = std::numeric_limits<double>::quiet_NaN(); });
+}
+
+/// Computes all that follows from the temperatures of the gridpoints: a collective.
+void TemperatureField::update() {
+  follow_gridpoints();
   Interval here{kInfinity, -kInfinity};
   for (int g : specimen_gridpoints_) include(here, gridpoints_[g]);
   const auto read = [&] {

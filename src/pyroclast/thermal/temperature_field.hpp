@@ -99,6 +99,7 @@ class TemperatureField {
   explicit TemperatureField(const Model& model);
 
   void read_conduction();
+  void follow_gridpoints();
   void update();
   bool is_gone(int block) const { return !gone_.empty() && gone_[block]; }
   template <class F>

@@ -119,10 +119,7 @@ bool Run::next() {
   if (stage_is_over_) ++stage_;
   if (stage_is_over_ || !stage_is_begun_) begin_stage();
   if (!move_to_look()) return false;
-  if (simulation_.moves()) {
-    simulation_.motion().commit_creep();  // a look sees the body after its creep
-    simulation_.motion().note_cracks();
-  }
+  if (simulation_.moves()) simulation_.motion().note_cracks();
   add_row();
   courses_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);
@@ -241,12 +238,19 @@ std::vector<std::optional<double>> Run::measure() const {
   return row;
 }
 
-/// Adds a row to the history, and lets the stage look; all sums travel in one message.
+/// Adds a row to the history, and lets the stage look; all sums travel in one message. Both see the body
+/// after its creep.
 void Run::add_row() {
-  history_.add_row(simulation_.ranks().together([&] {
+  std::vector<std::optional<double>> row;
+  const auto look = [&] {
     if (stage_is_begun_) stages_[stage_]->look(simulation_);
-    return measure();
-  }));
+    row = measure();
+  };
+  if (simulation_.moves())
+    simulation_.motion().commit_creep(look);
+  else
+    simulation_.ranks().together(look);
+  history_.add_row(std::move(row));
 }
 
 void Run::end_stage(const Verdict& verdict) {
