@@ -18,7 +18,8 @@ OF_THE_PROGRAM = pathlib.Path(os.environ["SMALL_FORMS"])
 ROOT = pathlib.Path(__file__).parents[2]
 SMALL = tomllib.loads((ROOT / "validation" / "reference.toml").read_text())["small"]
 # Other loads, and heat, on cells of the same making.
-LIKE_COMPRESSION_3D = {"biaxial_3d", "cube_3d", "disc_3d", "fire_one_side_3d", "hot_strength_3d", "transient_heating_3d"}
+LIKE_COMPRESSION_3D = {"biaxial_3d", "cube_3d", "disc_3d", "fire_one_side_3d", "hot_strength_3d", "spalling_slab_3d",
+                       "transient_heating_3d"}
 
 
 def results(folder: pathlib.Path) -> dict[str, bytes]:
