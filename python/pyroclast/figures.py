@@ -430,6 +430,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _draw(asked: argparse.Namespace) -> int:
+    gc.freeze()  # collections after each figure look through figures alone, not through all that was imported
     with warnings.catch_warnings():
         warnings.simplefilter("always", GapWarning)
         warnings.showwarning = lambda message, *_: _tell(message)
@@ -441,6 +442,8 @@ def _draw(asked: argparse.Namespace) -> int:
         except Error as problem:
             _tell(problem)
             return 1
+        finally:
+            gc.unfreeze()
     return 0
 
 

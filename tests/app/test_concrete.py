@@ -19,6 +19,7 @@ LIMESTONE = ("--f_c", "45 MPa", "--E", "32 GPa", "--aggregate", "limestone")
 FULLER = ("--fraction", "0.40", "--d_max", "20 mm")
 SIEVES = ("--f_c", "38 MPa", "--E", "30 GPa", "--aggregate", "quartzite", "--stones", "1800 kg/m3", "--passing", "4 mm=38 %",
           "8 mm=58 %", "16 mm=88 %", "22.4 mm=100 %")
+COARSE = ("--width", "42 mm", "--height", "84 mm", "--blocks", "600")  # of a cylinder
 
 
 class Concrete(InAFolder):
@@ -207,7 +208,7 @@ class Concrete(InAFolder):
         self.assertEqual(sorted(keys), sorted(f"contacts.mortar_mortar.{key}" for key in scaled))
 
     def test_a_small_cylinder_is_checked_without_a_warning_and_its_calibration_foretold(self):
-        self.concrete("--cylinder", *SIEVES, "--width", "70 mm", "--height", "140 mm", "--blocks", "2500")
+        self.concrete("--cylinder", *SIEVES, "--width", "70 mm", "--height", "84 mm", "--blocks", "1100")
         self.assertNotIn("warning", self.pyroclast("check", "mine.toml").stdout)
         seen = self.pyroclast("study", "check", "mine-calibrate.toml").stdout
         self.assertRegex(seen, r"time +\d.* a run, \d.* of one core to begin with; \d.* at most, for 30 runs")
@@ -222,7 +223,7 @@ class Concrete(InAFolder):
 
     def test_a_hot_cylinder_takes_its_size_its_mortar_and_its_friction_from_the_calibrated_deck(self):
         words = ("--cylinder", *LIMESTONE, *FULLER)
-        self.concrete(*words, "--width", "60 mm", "--height", "90 mm", "--blocks", "2000")
+        self.concrete(*words, *COARSE)
         text = (self.folder / "mine.toml").read_text()
         (self.folder / "best.toml").write_text(text.replace('phi = "12 deg"', 'phi = "14 deg"'))
         hot = ("--hot", "400 degC", "--from", "best.toml")
@@ -237,7 +238,7 @@ class Concrete(InAFolder):
         self.assertIn('best.toml": is no deck of a body in space, but --cylinder asks for one', told)
 
     def test_a_cylinder_whose_contacts_have_another_law_or_other_energies_is_no_deck_to_heat(self):
-        words = ("--cylinder", *LIMESTONE, *FULLER, "--width", "60 mm", "--height", "90 mm", "--blocks", "2000")
+        words = ("--cylinder", *LIMESTONE, *FULLER, *COARSE)
         self.concrete(*words)
         text = (self.folder / "mine.toml").read_text()
         two_damages = re.sub(r"(?m)^(law|softening|psi|u_r) = .*\n", "", text).replace(

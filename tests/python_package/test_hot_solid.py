@@ -11,10 +11,11 @@ import unittest
 import numpy as np
 import pyroclast
 from pyroclast import figures
-from pyroclast.draw import fields, heated_sections, solid_sections
+from pyroclast.draw import fields, heated_sections, solid_sections, style
 from pyroclast.draw.profiles import read_profile
 from pyroclast.draw.solid_sections import VIEW, View
 
+style.DPI = 60  # a fifth of what users get: the same is drawn
 SLAB = pathlib.Path(__file__).parents[1] / "hot_slab.toml"
 SIDES = {"left": (0, -1), "right": (0, 1), "bottom": (1, -1), "top": (1, 1), "front": (2, -1), "back": (2, 1)}
 

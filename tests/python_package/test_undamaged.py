@@ -6,9 +6,10 @@ import unittest
 
 import pyroclast
 from pyroclast import figures, read, report, watch
-from pyroclast.draw import solid_sections
+from pyroclast.draw import solid_sections, style
 from small import Case
 
+style.DPI = 60  # a fifth of what users get: the same is drawn
 SHAPES = {3: 'shape = "cylinder"\ndiameter = "60 mm"\nheight = "60 mm"',
           2: 'width = "60 mm"\nheight = "60 mm"\nthickness = "0.1 m"'}
 LAWS = {"elastic": 'law = "elastic"', "frictional": 'law = "frictional"\nfriction = 0.5'}
