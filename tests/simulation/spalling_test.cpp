@@ -117,8 +117,14 @@ TEST(Spalling, APieceThatFliesLeavesMotionHeatAndWater) {
     EXPECT_TRUE(std::isfinite(simulation->record(name).read(*simulation))) << name;
   }
 
-  // what is left goes on
+  // what is left goes on, and so does the heat of the whole
+  const double block_before = simulation->unspalled_field().gridpoints()[gridpoint];
   heat(*simulation);
+  EXPECT_GT(simulation->unspalled_field().gridpoints()[gridpoint], block_before + 1.0);
+  EXPECT_EQ(simulation->unspalled_field().time(), simulation->field().time());
+  for (std::size_t bar = 0; bar < 2; ++bar)
+    EXPECT_GT(simulation->spalling()->temperature_at(bar, simulation->field()),
+              simulation->spalling()->temperature_at(bar, simulation->unspalled_field()));
   simulation->hand_over();
   simulation->motion().advance(500);
   EXPECT_TRUE(std::isfinite(simulation->motion().totals().energy().error()));

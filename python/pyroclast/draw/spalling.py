@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from ..stored.files import Table
 from ..stored.mesh import specimen_box
 from ..stored.results import Results
-from ..stored.run_facts import BAR, SPALLING
+from ..stored.run_facts import BAR, BAR_UNSPALLED, SPALLING
 from . import style
 from .progress import MINUTES_LABEL
 
@@ -37,8 +37,10 @@ def spalling(run: Results) -> Figure:
     depths.legend(loc="upper left")
     depths.set(ylabel="Depth lost [mm]", xlabel=MINUTES_LABEL, xlim=(0.0, float(np.nanmax(minutes))))
     depths.set_ylim(bottom=0.0)
-    for bar, (colour, dashes) in zip(bars, style.LOOKS):
+    for bar, unspalled, (colour, dashes) in zip(bars, run.facts.of_role(BAR_UNSPALLED), style.LOOKS):
         panels[1].plot(minutes, run.history[bar.name], color=colour, linestyle=dashes, label=bar.of)
+        panels[1].plot(minutes, run.history[unspalled.name], color=colour, linestyle=dashes, linewidth=0.7,
+                       label=f"{bar.of}, no piece gone")
     if bars:
         panels[1].legend(title="depth", loc="upper left")
         panels[1].set(ylabel="Temperature [°C]", xlabel=MINUTES_LABEL, xlim=depths.get_xlim())

@@ -17,7 +17,7 @@ DAMAGED, BROKEN = "crack.damaged", "crack.broken"
 DAMAGED_EXTENT, BROKEN_EXTENT = "crack.damaged_extent", "crack.broken_extent"
 OPENING, HEAT = "crack.opening", "heat.held"
 WATER, PROBE_PRESSURE = "water", "probe.pressure"
-SPALLING, BAR = "spalling", "bar"
+SPALLING, BAR, BAR_UNSPALLED = "spalling", "bar", "bar_unspalled"
 
 
 @dataclass(frozen=True)

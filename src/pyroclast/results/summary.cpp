@@ -118,10 +118,14 @@ OrderedJson spalling_json(const Simulation& simulation) {
   json["largest_depth_m"] = spalling.largest_depth();
   json["lost_section"] = spalling.lost_section();
   for (std::size_t bar = 0; bar < spalling.rule().bars.size(); ++bar) {
-    const double temperature = spalling.temperature_at(bar, simulation.field());
+    const auto temperature = [&](const TemperatureField& field) {
+      const double value = spalling.temperature_at(bar, field);
+      return json_of(std::isnan(value) ? std::nullopt : std::optional(value));
+    };
     json["bars"][name_of_bar(spalling.rule().bars[bar])] = {
         {"bare_from_s", json_of(spalling.bare_from(bar))},
-        {"temperature_degC", json_of(std::isnan(temperature) ? std::nullopt : std::optional(temperature))}};
+        {"temperature_degC", temperature(simulation.field())},
+        {"temperature_unspalled_degC", temperature(simulation.unspalled_field())}};
   }
   return json;
 }

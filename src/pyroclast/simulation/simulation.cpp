@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
 #include "pyroclast/simulation/watching/items.hpp"
@@ -231,6 +233,16 @@ void Simulation::remove(const std::vector<int>& blocks) {
   if (moisture_) moisture_->remove(blocks);
 }
 
+/// Keeps the temperatures as they are before the first piece leaves; they go on without the loss.
+void Simulation::keep_unspalled() {
+  if (unspalled_ || field_.is_uniform() || spalling_->rule().bars.empty()) return;
+  StateCopy copy;
+  copy.take([&](StateVisitor& visitor) { field_.visit_state(visitor); });
+  unspalled_ =
+      std::make_unique<TemperatureField>(make_field(*model_, materials_.block_materials, heat_, true, team_));
+  copy.put([&](StateVisitor& visitor) { unspalled_->visit_state(visitor); });
+}
+
 void Simulation::let_pieces_go() {
   if (!spalling_) return;
   for (Spall& spall : spalling_->find(*motion_, field_, moisture_.get())) {
@@ -244,6 +256,7 @@ void Simulation::let_pieces_go() {
                           "\"{}\" acts on it: load other sets, or leave [spalling] out",
                           model_->block_of(g), heating_time_, set));
     spall.heating_time = heating_time_;
+    keep_unspalled();
     motion_->remove(spall.blocks);
     remove(spall.blocks);
     spalling_->note(std::move(spall));
@@ -267,6 +280,9 @@ bool Simulation::cracks_outrun_water() {
 void Simulation::follow_heat() {
   heating_time_ = field_.time();
   if (moisture_) moisture_->follow(field_);
+  if (!unspalled_) return;
+  unspalled_->begin_exposure(temperature_range(heat_, heating_time_));
+  unspalled_->advance(std::numeric_limits<double>::infinity(), heating_time_);
 }
 
 /// Hands the properties of materials to the mechanics, at the temperatures and pore pressures that there are.
@@ -288,8 +304,14 @@ void Simulation::visit_state(StateVisitor& visitor) {
   if (spalling_) {
     const StateVisitor::Scope scope(visitor, "spalling");
     spalling_->visit_state(visitor);
-    if (visitor.replaces())
+    if (visitor.replaces() && has_lost_blocks()) {
+      keep_unspalled();
       for (const Spall& spall : spalling_->spalls()) remove(spall.blocks);
+    }
+    if (unspalled_) {
+      const StateVisitor::Scope of_field(visitor, "unspalled");
+      unspalled_->visit_state(visitor);
+    }
   }
   {
     const StateVisitor::Scope scope(visitor, "field");

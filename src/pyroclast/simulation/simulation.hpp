@@ -110,6 +110,8 @@ class Simulation {
   void let_pieces_go();
   /// Returns the pieces that have left; null where all blocks stay.
   const Spalling* spalling() const { return spalling_.get(); }
+  /// Returns the temperatures of the specimen had no piece left it.
+  const TemperatureField& unspalled_field() const { return unspalled_ ? *unspalled_ : field_; }
   bool has_lost_blocks() const { return spalling_ && !spalling_->spalls().empty(); }
   /// Tells whether a block has left the body.
   bool is_gone(int block) const { return spalling_ && spalling_->is_gone(block); }
@@ -168,6 +170,7 @@ class Simulation {
  private:
   void hand_over(const ConcreteMaterials& materials);
   void remove(const std::vector<int>& blocks);
+  void keep_unspalled();
   void require_there(const std::string& set, const std::string& place) const;
 
   std::shared_ptr<Team> team_;
@@ -188,6 +191,8 @@ class Simulation {
   std::vector<Record> records_;
   std::unique_ptr<Press> press_;
   std::unique_ptr<Spalling> spalling_;
+  /// Temperatures had no piece left, from the first one on; null before.
+  std::unique_ptr<TemperatureField> unspalled_;
   double heating_time_ = 0.0;
   std::int64_t exchanges_ = 0;
 };

@@ -109,7 +109,7 @@ Spalling::Spalling(const Model& model, const std::vector<BlockMaterial>& block_m
 double Spalling::temperature_at(std::size_t bar, const TemperatureField& field) const {
   double sum = 0.0, count = 0.0;
   for (const int g : at_bar_[bar]) {
-    if (is_gone_[block_of_[g]]) continue;
+    if (std::isnan(field.gridpoints()[g])) continue;  // of a block that has left
     sum += field.gridpoints()[g];
     count += 1.0;
   }

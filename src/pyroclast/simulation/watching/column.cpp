@@ -52,6 +52,8 @@ const char* name_of(ColumnRole role) {
       return "spalling";
     case ColumnRole::bar:
       return "bar";
+    case ColumnRole::bar_unspalled:
+      return "bar_unspalled";
     case ColumnRole::water:
       return "water";
     case ColumnRole::probe:

@@ -32,6 +32,7 @@ enum class ColumnRole : std::uint8_t {
   water,                 ///< water in the pores: amounts, and extremes of its pressure
   spalling,              ///< pieces that have left the body
   bar,                   ///< temperature at the depth of a bar
+  bar_unspalled,         ///< the same, had no piece left
   probe,                 ///< temperature at a probe
   probe_pressure,        ///< pore pressure at a probe
   record,                ///< record of the deck

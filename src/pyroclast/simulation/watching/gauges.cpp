@@ -423,14 +423,24 @@ Column bar_column(const std::string& name) {
           ColumnRole::bar, name};
 }
 
+Column unspalled_bar_column(const std::string& name) {
+  return {fmt::format("bar_{}_unspalled_degC", name), "degC",
+          "the same, had no piece left; cracks hinder heat as they did when the first one left",
+          ColumnRole::bar_unspalled, name};
+}
+
 Gauge bar_gauge(const Spalling& spalling) {
   Gauge gauge;
   gauge.of_places = true;
-  for (const double depth : spalling.rule().bars) gauge.columns.push_back(bar_column(name_of_bar(depth)));
+  for (const double depth : spalling.rule().bars) {
+    gauge.columns.push_back(bar_column(name_of_bar(depth)));
+    gauge.columns.push_back(unspalled_bar_column(name_of_bar(depth)));
+  }
   gauge.read = [](const Simulation& s) {
     std::vector<double> values;
     for (std::size_t bar = 0; bar < s.spalling()->rule().bars.size(); ++bar)
-      values.push_back(s.spalling()->temperature_at(bar, s.field()));
+      for (const TemperatureField* field : {&s.field(), &s.unspalled_field()})
+        values.push_back(s.spalling()->temperature_at(bar, *field));
     return values;
   };
   return gauge;
@@ -541,6 +551,7 @@ std::vector<Column> possible_gauge_columns() {
   append(columns, columns_of(kWater));
   append(columns, columns_of(kSpalling));
   columns.push_back(bar_column("NAME"));
+  columns.push_back(unspalled_bar_column("NAME"));
   columns.push_back(probe_column("NAME"));
   columns.push_back(probe_pressure_column("NAME"));
   return columns;
