@@ -40,7 +40,7 @@ def spalling(run: Results) -> Figure:
     for bar, unspalled, (colour, dashes) in zip(bars, run.facts.of_role(BAR_UNSPALLED), style.LOOKS):
         panels[1].plot(minutes, run.history[bar.name], color=colour, linestyle=dashes, label=bar.of)
         panels[1].plot(minutes, run.history[unspalled.name], color=colour, linestyle=dashes, linewidth=0.7,
-                       label=f"{bar.of}, no piece gone")
+                       label="thin: no piece gone" if bar is bars[-1] else None)
     if bars:
         panels[1].legend(title="depth", loc="upper left")
         panels[1].set(ylabel="Temperature [°C]", xlabel=MINUTES_LABEL, xlim=depths.get_xlim())
