@@ -107,22 +107,32 @@ TEST(PorePressureVerification, TwoBlocksPartWhereTheirShareOfThePressureComesToT
   }
 }
 
+MechanicsParameters swaying(Kinematics kinematics) {
+  auto parameters = quasi_static<2>(0.0);
+  parameters.kinematics = kinematics;
+  parameters.safety = 0.2;
+  return parameters;
+}
+
+/// Lets a dry body sway, and returns properties with a pressure of its own at each contact.
+BodyProperties shaken(Mechanics<2>& m, const ModelOf<2>& model) {
+  Random random(4);
+  std::vector<Vec<2>> velocities(model.position.size());
+  for (auto& v : velocities) v = {{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)}};
+  m.begin_moving(velocities);
+  m.advance(200);
+  auto properties = pressed(model, elastic_contact(), 0.0, 0.0);
+  for (double& p : properties.pore_pressure) p = random.uniform(0.0, 5e6);
+  return properties;
+}
+
 // Promise: pressure moves neither the body's centre nor turns it, however its blocks lie, and its work is the
 // ledger's.
 TEST(PorePressure, LeavesMomentumAndEnergyInBalance) {
   const ModelOf<2> model = tessellated(40, 0.05, 0.05, 3);
   for (const auto kinematics : {Kinematics::small, Kinematics::finite}) {
-    auto parameters = quasi_static<2>(0.0);
-    parameters.kinematics = kinematics;
-    parameters.safety = 0.2;
-    auto m = dry(model, elastic_contact(), parameters);
-    Random random(4);
-    std::vector<Vec<2>> velocities(model.position.size());
-    for (auto& v : velocities) v = {{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)}};
-    m.begin_moving(velocities);
-    m.advance(200);
-    auto properties = pressed(model, elastic_contact(), 0.0, 0.0);
-    for (double& p : properties.pore_pressure) p = random.uniform(0.0, 5e6);
+    auto m = dry(model, elastic_contact(), swaying(kinematics));
+    const BodyProperties properties = shaken(m, model);
     m.set_properties(properties);
     m.advance(1);
     Vec<2> force{};
@@ -178,17 +188,8 @@ TEST(PorePressureVerification, AReserveFallsAsTheContactOpens) {
 TEST(PorePressure, ThatFallsKeepsMomentumAndTheLedger) {
   const ModelOf<2> model = tessellated(40, 0.05, 0.05, 3);
   for (const auto kinematics : {Kinematics::small, Kinematics::finite}) {
-    auto parameters = quasi_static<2>(0.0);
-    parameters.kinematics = kinematics;
-    parameters.safety = 0.2;
-    auto m = dry(model, elastic_contact(), parameters);
-    Random random(4);
-    std::vector<Vec<2>> velocities(model.position.size());
-    for (auto& v : velocities) v = {{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)}};
-    m.begin_moving(velocities);
-    m.advance(200);
-    auto properties = pressed(model, elastic_contact(), 0.0, 0.0);
-    for (double& p : properties.pore_pressure) p = random.uniform(0.0, 5e6);
+    auto m = dry(model, elastic_contact(), swaying(kinematics));
+    const BodyProperties properties = shaken(m, model);
     m.set_properties(with_reserve(m, properties, 5e-6));
     m.advance(400);
     Vec<2> force{};

@@ -280,9 +280,13 @@ bool Simulation::cracks_outrun_water() {
 void Simulation::follow_heat() {
   heating_time_ = field_.time();
   if (moisture_) moisture_->follow(field_);
-  if (!unspalled_) return;
-  unspalled_->begin_exposure(temperature_range(heat_, heating_time_));
-  unspalled_->advance(std::numeric_limits<double>::infinity(), heating_time_);
+  if (unspalled_) unspalled_->advance(std::numeric_limits<double>::infinity(), heating_time_);
+}
+
+void Simulation::begin_exposure(double until) {
+  const Interval range = temperature_range(heat_, until);
+  field_.begin_exposure(range);
+  if (unspalled_) unspalled_->begin_exposure(range);
 }
 
 /// Hands the properties of materials to the mechanics, at the temperatures and pore pressures that there are.

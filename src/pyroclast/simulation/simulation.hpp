@@ -153,6 +153,9 @@ class Simulation {
   /// Takes over the time to which the field has conducted heat; water flows until then. Throws Error, see
   /// MoistureField::follow.
   void follow_heat();
+  /// Widens the range of temperatures to those that boundaries may bring by a time, s of heating, see
+  /// TemperatureField::begin_exposure.
+  void begin_exposure(double until);
   /// Makes an exchange: hands the field's temperatures over to the mechanics, see Mechanics::set_properties.
   /// Zones that creep do so from now until the next look of the run.
   void hand_over() { hand_over(materials_); }

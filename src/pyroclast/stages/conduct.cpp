@@ -48,7 +48,7 @@ StageNeeds Conduct::needs() const {
 void Conduct::begin(Simulation& simulation) {
   kept_.began = simulation.field().time();
   simulation.show_cracks();
-  simulation.field().begin_exposure(temperature_range(simulation.heat(), end()));
+  simulation.begin_exposure(end());
   kept_.steady_from = keys_.steady_rate ? constant_from(simulation.heat(), end()) : kNever;
   kept_.next_frame = next_multiple(keys_.frame_interval, kept_.began);
 }

@@ -41,7 +41,7 @@ StageNeeds Expose::needs() const {
 void Expose::begin_change(Simulation& simulation) {
   began_ = simulation.field().time();
   next_frame_ = next_multiple(keys_.frame_interval, began_);
-  simulation.field().begin_exposure(temperature_range(simulation.heat(), began_ + keys_.duration));
+  simulation.begin_exposure(began_ + keys_.duration);
 }
 
 bool Expose::change(Simulation& simulation, Exchange& exchange, int) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -200,24 +201,12 @@ bool Record::has_lost(const Simulation& simulation) const {
          std::ranges::any_of(mean_of_other_.set.gridpoints, is_gone);
 }
 
-/// Returns the mean of a value over the gridpoints that are left; they are those of one process.
-template <class Value>
-double Record::mean_of_what_is_left(const Simulation& simulation, Value value) const {
-  double sum = 0.0, weight = 0.0;
-  for (std::size_t i = 0; i < mean_.weights.size(); ++i) {
-    const int g = mean_.set.gridpoints[i];
-    if (simulation.is_gone(simulation.model().block_of(g))) continue;
-    sum += mean_.weights[i] * value(g);
-    weight += mean_.weights[i];
-  }
-  return sum / weight;
-}
-
 double Record::measure(const Simulation& simulation) const {
   if (parameters_.kind == RecordKind::temperature) {
-    const auto temperature = [&](int g) { return simulation.field().gridpoints()[g]; };
-    return simulation.has_lost_blocks() ? mean_of_what_is_left(simulation, temperature)
-                                        : mean_.of<double>(temperature);
+    const std::vector<double>& at = simulation.field().gridpoints();  // NaN where blocks have left
+    const double sum = mean_.of<double>([&](int g) { return std::isnan(at[g]) ? 0.0 : at[g]; });
+    if (!simulation.has_lost_blocks()) return sum;
+    return sum / mean_.of<double>([&](int g) { return std::isnan(at[g]) ? 0.0 : 1.0; });
   }
   const Motion& motion = simulation.motion();
   const auto displacement = [&](int g) { return motion.read().displacement(g); };

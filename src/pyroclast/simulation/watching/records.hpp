@@ -93,8 +93,6 @@ class Record {
   Mean mean_over(const Model& model, GridpointSet set) const;
   bool has_lost(const Simulation& simulation) const;
   double measure(const Simulation& simulation) const;
-  template <class Value>
-  double mean_of_what_is_left(const Simulation& simulation, Value value) const;
   double force(const Simulation& simulation) const;
 
   RecordParameters parameters_;
