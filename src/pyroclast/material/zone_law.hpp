@@ -44,6 +44,10 @@ constexpr ZoneProperties zone_properties(double young, double poisson, double th
   return {young * poisson / denominator, 0.5 * young / (1.0 + poisson), thermal_strain};
 }
 
+/// Matrix in space, column by column.
+template <class Real = double>
+using Matrix3 = std::array<Vec<3, Real>, 3>;
+
 /// Turn of a zone; the identity with small kinematics.
 template <int Dim, class Real = double>
 struct Rotation;
@@ -56,7 +60,7 @@ struct Rotation<2, Real> {
 template <class Real>
 struct Rotation<3, Real> {
   /// Directions of the axes of the zone's own frame: the columns of R.
-  std::array<Vec<3, Real>, 3> axis{{{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.0, 0.0, 1.0}}}};
+  Matrix3<Real> axis{{{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.0, 0.0, 1.0}}}};
 };
 
 /// Turns a vector of the zone's own frame into the frame of the model.
@@ -77,9 +81,9 @@ inline SymmetricTensor<Dim, Real> rotated(const Rotation<Dim, Real>& r, const Sy
             cs * (s[0] - s[1]) + (cc - ss) * s[2]};
   } else {
     // R s, whose rows go along R once more
-    const std::array<Vec<3, Real>, 3> columns{rotated<3>(r, Vec<3, Real>{{s[0], s[3], s[5]}}),
-                                              rotated<3>(r, Vec<3, Real>{{s[3], s[1], s[4]}}),
-                                              rotated<3>(r, Vec<3, Real>{{s[5], s[4], s[2]}})};
+    const Matrix3<Real> columns{rotated<3>(r, Vec<3, Real>{{s[0], s[3], s[5]}}),
+                                rotated<3>(r, Vec<3, Real>{{s[3], s[1], s[4]}}),
+                                rotated<3>(r, Vec<3, Real>{{s[5], s[4], s[2]}})};
     const auto component = [&](int i, int j) {
       return columns[0][i] * r.axis[0][j] + columns[1][i] * r.axis[1][j] + columns[2][i] * r.axis[2][j];
     };
@@ -88,19 +92,36 @@ inline SymmetricTensor<Dim, Real> rotated(const Rotation<Dim, Real>& r, const Sy
   }
 }
 
-/// Steps to the rotation of a zone in space: to round-off up to strains of 0.1, to 1e-6 up to 0.3.
+/// Steps to the rotation of a zone in space: to round-off up to strains of 0.1, to 1e-8 up to 0.3.
 inline constexpr int kStepsToRotation = 4;
 
-/// Returns the columns of R of F = R U from those of F, by Newton's steps R <- (R + R^-T) / 2 [Higham 1986].
+/// Returns the columns of R of F = R U from those of F, by Newton's steps R <- (R + R^-T) / 2 (Higham 1986).
 /// The columns of R^-T are cross products of the columns of R over its determinant, so no step branches.
 template <class Real>
-inline std::array<Vec<3, Real>, 3> rotation_of(const std::array<Vec<3, Real>, 3>& gradient) {
-  std::array<Vec<3, Real>, 3> r = gradient;
+inline Matrix3<Real> rotation_of(const Matrix3<Real>& gradient) {
+  Matrix3<Real> r = gradient;  // 2^step R: no step divides by 2
+  double power = 1.0;          // 4^step
   for (int step = 0; step < kStepsToRotation; ++step) {
-    const std::array<Vec<3, Real>, 3> cofactors{cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])};
-    const Real over = Real(0.5) / dot(r[0], cofactors[0]);
-    for (int j = 0; j < 3; ++j) r[j] = r[j] * Real(0.5) + cofactors[j] * over;
+    const Matrix3<Real> cofactors{cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])};
+    const Real over = Real(power) / dot(r[0], cofactors[0]);
+    for (int j = 0; j < 3; ++j) r[j] += cofactors[j] * over;
+    power *= 4.0;
   }
+  for (auto& column : r) column *= Real(1.0 / (1 << kStepsToRotation));
+  return r;
+}
+
+template <class Set>
+inline Matrix3<Lanes<Set>> rotation_of(const Matrix3<Lanes<Set>>& gradient) {
+  Matrix3<Lanes<Set>> r;
+  unroll<Lanes<Set>::kParts>([&](auto part) {
+    Matrix3<PartOfLanes<Set>> of_part;
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) of_part[j][i] = PartOfLanes<Set>::of(gradient[j][i].part[part]);
+    of_part = rotation_of(of_part);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) r[j][i].part[part] = of_part[j][i].value;
+  });
   return r;
 }
 
@@ -143,7 +164,7 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
       rotation.axis = rotation_of(h);
       const auto& r = rotation.axis;
       const auto direct = [&](int i) { return dot(r[i], h[i]) - 1.0 - thermal_strain; };
-      const auto shear = [&](int i, int j) { return 0.5 * (dot(r[i], h[j]) + dot(r[j], h[i])); };
+      const auto shear = [&](int i, int j) { return dot(r[i], h[j]); };  // R^T F is symmetric
       return {direct(0), direct(1), direct(2), shear(0, 1), shear(1, 2), shear(2, 0)};
     }
     const Real half = 0.5 * scale;
