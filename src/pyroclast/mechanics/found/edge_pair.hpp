@@ -3,6 +3,7 @@
 #include <array>
 
 #include "pyroclast/base/vec.hpp"
+#include "pyroclast/mechanics/found/counted_share.hpp"
 
 /// Two edges of different blocks that press each other wherever they lie: the contact that is found, in the
 /// plane.
@@ -74,23 +75,6 @@ EdgePair<Real> edge_pair(const std::array<Vec<2, Real>, 2>& a, const std::array<
   p.face = (p.cosine > Real(0.0)) & (p.overlap > Real(0.0));
   return p;
 }
-
-/// Share of an end's half of the overlap that counts, and its slope by `depth`. All of it counts while the
-/// edges are less deep in each other than their overlap is long, nothing where they are thrice as deep: edges
-/// that pass a corner do not begin to press at once. Where the overlap is long a third of the largest depth
-/// stands in its place: the far sides of two blocks that touch face each other too.
-template <class Real>
-struct CountedShare {
-  Real depth;  ///< depth over the overlap, or over a third of the largest depth
-  Real share, slope;
-  static constexpr double kMost = 3.0;  ///< depth from which on nothing counts
-
-  explicit CountedShare(const Real& of) : depth(of) {
-    const Real y = smaller(larger((depth - Real(1.0)) * Real(1.0 / (kMost - 1.0)), Real(0.0)), Real(1.0));
-    share = Real(1.0) - y * y * (Real(3.0) - Real(2.0) * y);
-    slope = Real(6.0 / (kMost - 1.0)) * y * (y - Real(1.0));
-  }
-};
 
 /// Tractions of the law at the two ends, and the energy of their normal part.
 template <class Real>

@@ -1,0 +1,203 @@
+#include "pyroclast/mechanics/found/triangle_pair.hpp"
+
+#include <limits>
+
+namespace pyroclast {
+
+namespace {
+
+/// Sine of the angle between edges below which they count as parallel: their crossing would run along them a
+/// thousand times as fast as the triangles move.
+constexpr double kParallel = 1e-3;
+/// Overlap over the areas of both triangles below which there is none.
+constexpr double kLeastOverlap = 1e-12;
+/// Corners of a triangle that is cut by three lines, with three more that rounding may make.
+constexpr int kMostCut = Overlap::kMost + 3;
+
+/// Corner of a polygon in the mean plane, and the edge that begins there.
+struct FlatCorner {
+  Vec<2> at;
+  int edge = 0;
+};
+using FlatTriangle = std::array<FlatCorner, 3>;
+
+/// Returns twice the area of a triangle: positive where `p` lies to the left of the line from u to v.
+double left_of(const Vec<2>& p, const Vec<2>& u, const Vec<2>& v) {
+  return cross(v - u, p - u);
+}
+
+std::array<double, 3> weights_in(const FlatTriangle& t, const Vec<2>& p) {
+  const double whole = left_of(t[2].at, t[0].at, t[1].at);
+  const double first = left_of(p, t[1].at, t[2].at) / whole, second = left_of(p, t[2].at, t[0].at) / whole;
+  return {first, second, 1.0 - first - second};
+}
+
+/// Returns the weights of the corners of an edge at the place of the edge that is nearest to a point.
+std::array<double, 3> weights_on_edge(const FlatTriangle& t, int edge, const Vec<2>& p) {
+  const int next = (edge + 1) % 3;
+  const Vec<2> along = t[next].at - t[edge].at;
+  std::array<double, 3> weights{};
+  weights[next] = std::clamp(dot(p - t[edge].at, along) / dot(along, along), 0.0, 1.0);
+  weights[edge] = 1.0 - weights[next];
+  return weights;
+}
+
+/// Polygon in the mean plane, counter-clockwise.
+struct Polygon {
+  int count = 0;
+  std::array<FlatCorner, kMostCut> corners{};
+};
+
+/// Returns the part of a that lies in b: each edge of b cuts off what lies outside (Sutherland and Hodgman
+/// 1974).
+Polygon cut_to(const FlatTriangle& a, const FlatTriangle& b) {
+  Polygon polygon{3, {}};
+  std::array<FlatCorner, kMostCut> cut{};
+  std::copy(a.begin(), a.end(), polygon.corners.begin());
+  for (int j = 0; j < 3 && polygon.count > 0; ++j) {
+    const Vec<2>&from = b[j].at, &to = b[(j + 1) % 3].at;
+    int left = 0;
+    for (int k = 0; k < polygon.count; ++k) {
+      const FlatCorner& here = polygon.corners[k];
+      const FlatCorner& next = polygon.corners[k + 1 == polygon.count ? 0 : k + 1];
+      const double inside = left_of(here.at, from, to), next_inside = left_of(next.at, from, to);
+      if (inside >= 0.0) cut[left++] = here;
+      if ((inside >= 0.0) != (next_inside >= 0.0))
+        cut[left++] = {here.at + (next.at - here.at) * (inside / (inside - next_inside)),
+                       inside >= 0.0 ? b[j].edge : here.edge};
+    }
+    polygon.count = std::min(left, Overlap::kMost);
+    std::copy_n(cut.begin(), polygon.count, polygon.corners.begin());
+  }
+  return polygon;
+}
+
+/// Mean plane of two triangles that face each other, and the triangles seen along its normal.
+struct MeanPlane {
+  Vec<3> area_a, area_b;       ///< twice the area vectors, m²
+  Vec<3> normal;               ///< unit normal
+  std::array<Vec<3>, 2> axes;  ///< any two axes of the plane
+  FlatTriangle flat_a, flat_b;
+
+  MeanPlane(const Triangle& a, const Triangle& b)
+      : area_a(cross(a[1] - a[0], a[2] - a[0])), area_b(cross(b[1] - b[0], b[2] - b[0])) {
+    const Vec<3> sum = area_a + area_b;
+    normal = sum * (1.0 / norm(sum));
+    const Vec<3> aside = cross(std::abs(normal[0]) < 0.6 ? Vec<3>{{1, 0, 0}} : Vec<3>{{0, 1, 0}}, normal);
+    axes[0] = aside * (1.0 / norm(aside));
+    axes[1] = cross(normal, axes[0]);
+    const auto flat = [&](const Vec<3>& x) {
+      return Vec<2>{{dot(x - a[0], axes[0]), dot(x - a[0], axes[1])}};
+    };
+    for (int i = 0; i < 3; ++i) {
+      flat_a[i] = {flat(a[i]), i};
+      flat_b[i] = {flat(b[i]), 3 + i};
+    }
+  }
+};
+
+/// Returns a triangle whose edges lie further out by a distance.
+FlatTriangle grown(const FlatTriangle& t, double by) {
+  std::array<double, 3> lengths{};  // of the edges across from the corners
+  for (int i = 0; i < 3; ++i) lengths[i] = norm(t[(i + 2) % 3].at - t[(i + 1) % 3].at);
+  const double round = lengths[0] + lengths[1] + lengths[2];
+  Vec<2> centre{};  // of the inscribed circle
+  for (int i = 0; i < 3; ++i) centre += t[i].at * (lengths[i] / round);
+  const double radius = left_of(t[2].at, t[0].at, t[1].at) / round, factor = (radius + by) / radius;
+  FlatTriangle larger = t;
+  for (FlatCorner& corner : larger) corner.at = centre + (corner.at - centre) * factor;
+  return larger;
+}
+
+/// Returns how far a triangle lies beside an edge of another one; negative where it does not.
+double distance_beside(const FlatTriangle& t, const FlatTriangle& other) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const Vec<2>&from = t[i].at, &to = t[(i + 1) % 3].at;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const FlatCorner& corner : other)
+      nearest = std::min(nearest, -left_of(corner.at, from, to) / norm(to - from));
+    most = std::max(most, nearest);
+  }
+  return most;
+}
+
+/// Returns the least height of a triangle.
+double height(const Triangle& t) {
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(t[(i + 1) % 3] - t[i]));
+  return norm(cross(t[1] - t[0], t[2] - t[0])) / longest;
+}
+
+}  // namespace
+
+Overlap overlap_of(const Triangle& a, const Triangle& b) {
+  Overlap overlap;
+  if (!(dot(cross(a[1] - a[0], a[2] - a[0]), cross(b[1] - b[0], b[2] - b[0])) > 0.0)) return overlap;
+  const MeanPlane plane(a, b);
+  const FlatTriangle &flat_a = plane.flat_a, &flat_b = plane.flat_b;
+  const Polygon polygon = cut_to(flat_a, flat_b);
+  const int count = polygon.count;
+  double area = 0.0;
+  for (int k = 1; k + 1 < count; ++k)
+    area += 0.5 * cross(polygon.corners[k].at - polygon.corners[0].at,
+                        polygon.corners[k + 1].at - polygon.corners[0].at);
+  if (count < 3 || !(area > kLeastOverlap * norm(plane.area_a + plane.area_b))) return overlap;
+
+  overlap.count = count;
+  for (int k = 0; k < count; ++k) {
+    using Kind = OverlapCorner::Kind;
+    OverlapCorner& corner = overlap.corners[k];
+    const Vec<2>& at = polygon.corners[k].at;
+    corner.before = polygon.corners[k == 0 ? count - 1 : k - 1].edge;
+    corner.behind = polygon.corners[k].edge;
+    const bool before_of_a = corner.before < 3, behind_of_a = corner.behind < 3;
+    if (before_of_a != behind_of_a) {
+      const int i = corner.edge_a(), j = corner.edge_b();
+      const Vec<3> edge_a = a[(i + 1) % 3] - a[i], edge_b = b[(j + 1) % 3] - b[j];
+      if (std::abs(dot(cross(edge_a, edge_b), plane.normal)) >= kParallel * norm(edge_a) * norm(edge_b)) {
+        corner.kind = Kind::crossing;
+      } else {
+        corner.at_a = weights_on_edge(flat_a, i, at);
+        corner.at_b = weights_on_edge(flat_b, j, at);
+      }
+    } else if (corner.behind % 3 == (corner.before + 1) % 3) {
+      corner.kind = behind_of_a ? Kind::of_a : Kind::of_b;
+    } else {  // rounding has taken a tiny edge away
+      corner.at_a = weights_in(flat_a, at);
+      corner.at_b = weights_in(flat_b, at);
+    }
+  }
+  return overlap;
+}
+
+double way_to_press(const Triangle& a, const Triangle& b, double most_depth, double within) {
+  const MeanPlane plane(a, b);
+  const double cosine = dot(plane.area_a, plane.area_b) / (norm(plane.area_a) * norm(plane.area_b));
+  if (!(cosine > 0.0)) return -cosine / (1.0 / height(a) + 1.0 / height(b));
+  double way =
+      std::max(distance_beside(plane.flat_a, plane.flat_b), distance_beside(plane.flat_b, plane.flat_a));
+  // the gap is linear; while the corners go, the overlap stays where both triangles, grown, lie over each
+  // other
+  const double over_a = 1.0 / dot(plane.normal, plane.area_a), over_b = 1.0 / dot(plane.normal, plane.area_b);
+  const auto gap = [&](const Vec<2>& at) {
+    const Vec<3> place = plane.axes[0] * at[0] + plane.axes[1] * at[1];
+    return dot(plane.area_b, b[0] - a[0] - place) * over_b + dot(plane.area_a, place) * over_a;
+  };
+  const Polygon region = cut_to(grown(plane.flat_a, within), grown(plane.flat_b, within));
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (int k = 0; k < region.count; ++k) {
+    const double here = gap(region.corners[k].at);
+    least = std::min(least, here);
+    most = std::max(most, here);
+  }
+  return std::max({way, least, -most_depth - most});
+}
+
+template struct TrianglePair<double>;
+template struct PointAreas<double>;
+template TrianglePair<double> triangle_pair(const Overlap&, const Triangle&, const Triangle&);
+template std::array<Vec<3>, 6> corner_forces(const Overlap&, const TrianglePair<double>&,
+                                             const PointAreas<double>&, const PointTractions<double>&);
+
+}  // namespace pyroclast

@@ -1,0 +1,343 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "pyroclast/base/vec.hpp"
+#include "pyroclast/mechanics/found/counted_share.hpp"
+
+/// Two triangles of different blocks that press each other wherever they lie: the contact that is found, in
+/// space.
+///
+/// Both run counter-clockwise as one sees them against the normal of their mean plane; so b runs clockwise
+/// for its own block. They are seen along that normal. Their overlap is a polygon with 3 to 6 corners, and
+/// each corner is a contact point with a share of the overlap: without slide, the three points of a joined
+/// triangle. All numbers of the points are functions of the six corners of a and b, and the forces are minus
+/// their exact gradient, so that triangles which slide, turn and leave each other neither gain nor lose
+/// energy.
+namespace pyroclast {
+
+using Triangle = std::array<Vec<3>, 3>;
+
+/// Corner of the overlap of two triangles.
+struct OverlapCorner {
+  enum class Kind : std::uint8_t {
+    of_a,      ///< corner of a
+    of_b,      ///< corner of b
+    crossing,  ///< crossing of an edge of a and an edge of b
+    /// Place that does not follow the edges: where they are parallel their crossing runs along them, and
+    /// where they coincide rounding alone says which corner it is.
+    fixed
+  };
+  Kind kind = Kind::fixed;
+  /// Edges of the overlap before and behind the corner. Edge i goes from corner i to the next one: 0 to 2 are
+  /// edges of a, 3 to 5 those of b.
+  int before = 0, behind = 0;
+  std::array<double, 3> at_a{}, at_b{};  ///< weights of the corners of a and b at a fixed place
+
+  int edge_a() const { return std::min(before, behind); }      ///< edge of a that crosses
+  int edge_b() const { return std::max(before, behind) - 3; }  ///< edge of b that crosses
+};
+
+/// Overlap of two triangles, as the names of its corners. These stay the same while the triangles move a
+/// little.
+struct Overlap {
+  static constexpr int kMost = 6;  ///< most corners
+
+  int count = 0;  ///< number of corners; 0 where the triangles do not face each other or do not overlap
+  std::array<OverlapCorner, kMost> corners{};
+};
+
+/// Returns the overlap of two triangles, seen along the normal of their mean plane.
+Overlap overlap_of(const Triangle& a, const Triangle& b);
+
+/// Places of two triangles whose overlap is known. Real is a double, or Lanes for eight pairs at once, whose
+/// overlaps have the same corners and no fixed one.
+template <class Real>
+struct TrianglePair {
+  using Vector = Vec<3, Real>;
+  template <class T>
+  using OfPoint = std::array<T, Overlap::kMost>;
+
+  std::array<Vector, 3> a, b;  ///< corners, m
+  Vector area_a, area_b;       ///< area vectors, m²
+  Real size_a, size_b, size;   ///< areas, and the length of the sum of the area vectors, m²
+  Vector normal;               ///< unit vector along that sum, from a to b
+  Real cosine;                 ///< cosine of the angle between the triangles
+  Real overlap = 0.0;          ///< area of the overlap, m²
+  Vector middle{};             ///< centroid of the overlap, seen from its first corner, m
+
+  // The corners of the overlap.
+  OfPoint<std::array<Real, 3>> at_a, at_b;  ///< weights of the corners of a and b
+  OfPoint<Vector> place;                    ///< place on a, seen from the first corner, m
+  OfPoint<Real> gap;                        ///< distance from a to b along the normal, m
+  /// Direction by which a relative motion of a and b at these places changes the gap; its component along the
+  /// normal is 1. A corner is met along the normal of the triangle over it, crossing edges across both.
+  OfPoint<Vector> gap_slope;
+  OfPoint<Real> part{};  ///< part of the overlap, m²
+
+  /// Returns a point's place on a and that on b, m.
+  Vector on_a(int k) const { return mixed(a, at_a[k]); }
+  Vector on_b(int k) const { return mixed(b, at_b[k]); }
+
+  static Vector mixed(const std::array<Vector, 3>& corners, const std::array<Real, 3>& weights) {
+    return corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+  }
+};
+
+/// \param of  overlap of the triangles; of other ones the result has no meaning
+template <class Real>
+TrianglePair<Real> triangle_pair(const Overlap& of, const std::array<Vec<3, Real>, 3>& a,
+                                 const std::array<Vec<3, Real>, 3>& b) {
+  using Vector = Vec<3, Real>;
+  using Kind = OverlapCorner::Kind;
+  const Real zero = 0.0, one = 1.0, half = 0.5;
+  TrianglePair<Real> p;
+  p.a = a;
+  p.b = b;
+  p.area_a = cross(a[1] - a[0], a[2] - a[0]) * half;
+  p.area_b = cross(b[1] - b[0], b[2] - b[0]) * half;
+  p.size_a = norm(p.area_a);
+  p.size_b = norm(p.area_b);
+  p.cosine = dot(p.area_a, p.area_b) / (p.size_a * p.size_b);
+  const Vector sum = p.area_a + p.area_b;
+  p.size = norm(sum);
+  p.normal = sum * (one / p.size);
+  const Real over_a = one / dot(p.normal, p.area_a), over_b = one / dot(p.normal, p.area_b);
+  // weight of each corner of a triangle at a place: area of the triangle of the other two and the place
+  const auto weights = [&](const std::array<Vector, 3>& of_triangle, const Vector& at, const Real& over) {
+    std::array<Real, 3> w;
+    for (int i = 0; i < 3; ++i) {
+      const Vector &next = of_triangle[(i + 1) % 3], &last = of_triangle[(i + 2) % 3];
+      w[i] = dot(p.normal, cross(last - next, at - next)) * half * over;
+    }
+    return w;
+  };
+  for (int k = 0; k < of.count; ++k) {
+    const OverlapCorner& corner = of.corners[k];
+    auto &at_a = p.at_a[k], &at_b = p.at_b[k];
+    at_a.fill(zero);
+    at_b.fill(zero);
+    switch (corner.kind) {
+      case Kind::of_a:
+        at_a[corner.behind] = one;
+        at_b = weights(b, a[corner.behind], over_b);
+        p.gap_slope[k] = p.area_b * over_b;
+        break;
+      case Kind::of_b:
+        at_b[corner.behind - 3] = one;
+        at_a = weights(a, b[corner.behind - 3], over_a);
+        p.gap_slope[k] = p.area_a * over_a;
+        break;
+      case Kind::crossing: {
+        const int i = corner.edge_a(), j = corner.edge_b(), i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+        const Vector edge_a = a[i1] - a[i], edge_b = b[j1] - b[j], across = cross(edge_a, edge_b);
+        const Vector between = b[j] - a[i];
+        const Real over = one / dot(across, p.normal);
+        const Real along_a = dot(p.normal, cross(between, edge_b)) * over;
+        const Real along_b = dot(p.normal, cross(between, edge_a)) * over;
+        at_a[i] = one - along_a;
+        at_a[i1] = along_a;
+        at_b[j] = one - along_b;
+        at_b[j1] = along_b;
+        p.gap_slope[k] = across * over;
+        break;
+      }
+      case Kind::fixed:
+        for (int i = 0; i < 3; ++i) {
+          at_a[i] = corner.at_a[i];
+          at_b[i] = corner.at_b[i];
+        }
+        p.gap_slope[k] = p.normal;
+        break;
+    }
+    const Vector on_a = p.on_a(k);
+    p.gap[k] = dot(p.normal, p.on_b(k) - on_a);
+    p.place[k] = on_a;
+  }
+  if (of.count == 0) return p;
+  const Vector first = p.place[0];
+  for (int k = 0; k < of.count; ++k) p.place[k] -= first;
+  // the triangles of the overlap's first corner and the edges that do not touch it
+  Vector moment{};
+  for (int k = 1; k + 1 < of.count; ++k) {
+    const Real area = dot(p.normal, cross(p.place[k], p.place[k + 1])) * half;
+    p.overlap += area;
+    moment += (p.place[k] + p.place[k + 1]) * (area * Real(1.0 / 3.0));
+  }
+  p.middle = moment * (one / p.overlap);
+  // of the triangle of the centroid and an edge, each end of the edge has half: linear gaps keep their sum
+  // and their moments, and nothing jumps where corners come and go
+  for (int k = 0; k < of.count; ++k) {
+    const int next = k + 1 == of.count ? 0 : k + 1;
+    const Real area = dot(p.normal, cross(p.place[k] - p.middle, p.place[next] - p.middle)) * Real(0.25);
+    p.part[k] += area;
+    p.part[next] += area;
+  }
+  return p;
+}
+
+/// Tractions of the law at the points, and the energy of their normal part.
+template <class Real>
+struct PointTractions {
+  std::array<Real, Overlap::kMost> normal{};         ///< Pa, tension positive
+  std::array<Vec<3, Real>, Overlap::kMost> shear{};  ///< in the mean plane, Pa
+  std::array<Real, Overlap::kMost> stored{};         ///< J/m²
+};
+
+/// Areas of the points: their parts of the overlap, where triangles do not lie parallel times the square of
+/// the cosine, and times the share that counts.
+template <class Real>
+struct PointAreas {
+  Real ratio = 0.0;        ///< ratio of the pair
+  Real not_counted = 0.0;  ///< m²
+  Real counted = 0.0;      ///< overlap less that of the pair's beginning, m²
+  Real width = 0.0;        ///< length by which depths are divided, m
+  /// True where the overlap is wider than that.
+  decltype(Real(0.0) < Real(0.0)) is_wide = Real(0.0) < Real(0.0);
+  std::array<CountedShare<Real>, Overlap::kMost> points{};
+  std::array<Real, Overlap::kMost> area{};  ///< m²
+
+  PointAreas() = default;
+  /// \param of_pair      ratio of the pair's areas to these
+  /// \param left_out     overlap that does not count, because the triangles lay in each other when the pair
+  ///                     began, m²
+  /// \param most_depth   depth from which on a point does not count, m
+  /// \param gap          gap of each point from which its depth is taken, m
+  PointAreas(const Overlap& of, const TrianglePair<Real>& p, const Real& of_pair, const Real& left_out,
+             const Real& most_depth, const std::array<Real, Overlap::kMost>& gap)
+      : ratio(of_pair), not_counted(left_out), counted(p.overlap - left_out) {
+    using std::sqrt;
+    const Real root = sqrt(larger(counted, Real(0.0)));
+    width = smaller(root, most_depth * Real(1.0 / CountedShare<Real>::kMost));
+    is_wide = width < root;
+    const Real of_part = factor(p);
+    for (int k = 0; k < of.count; ++k) {
+      points[k] = CountedShare<Real>((Real(0.0) - gap[k]) / width);
+      area[k] = of_part * p.part[k] * points[k].share;
+    }
+  }
+
+  /// Returns the area of a point of which all counts over its part of the overlap.
+  Real factor(const TrianglePair<Real>& p) const {
+    return ratio * p.cosine * p.cosine * (counted / p.overlap);
+  }
+};
+
+/// Returns the forces of the tractions at the points on the corners of a, then of b, N: minus the gradient of
+/// their energy, where the points' areas move with the corners too. The shear acts as its area stands.
+template <class Real>
+std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<Real>& p,
+                                          const PointAreas<Real>& areas,
+                                          const PointTractions<Real>& tractions) {
+  using Vector = Vec<3, Real>;
+  using Kind = OverlapCorner::Kind;
+  using OfCorners = std::array<Real, 3>;
+  const Real zero = 0.0, one = 1.0, half = 0.5;
+  std::array<Vector, 6> f{};
+  // adds a force that acts on a, and against b, where the corners have these weights
+  const auto press = [&](const Vector& force, const OfCorners& at_a, const OfCorners& at_b) {
+    for (int i = 0; i < 3; ++i) {
+      f[i] += force * at_a[i];
+      f[3 + i] -= force * at_b[i];
+    }
+  };
+  const Real over_overlap = one / p.overlap, of_part = areas.factor(p);
+  // derivatives of the energy: by the normal, by the overlap's area, by the cosine, by the parts of the
+  // points
+  Vector by_normal{};
+  Real by_overlap = zero, by_cosine = zero;
+  std::array<Real, Overlap::kMost> by_part;
+  for (int k = 0; k < of.count; ++k) {
+    const CountedShare<Real>& counts = areas.points[k];
+    const Real of_whole = of_part * tractions.stored[k];
+    const Real by_depth = of_whole * p.part[k] * counts.slope;
+    const Real normal = tractions.normal[k] * areas.area[k] - by_depth / areas.width;
+    const Vector force = p.gap_slope[k] * normal + tractions.shear[k] * areas.area[k];
+    press(force, p.at_a[k], p.at_b[k]);
+    by_normal -= force * p.gap[k];
+    by_part[k] = of_whole * counts.share;
+    const Real of_area = by_part[k] * p.part[k];
+    by_overlap += of_area * areas.not_counted * over_overlap / areas.counted -
+                  select(areas.is_wide, zero, by_depth * counts.depth * half / areas.counted);
+    by_cosine += Real(2.0) * of_area / p.cosine;
+  }
+  // The parts: triangles of the centroid and an edge, whose sum is the overlap.
+  std::array<Vector, Overlap::kMost> by_place{};
+  Vector by_middle{};
+  for (int k = 0; k < of.count; ++k) {
+    const int next = k + 1 == of.count ? 0 : k + 1;
+    const Real by_area = half * (half * (by_part[k] + by_part[next]) + by_overlap);
+    const Vector here = p.place[k] - p.middle, there = p.place[next] - p.middle;
+    const Vector by_here = cross(there, p.normal) * by_area, by_there = cross(p.normal, here) * by_area;
+    by_place[k] += by_here;
+    by_place[next] += by_there;
+    by_middle -= by_here + by_there;
+    by_normal += cross(here, there) * by_area;
+  }
+  // The centroid: that of the triangles of the first corner and an edge.
+  for (int k = 1; k + 1 < of.count; ++k) {
+    const Vector &here = p.place[k], &there = p.place[k + 1];
+    const Vector normal_area = cross(here, there) * half;
+    const Vector from_middle = (here + there) * Real(1.0 / 3.0) - p.middle;
+    const Real by_area = half * dot(by_middle, from_middle) * over_overlap;
+    const Vector by_here = cross(there, p.normal) * by_area, by_there = cross(p.normal, here) * by_area;
+    const Vector third = by_middle * (dot(p.normal, normal_area) * Real(1.0 / 3.0) * over_overlap);
+    by_place[0] += third - by_here - by_there;
+    by_place[k] += third + by_here;
+    by_place[k + 1] += third + by_there;
+    by_normal += normal_area * (Real(2.0) * by_area);
+  }
+  // The places on a follow the corners of a and b.
+  constexpr OfCorners none{};
+  for (int k = 0; k < of.count; ++k) {
+    const OverlapCorner& corner = of.corners[k];
+    const Vector force = -by_place[k];
+    if (corner.kind == Kind::of_b) {  // below a corner of b: along the normal by the gap
+      for (int i = 0; i < 3; ++i) f[3 + i] += force * p.at_b[k][i];
+      const Vector along = p.gap_slope[k] * dot(force, p.normal);
+      press(along, p.at_a[k], p.at_b[k]);
+      by_normal -= (along - force) * p.gap[k];
+      continue;
+    }
+    press(force, p.at_a[k], none);
+    if (corner.kind == Kind::crossing) {  // it runs along the edge of a
+      const int i = corner.edge_a(), j = corner.edge_b();
+      const Vector edge_a = p.a[(i + 1) % 3] - p.a[i], edge_b = p.b[(j + 1) % 3] - p.b[j];
+      const Vector along =
+          cross(edge_b, p.normal) * (Real(0.0) - dot(force, edge_a) / dot(p.normal, cross(edge_a, edge_b)));
+      press(along, p.at_a[k], p.at_b[k]);
+      by_normal -= along * p.gap[k];
+    }
+  }
+  // The normal and the cosine follow the area vectors.
+  const Vector turning = (by_normal - p.normal * dot(p.normal, by_normal)) * (one / p.size);
+  const Real over_a = one / p.size_a, over_b = one / p.size_b;
+  const Vector unit_a = p.area_a * over_a, unit_b = p.area_b * over_b;
+  const Vector by_area_a = turning + (unit_b - unit_a * p.cosine) * (by_cosine * over_a);
+  const Vector by_area_b = turning + (unit_a - unit_b * p.cosine) * (by_cosine * over_b);
+  for (int i = 0; i < 3; ++i) {
+    f[i] -= cross(p.a[(i + 1) % 3] - p.a[(i + 2) % 3], by_area_a) * half;
+    f[3 + i] -= cross(p.b[(i + 1) % 3] - p.b[(i + 2) % 3], by_area_b) * half;
+  }
+  return f;
+}
+
+/// Returns how far the corners of two triangles that do not press must go at least until they may, m, but for
+/// a factor that bounds the change of gaps and places by the ways of the corners; 0 or less where they may at
+/// once.
+///
+/// \param most_depth  depth from which on nothing presses, m
+/// \param within  largest way that is asked for, times that factor, m
+double way_to_press(const Triangle& a, const Triangle& b, double most_depth, double within);
+
+// Steps are compiled for several instruction sets, and these once: no set's code gets into another's.
+extern template struct TrianglePair<double>;
+extern template struct PointAreas<double>;
+extern template TrianglePair<double> triangle_pair(const Overlap&, const Triangle&, const Triangle&);
+extern template std::array<Vec<3>, 6> corner_forces(const Overlap&, const TrianglePair<double>&,
+                                                    const PointAreas<double>&, const PointTractions<double>&);
+
+}  // namespace pyroclast
