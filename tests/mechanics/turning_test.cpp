@@ -225,6 +225,20 @@ TEST(FiniteKinematics, ARigidTurnLeavesNoStressAndNoTraction) {
   expect_nothing_after<3>(cubes(3, 0x1p-6), quarter, 1e-15);
 }
 
+TEST(FiniteKinematics, StressesAreToldInTheFrameOfTheModel) {
+  const ModelOf<3> model = cubes(2, 0.01);
+  const SymmetricTensor<3> strain{1e-3, -2e-3, 5e-4, 7e-4, -3e-4, 4e-4};
+  const auto turn = [](const Vec<3>& x) { return turned_about(x, 0.5); };
+  auto m = mechanics(model, elastic_contact(), finite<3>());
+  std::vector<Vec<3>> way;
+  for (const auto& x : model.position) way.push_back(turn(x + apply<3>(strain, x)) - x);
+  put(m, way);
+  const Rotation<3> rotation{{turn({{1, 0, 0}}), turn({{0, 1, 0}}), turn({{0, 0, 1}})}};
+  const auto expected = rotated<3>(rotation, zone_stress<3>(zone_properties<3>(29.4e9, 0.2), strain));
+  for (const auto& stress : m.read().stresses())
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(stress[i], expected[i], 29.4e9 * 1e-13);
+}
+
 /// A body of bent cells that are pulled apart, deformed and turned by a right angle.
 template <int Dim>
 std::vector<Vec<Dim>> torn(const ModelOf<Dim>& model, double by) {
