@@ -3,14 +3,15 @@
 
 #include "bodies.hpp"
 
-/// counted_step STEPS: takes steps of 300 raw cells in AVX2, and prints the number of zones. The script
-/// count_instructions counts their instructions.
+/// counted_step STEPS [finite]: takes steps of 300 raw cells in AVX2, with small or finite kinematics, and
+/// prints the number of zones. The script count_instructions counts their instructions.
 int main(int argc, char** argv) {
   using namespace pyroclast;
-  if (argc != 2) return 2;
+  if (argc != 2 && argc != 3) return 2;
   const ModelOf<3> model = bodies::laguerre_cells(300, 0.1, 1);
   auto parameters = bodies::quasi_static<3>();
   parameters.instructions = InstructionSet::avx2;
+  if (argc == 3) parameters.kinematics = Kinematics::finite;
   auto m = bodies::mechanics(model, mortar_contact(), parameters);
   for (int g = 0; g < model.gridpoint_count(); ++g)
     if (const double y = model.position[g][1]; y == 0.0 || y == 0.1)

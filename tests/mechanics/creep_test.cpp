@@ -194,7 +194,7 @@ TEST(CreepVerification, RelaxesARestrainedBarToSecondOrder) {
 
 TEST(CreepVerification, SplitsTheStressByItsSign) {
   const double turn = 0.7, c = std::cos(turn), s = std::sin(turn);
-  const auto turned_by = [&](const SymmetricTensor<2>& t) { return rotated<2>(Rotation<double>{c, s}, t); };
+  const auto turned_by = [&](const SymmetricTensor<2>& t) { return rotated<2>(Rotation<2>{c, s}, t); };
   const SymmetricTensor<2> stress = turned_by({-10e6, 4e6, 0.0});
   const auto at_held_stress = [](const CreepIncrement& increment, const SymmetricTensor<2>& held) {
     const auto split = creep_split<2>(increment, held);
@@ -282,32 +282,42 @@ TEST(Creep, LeavesStressesAsTheyAreWhenItIsCommitted) {
   auto finite = quasi_static<2>();
   finite.kinematics = Kinematics::finite;
   expect_that_a_commit_keeps_the_stress<2>(tessellated(60, 0.05, 0.05, 4), finite);
+  expect_that_a_commit_keeps_the_stress<3>(cubes(4, 0.01), finite);
 }
 
-TEST(Creep, TurnsWithItsZone) {
-  const ModelOf<2> model = block<2>();
-  auto parameters = settling<2>();
+/// \param turn  turns a vector
+/// \param own   the turn of a zone
+template <int Dim, class Turn>
+void expect_creep_to_turn(Turn turn, const Rotation<Dim>& own) {
+  const ModelOf<Dim> model = block<Dim>();
+  auto parameters = settling<Dim>();
   parameters.kinematics = Kinematics::finite;
   auto m = body(model, parameters);
-  load<2>(m, {-10e6, 0.0, 0.0});
-  m.advance(kToRest);
+  load<Dim>(m, {10e6});  // a free body turns away from a force that presses it
+  m.advance(10 * kToRest);
   creep(m, {.compliance = kCompliance, .poisson = nu_L});
-  load<2>(m, {});
+  load<Dim>(m, {});
   m.advance(kToRest);
   const auto strain = m.read().creep_strain(0);
   const auto u = m.read().displacements();
-  const double angle = 0.6;
   for (int g = 0; g < model.gridpoint_count(); ++g) {
-    const Vec<2> way = turned(model.position[g] + u[g], angle) - model.position[g] - u[g];
-    for (int i : {0, 1}) m.constraints().prescribe_velocity(g, i, way[i] / m.time_step());
+    const Vec<Dim> way = turn(model.position[g] + u[g]) - model.position[g] - u[g];
+    for (int i = 0; i < Dim; ++i) m.constraints().prescribe_velocity(g, i, way[i] / m.time_step());
   }
   m.advance(1);
   for (int g = 0; g < model.gridpoint_count(); ++g)
-    for (int i : {0, 1}) m.constraints().prescribe_velocity(g, i, 0.0);
+    for (int i = 0; i < Dim; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
   m.advance(1);
   for (double component : m.read().stress(0)) EXPECT_NEAR(component, 0.0, 1e-9 * young * kCompliance * 10e6);
-  const auto expected = rotated<2>(Rotation<double>{std::cos(angle), std::sin(angle)}, strain);
-  EXPECT_LT(largest_difference(m.read().creep_strain(0), expected), 1e-12);
+  EXPECT_LT(largest_difference(m.read().creep_strain(0), rotated<Dim>(own, strain)), 1e-12);
+}
+
+TEST(Creep, TurnsWithItsZone) {
+  const double angle = 0.6, c = std::cos(angle), s = std::sin(angle);
+  expect_creep_to_turn<2>([&](const Vec<2>& x) { return turned(x, angle); }, {c, s});
+  // about the axis x
+  const auto turn = [&](const Vec<3>& x) { return Vec<3>{{x[0], c * x[1] - s * x[2], s * x[1] + c * x[2]}}; };
+  expect_creep_to_turn<3>(turn, {{turn({{1, 0, 0}}), turn({{0, 1, 0}}), turn({{0, 0, 1}})}});
 }
 
 // Promise: bit by bit the same in any instruction set and on any number of threads, also where it is in the

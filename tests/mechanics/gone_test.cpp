@@ -91,6 +91,7 @@ TEST(GoneBlocks, TakeTheirEnergyAlong) {
   expect_balance(plane, that_loses_blocks<2>(Kinematics::small), 1e-9);
   expect_balance(plane, that_loses_blocks<2>(Kinematics::finite), 1e-4);
   expect_balance(laguerre_cells(30, 0.05, 2), that_loses_blocks<3>(Kinematics::small), 1e-9);
+  expect_balance(laguerre_cells(30, 0.05, 2), that_loses_blocks<3>(Kinematics::finite), 1e-4);
 }
 
 TEST(GoneBlocks, TakeTheirEnergyAlongUnderScaledMass) {

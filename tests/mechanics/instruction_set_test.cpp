@@ -257,10 +257,17 @@ TEST(LargeBlocks, AStateWithTiesThatJoinPiecesGoesOn) {
 // Promise: the same of polyhedra, on any number of threads, bundled and cut in any way: each block a ragged
 // bundle, or in one piece, or in several; one chunk or many.
 TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
-  const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
-  for (const bool own_temperatures : {false, true}) {
-    const auto run = [&](InstructionSet set, int threads) {
-      const auto m = cracked(model, cracking<3>(), set, own_temperatures, threads);
+  const ModelOf<3> model = laguerre_cells(45, 0.05, 3);
+  struct InSpace {
+    Kinematics kinematics;
+    bool own_temperatures;
+  };
+  for (const auto& [kinematics, own_temperatures] :
+       {InSpace{Kinematics::small, false}, {Kinematics::finite, true}}) {
+    auto parameters = cracking<3>();
+    parameters.kinematics = kinematics;
+    const auto run = [&, own = own_temperatures](InstructionSet set, int threads) {
+      const auto m = cracked(model, parameters, set, own, threads);
       EXPECT_GT(damaged_share(m), 0.3);
       return outcome(m);
     };
@@ -271,9 +278,10 @@ TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
 }
 
 TEST(AnyLayout, GivesTheSameBitsInThreeDimensions) {
-  const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
+  const ModelOf<3> model = laguerre_cells(40, 0.05, 3);
   const auto run = [&](const ModelOf<3>& body, const LayoutParameters& layout, int threads) {
     auto parameters = cracking<3>();
+    parameters.kinematics = Kinematics::finite;  // whose forces are those of the small ones and more
     parameters.layout = layout;
     return cracked(body, parameters, usable_instruction_sets().back(), true, threads);
   };
@@ -299,7 +307,9 @@ TEST(AnyLayout, GivesTheSameBitsInThreeDimensions) {
 // Promise: a cracked solid goes on from its state as if nothing had come between, in batches of any length.
 TEST(Solids, GoOnFromTheirStateBitByBit) {
   const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
-  auto whole = cracked(model, cracking<3>(), usable_instruction_sets().back(), false);
+  auto parameters = cracking<3>();
+  parameters.kinematics = Kinematics::finite;
+  auto whole = cracked(model, parameters, usable_instruction_sets().back(), false);
   StateCopy copy;
   copy.take([&](StateVisitor& visitor) { whole.visit_state(visitor); });
   Mechanics<3> resumed(model, {2400.0}, whole.body().properties, whole.body().parameters);

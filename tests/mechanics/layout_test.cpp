@@ -72,9 +72,10 @@ void expect_counts(const ModelOf<Dim>& model, Kinematics kinematics) {
 }
 
 TEST(Arrays, HaveAnEntryOfEachOfWhatTheyCountPer) {
-  for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite})
+  for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
     expect_counts(bodies::tessellated(200, 0.1, 0.1, 1), kinematics);
-  expect_counts(bodies::cubes(5, 0.1), Kinematics::small);
+    expect_counts(bodies::cubes(5, 0.1), kinematics);
+  }
 }
 
 // Every gridpoint, zone and contact has one place, and no two share one.

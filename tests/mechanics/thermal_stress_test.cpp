@@ -229,6 +229,7 @@ TEST(CoolingVerification, AHeldBodyTakesTheStressOfItsOwnSlope) {
   expect_stress_of_its_own_slope<2>(column(1, 0.01), Kinematics::small);
   expect_stress_of_its_own_slope<2>(column(1, 0.01), Kinematics::finite);
   expect_stress_of_its_own_slope<3>(cubes(1, 0.01), Kinematics::small);
+  expect_stress_of_its_own_slope<3>(cubes(1, 0.01), Kinematics::finite);
 }
 
 // ---- Thick cylinder

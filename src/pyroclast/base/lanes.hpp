@@ -601,4 +601,25 @@ struct Lanes {
   }
 };
 
+/// Numbers of one part of lanes, with their arithmetic alone. A long computation that goes part by part keeps
+/// its numbers in registers.
+template <class Set>
+struct PartOfLanes {
+  typename Set::Value value;
+
+  PartOfLanes() = default;
+  PartOfLanes(double v) : value(Set::all(v)) {}  // NOLINT(google-explicit-constructor): a number is a number
+  static PartOfLanes of(const typename Set::Value& value) {
+    PartOfLanes part;
+    part.value = value;
+    return part;
+  }
+  friend PartOfLanes operator+(const PartOfLanes& a, const PartOfLanes& b) { return of(a.value + b.value); }
+  friend PartOfLanes operator-(const PartOfLanes& a, const PartOfLanes& b) { return of(a.value - b.value); }
+  friend PartOfLanes operator*(const PartOfLanes& a, const PartOfLanes& b) { return of(a.value * b.value); }
+  friend PartOfLanes operator/(const PartOfLanes& a, const PartOfLanes& b) { return of(a.value / b.value); }
+  PartOfLanes& operator+=(const PartOfLanes& o) { return *this = *this + o; }
+  PartOfLanes& operator*=(const PartOfLanes& o) { return *this = *this * o; }
+};
+
 }  // namespace pyroclast

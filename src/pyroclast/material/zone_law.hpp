@@ -12,8 +12,7 @@ namespace pyroclast {
 /// Effect of displacements on the geometry.
 enum class Kinematics : std::uint8_t {
   small,  ///< zones and contact frames keep their first orientation; exact for small rotations and jumps
-  /// Zones strain in a frame that turns with them, and contact frames turn with their faces (2D only).
-  finite
+  finite  ///< zones strain in a frame that turns with them, and contact frames turn with their faces
 };
 
 /// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not
@@ -45,31 +44,85 @@ constexpr ZoneProperties zone_properties(double young, double poisson, double th
   return {young * poisson / denominator, 0.5 * young / (1.0 + poisson), thermal_strain};
 }
 
-/// Turn of a zone in its plane; the identity with small kinematics.
+/// Matrix in space, column by column.
 template <class Real = double>
-struct Rotation {
+using Matrix3 = std::array<Vec<3, Real>, 3>;
+
+/// Turn of a zone; the identity with small kinematics.
+template <int Dim, class Real = double>
+struct Rotation;
+
+template <class Real>
+struct Rotation<2, Real> {
   Real cosine{1.0}, sine{0.0};
+};
+
+template <class Real>
+struct Rotation<3, Real> {
+  /// Directions of the axes of the zone's own frame: the columns of R.
+  Matrix3<Real> axis{{{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.0, 0.0, 1.0}}}};
 };
 
 /// Turns a vector of the zone's own frame into the frame of the model.
 template <int Dim, class Real>
-inline Vec<Dim, Real> rotated(const Rotation<Real>& r, const Vec<Dim, Real>& v) {
+inline Vec<Dim, Real> rotated(const Rotation<Dim, Real>& r, const Vec<Dim, Real>& v) {
   if constexpr (Dim == 2)
     return {{r.cosine * v[0] - r.sine * v[1], r.sine * v[0] + r.cosine * v[1]}};
   else
-    return v;
+    return r.axis[0] * v[0] + r.axis[1] * v[1] + r.axis[2] * v[2];
 }
 
 /// Turns a stress of the zone's own frame into the frame of the model.
 template <int Dim, class Real>
-inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const SymmetricTensor<Dim, Real>& s) {
+inline SymmetricTensor<Dim, Real> rotated(const Rotation<Dim, Real>& r, const SymmetricTensor<Dim, Real>& s) {
   if constexpr (Dim == 2) {
     const Real cc = r.cosine * r.cosine, ss = r.sine * r.sine, cs = r.cosine * r.sine;
     return {cc * s[0] + ss * s[1] - 2.0 * cs * s[2], ss * s[0] + cc * s[1] + 2.0 * cs * s[2],
             cs * (s[0] - s[1]) + (cc - ss) * s[2]};
   } else {
-    return s;
+    // R s, whose rows go along R once more
+    const Matrix3<Real> columns{rotated<3>(r, Vec<3, Real>{{s[0], s[3], s[5]}}),
+                                rotated<3>(r, Vec<3, Real>{{s[3], s[1], s[4]}}),
+                                rotated<3>(r, Vec<3, Real>{{s[5], s[4], s[2]}})};
+    const auto component = [&](int i, int j) {
+      return columns[0][i] * r.axis[0][j] + columns[1][i] * r.axis[1][j] + columns[2][i] * r.axis[2][j];
+    };
+    return {component(0, 0), component(1, 1), component(2, 2),
+            component(0, 1), component(1, 2), component(2, 0)};
   }
+}
+
+/// Steps to the rotation of a zone in space: to round-off up to strains of 0.1, to 1e-8 up to 0.3.
+inline constexpr int kStepsToRotation = 4;
+
+/// Returns the columns of R of F = R U from those of F, by Newton's steps R <- (R + R^-T) / 2 (Higham 1986).
+/// The columns of R^-T are cross products of the columns of R over its determinant, so no step branches.
+template <class Real>
+inline Matrix3<Real> rotation_of(const Matrix3<Real>& gradient) {
+  Matrix3<Real> r = gradient;  // 2^step R: no step divides by 2
+  double power = 1.0;          // 4^step
+  for (int step = 0; step < kStepsToRotation; ++step) {
+    const Matrix3<Real> cofactors{cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])};
+    const Real over = Real(power) / dot(r[0], cofactors[0]);
+    for (int j = 0; j < 3; ++j) r[j] += cofactors[j] * over;
+    power *= 4.0;
+  }
+  for (auto& column : r) column *= Real(1.0 / (1 << kStepsToRotation));
+  return r;
+}
+
+template <class Set>
+inline Matrix3<Lanes<Set>> rotation_of(const Matrix3<Lanes<Set>>& gradient) {
+  Matrix3<Lanes<Set>> r;
+  unroll<Lanes<Set>::kParts>([&](auto part) {
+    Matrix3<PartOfLanes<Set>> of_part;
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) of_part[j][i] = PartOfLanes<Set>::of(gradient[j][i].part[part]);
+    of_part = rotation_of(of_part);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) r[j][i].part[part] = of_part[j][i].value;
+  });
+  return r;
 }
 
 /// Returns the mechanical strain (total minus thermal) of a zone, in the zone's own frame.
@@ -85,7 +138,7 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
                                                     const Real& scale,
                                                     const std::array<Vec<Dim, Real>, Dim>& u,
                                                     const Real& thermal_strain, Kinematics kinematics,
-                                                    Rotation<Real>& rotation) {
+                                                    Rotation<Dim, Real>& rotation) {
   using std::sqrt;
   std::array<Vec<Dim, Real>, Dim> h;  // displacement gradient, h[j][i] = du_i/dx_j
   for (int n = 0; n < Dim; ++n)
@@ -103,6 +156,17 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
     }
     return {h[0][0] - thermal_strain, h[1][1] - thermal_strain, 0.5 * (h[0][1] + h[1][0])};
   } else {
+    if (kinematics == Kinematics::finite) {
+      for (int j = 0; j < 3; ++j) {
+        h[j] *= scale;
+        h[j][j] += 1.0;
+      }
+      rotation.axis = rotation_of(h);
+      const auto& r = rotation.axis;
+      const auto direct = [&](int i) { return dot(r[i], h[i]) - 1.0 - thermal_strain; };
+      const auto shear = [&](int i, int j) { return dot(r[i], h[j]); };  // R^T F is symmetric
+      return {direct(0), direct(1), direct(2), shear(0, 1), shear(1, 2), shear(2, 0)};
+    }
     const Real half = 0.5 * scale;
     return {h[0][0] * scale - thermal_strain, h[1][1] * scale - thermal_strain,
             h[2][2] * scale - thermal_strain, (h[0][1] + h[1][0]) * half,

@@ -41,8 +41,6 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
       layout(of, by.layout),
       step(step_functions<Dim>(by.instructions)),
       properties(std::move(with)) {
-  if (Dim != 2 && parameters.kinematics == Kinematics::finite)
-    throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
   if (Dim != 2 && parameters.found.is_on) throw Error("contacts = found: made for 2D only; use first");
   if (Dim == 2 && parameters.gravity[2] != 0.0) throw Error("gravity acts across the plane of this body");
   if (!properties.creep.empty()) creep_strain.resize(model.zones.size());
@@ -131,7 +129,7 @@ void Body<Dim>::place_model() {
   std::fill(s.crack_step.begin(), s.crack_step.end(), kNotCracked);
   s.losing = made<bool>(point_packs);
   s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
-  if (parameters.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);
+  if (parameters.kinematics == Kinematics::finite) place_turning();
   if (!layout.piece_zones.empty()) {
     const auto idle = static_cast<std::size_t>(1);
     s.corner_force = made<Vec<Dim>>(kLanes * ((Dim + 1) * layout.piece_zones.size() + idle));
@@ -199,6 +197,59 @@ void Body<Dim>::place_positions() {
         for (int i = 0; i < bundle.packs; ++i)
           set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
                           vector_at<Dim>(position, slot_of(bundle.first_pack + i, 0)));
+      }
+  }
+}
+
+/// Places the array of the forces of turning frames, and in 3D the weights with which each face turns: those
+/// of the gradient of least squares of its places in its first plane.
+template <int Dim>
+void Body<Dim>::place_turning() {
+  arrays.turning_force = made<Vec<Dim>>(static_cast<std::size_t>(layout.point_packs) * kLanes);
+  if constexpr (Dim == 3) {
+    auto& weights = arrays.turning_weight = made<Line>(2 * layout.points.size());
+    auto& gradients = arrays.face_gradient = made<FacePack<3>>(layout.faces.size());
+    for (int face = 0; face < model.face_count(); ++face) {
+      const int first = model.face_contacts[face], count = model.face_contacts[face + 1] - first;
+      const Contact<3>* const contacts = &model.contacts[first];
+      std::vector<Vec<3>> places;
+      Vec<3> middle{};
+      for (int c = 0; c < count; ++c) {
+        places.push_back((model.position[contacts[c].a] + model.position[contacts[c].b]) * 0.5);
+        middle += places.back() * (1.0 / count);
+      }
+      double xx = 0.0, xy = 0.0, yy = 0.0;  // second moments in the plane of the tangents
+      const auto in_plane = [&](const Vec<3>& seen) {
+        return Vec<2>{{dot(seen, contacts->tangents[0]), dot(seen, contacts->tangents[1])}};
+      };
+      for (Vec<3>& x : places) {
+        x -= middle;
+        const Vec<2> p = in_plane(x);
+        xx += p[0] * p[0];
+        xy += p[0] * p[1];
+        yy += p[1] * p[1];
+      }
+      const int lane = layout.contact_slot[first] % kLanes;
+      auto& gradient = gradients[layout.face_pack_of_point[layout.contact_slot[first] / kLanes]];
+      for (int c = 0; c < count; ++c) {
+        const Vec<2> p = in_plane(places[c]);
+        const double over = 1.0 / (xx * yy - xy * xy);
+        const double of_mean[2] = {(yy * p[0] - xy * p[1]) * over, (xx * p[1] - xy * p[0]) * over};
+        for (int t : {0, 1}) {
+          weights[2 * (layout.contact_slot[first + c] / kLanes) + t].number[lane] = 0.5 * of_mean[t];
+          for (int i = 0; i < 3; ++i) gradient.tangent[t][i][lane] += places[c][i] * of_mean[t];
+        }
+      }
+    }
+    // idle lanes turn with the first face, on whose gridpoints they stand
+    for (int pack = 0; pack < layout.face_packs(); ++pack)
+      for (int lane = 1; lane < kLanes; ++lane) {
+        const int points = layout.first_point_of(pack);
+        if (layout.points[points].area[lane] > 0.0) continue;
+        for (int line = 2 * points; line < 2 * layout.first_point_of(pack + 1); ++line)
+          weights[line].number[lane] = weights[line].number[0];
+        for (auto& column : gradients[pack].tangent)
+          for (auto& component : column) component[lane] = component[0];
       }
   }
 }

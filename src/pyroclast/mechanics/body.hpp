@@ -34,7 +34,7 @@ struct MechanicsParameters {
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;  ///< time step, s: the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
-  FoundParameters found;   ///< contacts that are found; finite kinematics in the plane only
+  FoundParameters found;   ///< contacts that are found; in the plane only, with finite kinematics
   InstructionSet instructions = best_instruction_set();
   bool loses_blocks = false;  ///< true where blocks may leave the body, see Mechanics::remove
   // The parameters from here on change speed, not results.
@@ -212,6 +212,7 @@ struct Body {
   double block_size() const;
   void place_model();
   void place_positions();
+  void place_turning();
   void place_internals();
   ChunkList chunks_of(const ArrayInfo& info, const void* array) const;
   void take_contacts_from_owners();

@@ -176,7 +176,7 @@ void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
   body_.creep_under_way.resize(creep.size());
   for (int z = 0; z < body_.model.zone_count(); ++z) {
     CreepUnderWay<Dim>& zone = body_.creep_under_way[z];
-    Rotation<double> rotation;
+    Rotation<Dim> rotation;
     zone.poisson = creep[z].poisson;
     zone.stress = reader.stress_in_own_frame(z, rotation);
     zone.split = creep_split<Dim>(creep[z], zone.stress);
@@ -199,7 +199,7 @@ typename Properties<Dim>::EndOfCreep Properties<Dim>::end_of_creep() const {
   end.strain.resize(body_.creep_under_way.size());
   end.work.keep(body_.layout.chunks.zones, [&](int z) {
     const CreepUnderWay<Dim>& zone = body_.creep_under_way[z];
-    Rotation<double> rotation;
+    Rotation<Dim> rotation;
     const auto stress = reader.stress_in_own_frame(z, rotation);
     end.strain[z] = crept(zone, stress);
     SymmetricTensor<Dim> all, twice_mean;

@@ -58,7 +58,7 @@ Vec<Dim> Reader<Dim>::displacement_of_force(int gridpoint) const {
 }
 
 template <int Dim>
-SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<double>& rotation) const {
+SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<Dim>& rotation) const {
   const auto& gridpoints = body_.model.zones[zone];
   std::array<Vec<Dim>, Dim> u;
   for (int n = 0; n < Dim; ++n)
@@ -72,10 +72,16 @@ SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<double>
 }
 
 template <int Dim>
+SymmetricTensor<Dim> Reader<Dim>::in_frame_of_model(const Rotation<Dim>& rotation,
+                                                    const SymmetricTensor<Dim>& tensor) const {
+  return body_.parameters.kinematics == Kinematics::finite ? rotated<Dim>(rotation, tensor) : tensor;
+}
+
+template <int Dim>
 SymmetricTensor<Dim> Reader<Dim>::stress(int zone) const {
-  Rotation<double> rotation;
+  Rotation<Dim> rotation;
   const auto stress = stress_in_own_frame(zone, rotation);
-  return rotated<Dim>(rotation, stress);
+  return in_frame_of_model(rotation, stress);
 }
 
 template <int Dim>
@@ -105,25 +111,41 @@ ZoneProperties Reader<Dim>::properties_of_zone(int zone) const {
 template <int Dim>
 SymmetricTensor<Dim> Reader<Dim>::creep_strain(int zone) const {
   if (!body_.creeps()) return {};
-  Rotation<double> rotation;
+  Rotation<Dim> rotation;
   stress_in_own_frame(zone, rotation);
-  return rotated<Dim>(rotation, body_.creep_strain[zone]);
+  return in_frame_of_model(rotation, body_.creep_strain[zone]);
 }
 
 template <int Dim>
 ContactFrame<Dim> Reader<Dim>::frame_of_forces(int contact) const {
-  const auto& c = body_.model.contacts[body_.model.face_contacts[body_.model.contacts[contact].face]];
-  if constexpr (Dim == 2) {
-    if (body_.parameters.kinematics == Kinematics::finite) {
-      // mean edge of the two sides
-      const auto& d = body_.model.contacts[body_.model.face_contacts[c.face] + 1];
-      const auto at = [&](int g) { return body_.model.position[g] + displacement_of_force(g); };
-      const Vec<2> edge = ((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5;
-      const Vec<2> t = edge * (1.0 / norm(edge));
-      return {{{t[1], -t[0]}}, {t}};
-    }
-  }
+  const Contact<Dim>& c = body_.model.contacts[contact];
+  if (body_.parameters.kinematics == Kinematics::finite) return TurningFrame<Dim>(gradient_of_forces(c.face));
   return {c.normal, c.tangents};
+}
+
+template <int Dim>
+typename TurningFrame<Dim>::Columns Reader<Dim>::gradient_of_forces(int face) const {
+  const Model& model = body_.model;
+  const int first = model.face_contacts[face], last = model.face_contacts[face + 1];
+  if constexpr (Dim == 2) {
+    const auto &c = body_.model.contacts[first], &d = body_.model.contacts[first + 1];
+    const auto at = [&](int g) { return body_.model.position[g] + displacement_of_force(g); };
+    return {((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5};
+  } else {
+    const auto point = [&](int contact) { return body_.layout.contact_slot[contact] / kLanes; };
+    const int lane = body_.layout.contact_slot[first] % kLanes;
+    const auto& before = body_.arrays.face_gradient[body_.layout.face_pack_of_point[point(first)]];
+    typename TurningFrame<Dim>::Columns columns;
+    for (int t : {0, 1}) {
+      for (int i = 0; i < Dim; ++i) columns[t][i] = before.tangent[t][i][lane];
+      for (int c = first; c < last; ++c) {
+        const Contact<Dim>& contact = body_.model.contacts[c];
+        columns[t] += (displacement_of_force(contact.a) + displacement_of_force(contact.b)) *
+                      body_.arrays.turning_weight[2 * point(c) + t].number[lane];
+      }
+    }
+    return columns;
+  }
 }
 
 template <int Dim>

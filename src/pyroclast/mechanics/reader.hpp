@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/mechanics/turning_frame.hpp"
 
 namespace pyroclast {
 
@@ -27,13 +28,6 @@ struct ContactState {
   double lost(std::string_view name) const;  ///< Returns a loss; 0 where the law has none of this name.
 };
 
-/// Directions of a contact.
-template <int Dim>
-struct ContactFrame {
-  Vec<Dim> normal;                         ///< unit normal, from a to b
-  std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit tangents
-};
-
 /// Reader of a body: shows the state of each gridpoint, zone and contact in the order of the model.
 template <int Dim>
 class Reader {
@@ -54,7 +48,7 @@ class Reader {
   SymmetricTensor<Dim> stress(int zone) const;  ///< Pa, at the displacements of the last forces
   /// Returns the stress in the zone's own frame, Pa.
   /// \param rotation  rotation of the frame, out
-  SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<double>& rotation) const;
+  SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<Dim>& rotation) const;
   /// Returns the elastic strain of a zone, in the frame of the model; in 2D with the strain across the plane
   /// that leaves the zone free of stress there.
   SymmetricTensor<3> elastic_strain(int zone) const;
@@ -81,6 +75,11 @@ class Reader {
 
  private:
   Vec<Dim> jump_of_forces(int contact) const;
+  /// Turns a tensor of a zone's own frame into the frame of the model.
+  SymmetricTensor<Dim> in_frame_of_model(const Rotation<Dim>& rotation,
+                                         const SymmetricTensor<Dim>& tensor) const;
+  /// Returns the gradient of a face that turns, see TurningFrame.
+  typename TurningFrame<Dim>::Columns gradient_of_forces(int face) const;
 
   const Body<Dim>& body_;
 };

@@ -124,7 +124,12 @@ struct StateArrays {
   Array<double> crack_step;
   Array<bool> losing;             ///< true for a pack of points that lost something in the last step
   Array<Vec<Dim>> contact_force;  ///< force on side a by slot, from which gridpoints gather, N
-  Array<Vec<Dim>> turning_force;  ///< force on both sides by slot; finite kinematics only, N
+  // Finite kinematics only, see TurningFrame; gradient and weights in 3D alone
+  Array<Vec<Dim>> turning_force;       ///< force of the turn on both sides by slot, N
+  Array<FacePack<Dim>> face_gradient;  ///< gradients of the faces at the start
+  /// Weights of the gridpoints of both sides in the gradient of their face, 1/m: two lines for each pack of
+  /// points.
+  Array<Line> turning_weight;
   /// Forces of zones of pieces on their corners, from which gridpoints gather, N: for each pack of zones
   /// eight of each corner; behind them eight idle ones.
   Array<Vec<Dim>> corner_force;
@@ -180,6 +185,8 @@ struct StateArrays {
       s.contact_force...);  // read where it is summed
     f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step},
       s.turning_force...);
+    f(ArrayInfo{"face_gradient", Per::face_pack, Touched::all}, s.face_gradient...);
+    f(ArrayInfo{"turning_weight", Per::entry, Touched::all}, s.turning_weight...);
     f(ArrayInfo{"corner_force", Per::entry, Touched::all, Touched::all, Lasts::a_step}, s.corner_force...);
     f(ArrayInfo{"part_force", Per::entry, Touched::none, Touched::none, Lasts::a_step}, s.part_force...);
     f(ArrayInfo{"contact_constants", Per::entry}, s.contact_constants...);  // few, and always near

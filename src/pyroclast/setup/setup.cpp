@@ -80,8 +80,6 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
   m.kinematics = m.found.is_on
                      ? s.choice<Kinematics>("kinematics", kinematics, kKinematics)
                      : s.choice<Kinematics>("kinematics", kinematics, Kinematics::small, kKinematics);
-  if (m.kinematics == Kinematics::finite && space.is_solid())
-    s.error("kinematics", "blocks of a solid cannot turn yet: kinematics = \"small\"");
   if (m.found.is_on && space.is_solid())
     s.error("contacts", "contacts of a solid are not found yet: contacts = \"first\"");
   else if (m.found.is_on && m.kinematics == Kinematics::small && s.ok())

@@ -2,6 +2,7 @@
 
 #include "pyroclast/laws/law.hpp"
 #include "pyroclast/mechanics/step/packs.hpp"
+#include "pyroclast/mechanics/turning_frame.hpp"
 
 /// Contact points: from jumps to tractions to forces, Eqs. (10)-(15), and the sums of the forces at the
 /// gridpoints.
@@ -34,46 +35,70 @@ struct ContactForces {
   }
 };
 
-/// Directions of the faces of a pack.
+/// Directions of the faces of a pack, and with finite kinematics the forces of their turn.
 template <int Dim, class Set>
 struct FaceFrames {
   using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
 
-  struct Frame {
-    Vector normal;
-    std::array<Vector, Dim - 1> tangents;
-    Real edge;  ///< length of the edge that turns the frame, m; finite kinematics only
-
-    /// Returns the force on both sides of the first point of the faces that keeps moments in balance where
-    /// the frame turns with the edge; the second point gets the opposite one. The components of a jump turn
-    /// with the frame, and these forces do the work of the tractions on that part: each is minus the
-    /// tractions times the derivatives of the jump's components by the position of a gridpoint. \param
-    /// turning  sum over the points of area (shear traction opening - normal traction tangential jump)
-    Vector turning_force(const Real& turning) const { return normal * (0.5 * turning / edge); }
-  };
-
   template <Kinematics kKinematics>
-  static Frame of(const State<Dim>& s, int pack) {
-    Frame frame;
-    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[pack].tangent[t]);
+  static auto of(const State<Dim>& s, int pack) {
     if constexpr (kKinematics == Kinematics::finite) {
-      // mean edge of the two sides
-      const PointPack* const point = &s.layout.points[s.layout.first_point_of(pack)];
+      return TurningFrame<Dim, Real>(gradient(s, pack));
+    } else {
+      ContactFrame<Dim, Real> frame;
+      for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[pack].tangent[t]);
+      if constexpr (Dim == 2)
+        frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
+      else
+        frame.normal = cross(frame.tangents[0], frame.tangents[1]);
+      return frame;
+    }
+  }
+
+  /// Calls `put(force, to)` with the force of the turn on each side of each point.
+  template <class Put>
+  static void turn(State<Dim>& s, int pack, const TurningFrame<Dim, Real>& frame,
+                   const WorkOfTurn<Dim, Real>& work, Put put) {
+    const auto by_gradient = frame.minus_derivative(work);
+    const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
+    for (int at = first; at < last; ++at) {
+      const auto weight = weights(s, at, first);
+      Vector force = by_gradient[0] * weight[0];
+      for (int t = 1; t + 1 < Dim; ++t) force += by_gradient[t] * weight[t];
+      put(force, &s.turning_force[slot_of(at, 0)]);
+    }
+  }
+
+ private:
+  /// Returns the weights of the gridpoints of a point in the gradient of their face.
+  static std::array<Real, Dim - 1> weights(const State<Dim>& s, int at, [[maybe_unused]] int first) {
+    if constexpr (Dim == 2)
+      return {at == first ? -0.5 : 0.5};
+    else
+      return {Real::load(s.turning_weight[2 * at].number), Real::load(s.turning_weight[2 * at + 1].number)};
+  }
+
+  static std::array<Vector, Dim - 1> gradient(const State<Dim>& s, int pack) {
+    const int first = s.layout.first_point_of(pack);
+    if constexpr (Dim == 2) {
+      const PointPack* const point = &s.layout.points[first];
       const auto at = [&](const std::array<int, kLanes>& offset) {
         return R::gather(s.gathered_position, offset) + R::gather(s.displacement, offset);
       };
-      const Vector edge = ((at(point[1].a) - at(point[0].a)) + (at(point[1].b) - at(point[0].b))) * Real(0.5);
-      frame.edge = norm(edge);
-      const Vector t = edge * (1.0 / frame.edge);
-      frame.tangents[0] = t;
+      return {((at(point[1].a) - at(point[0].a)) + (at(point[1].b) - at(point[0].b))) * Real(0.5)};
+    } else {
+      std::array<Vector, 2> columns;
+      for (int t : {0, 1}) columns[t] = R::load(s.face_gradient[pack].tangent[t]);
+      for (int at = first; at < s.layout.first_point_of(pack + 1); ++at) {
+        const PointPack& point = s.layout.points[at];
+        const Vector both = R::gather(s.displacement, point.a) + R::gather(s.displacement, point.b);
+        const auto weight = weights(s, at, first);
+        for (int t : {0, 1}) columns[t] += both * weight[t];
+      }
+      return columns;
     }
-    if constexpr (Dim == 2)
-      frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
-    else
-      frame.normal = cross(frame.tangents[0], frame.tangents[1]);
-    return frame;
   }
 };
 
@@ -97,10 +122,11 @@ struct PorePressure {
   [[gnu::flatten, gnu::noinline]] static void add_to(State<Dim>& __restrict s, int first_pack,
                                                      int last_pack) {
     const auto put = [](const auto& more, Vec<Dim>* to) { R::store(R::load(to) + more, to); };
+    using Frames = FaceFrames<Dim, Set>;
     for (int pack = first_pack; pack < last_pack; ++pack) {
-      const auto frame = FaceFrames<Dim, Set>::template of<kKinematics>(s, pack);
+      const auto frame = Frames::template of<kKinematics>(s, pack);
       const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
-      Real turning = 0.0;
+      WorkOfTurn<Dim, Real> work;
       for (int at = first; at < last; ++at) {
         const PointPack& point = s.layout.points[at];
         Real force = Real::load(s.pore_pressure[at].number) * Real::load(point.area);
@@ -113,13 +139,10 @@ struct PorePressure {
           force = force * (reserve / (reserve + larger(further, Real(0.0))));
         }
         put(frame.normal * -force, &s.contact_force[slot_of(at, 0)]);
-        if constexpr (kKinematics == Kinematics::finite) turning += force * dot(jump, frame.tangents[0]);
+        if constexpr (kKinematics == Kinematics::finite)
+          for (int t = 0; t + 1 < Dim; ++t) work.tilt[t] += force * dot(jump, frame.tangents[t]);
       }
-      if constexpr (kKinematics == Kinematics::finite) {
-        const auto turns = frame.turning_force(turning);
-        put(turns, &s.turning_force[slot_of(first, 0)]);
-        put(-turns, &s.turning_force[slot_of(first + 1, 0)]);
-      }
+      if constexpr (kKinematics == Kinematics::finite) Frames::turn(s, pack, frame, work, put);
     }
   }
 };
@@ -260,7 +283,7 @@ struct Contacts {
   static void respond_to_jumps(State<Dim>& s, int pack, const Faces& faces, Respond respond) {
     const auto frame = Frames::template of<kKinematics>(s, pack);
     const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
-    Real turning = 0.0;
+    WorkOfTurn<Dim, Real> work;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
     for (int at = first; at < last; ++at) {
       const PointPack& point = s.layout.points[at];
@@ -273,8 +296,10 @@ struct Contacts {
       Vector force = frame.normal * (response.normal_traction * area);
       for (int t = 0; t + 1 < Dim; ++t) force += frame.tangents[t] * (response.shear_traction[t] * area);
       R::store(force, &s.contact_force[slot_of(at, 0)]);
-      if constexpr (kKinematics == Kinematics::finite)
-        turning += response.shear_traction[0] * opening - response.normal_traction * tangential[0];
+      if constexpr (kKinematics == Kinematics::finite && Dim == 2)
+        work.add(response.normal_traction, response.shear_traction, opening, tangential);
+      if constexpr (kKinematics == Kinematics::finite && Dim == 3)
+        work.add(response.normal_traction * area, response.shear_traction * area, opening, tangential);
       if constexpr (kMeasure) {
         stored += response.stored * area;
         applied += 2.0 * norm(force);  // counts both sides
@@ -282,9 +307,8 @@ struct Contacts {
       }
     }
     if constexpr (kKinematics == Kinematics::finite) {
-      const Vector turns = frame.turning_force(turning * faces.area(s.layout.points[first]));
-      R::store(turns, &s.turning_force[slot_of(first, 0)]);
-      R::store(-turns, &s.turning_force[slot_of(first + 1, 0)]);
+      if constexpr (Dim == 2) work.tilt *= faces.area(s.layout.points[first]);  // both points share one
+      Frames::turn(s, pack, frame, work, [](const Vector& force, Vec<Dim>* to) { R::store(force, to); });
     }
     if constexpr (kMeasure) {
       FaceSums& sums = s.face_sums[pack];

@@ -8,9 +8,7 @@ namespace pyroclast {
 /// Calls `f` with the body's kinematics as a constant.
 template <int Dim, class F>
 void with_kinematics(const State<Dim>& s, F f) {
-  if constexpr (Dim == 2)
-    if (s.kinematics == Kinematics::finite)
-      return f(std::integral_constant<Kinematics, Kinematics::finite>());
+  if (s.kinematics == Kinematics::finite) return f(std::integral_constant<Kinematics, Kinematics::finite>());
   f(std::integral_constant<Kinematics, Kinematics::small>());
 }
 

@@ -71,7 +71,7 @@ struct Zones {
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
     const double share = volume_over_determinant<Dim> * thickness;
-    Rotation<Real> rotation;
+    Rotation<Dim, Real> rotation;
     auto strain =
         mechanical_strain<Dim>(vectors, 1.0 / determinant, u, p.thermal_strain, kKinematics, rotation);
     if constexpr (kCreeps)

@@ -252,7 +252,7 @@ Soundness judge_soundness(const Run& run, const std::vector<ReportedStage>& stag
         simulation.model().dimension() == 2
             ? "with mechanics.kinematics = \"finite\", f_c was up to 4 % lower there, and critical "
               "temperatures up to 20 K"
-            : "blocks that turn would be softer there, but blocks of a solid cannot turn yet"));
+            : "with mechanics.kinematics = \"finite\" blocks turn, which makes a body softer there"));
   std::ranges::move(warnings_of_loose_pieces(simulation), std::back_inserter(s.warnings));
   return s;
 }
