@@ -44,6 +44,7 @@ def remembering(cracks: float, full_at: int = 400, closing: float | None = None)
 
 
 FITTED_A = 0.41  # fitted in the plane: validation/hot_concrete memory_fit
+ONE_DAMAGE = "one damage"  # name of the concrete of solids whose contacts are those of cases/starter_3d.toml
 REMEMBERS = {"concrete": "remembers", "changes": remembering(FITTED_A)}
 
 
@@ -64,6 +65,8 @@ class Specimen:
 
     def deck(self, plane: pathlib.Path) -> pathlib.Path:
         """The deck for this specimen in the place of one of the plane."""
+        if self.concrete == ONE_DAMAGE:
+            return _with_one_damage(SOLIDS[plane])
         return SOLIDS[plane] if self.in_space else plane
 
     def of_strength(self, level: float) -> list[str]:
@@ -123,6 +126,21 @@ def _changed_deck(name: str, text: str) -> pathlib.Path:
     RUNS.mkdir(parents=True, exist_ok=True)
     made.write_text(text)
     return made
+
+
+def _with_one_damage(deck: pathlib.Path) -> pathlib.Path:
+    """A hot solid with the contacts of cases/starter_3d.toml, which lose strength and energies as its own do."""
+    def contacts(text: str) -> str:
+        return text[text.index("[contacts]"):text.index("[contacts.aggregate_mortar]")]
+
+    own, cold_ = contacts(deck.read_text()), contacts((ROOT / "cases/starter_3d.toml").read_text())
+    fades = re.search(r"^temperature_ratio = .*$", own, re.MULTILINE)
+    hot, count = re.subn(r'^(G_f[12]) = ("[^"]*")', r'\1 = { value = \2, times = "glasgow_fracture_energy" }', cold_,
+                         flags=re.MULTILINE)
+    if fades is None or count != 2:
+        raise ValueError(f"{deck} and starter_3d.toml do not state their contacts as they did")
+    hot = hot.replace("[contacts.mortar_mortar]", "[contacts.mortar_mortar]\n" + fades[0])
+    return _changed_deck(f"{deck.stem}_one_damage", deck.read_text().replace(own, hot))
 
 
 def _rim_heated() -> pathlib.Path:
@@ -225,7 +243,7 @@ def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual
 def cold(specimen: Specimen) -> Crushed:
     """Crushed at 20 degC. What only heat brings out does not matter, so all concretes of the cases' body share the test;
     those of another body are tested under their own names."""
-    if specimen.body:
+    if specimen.body or specimen.concrete == ONE_DAMAGE:
         return crushed(specimen, 20.0)
     return crushed(dataclasses.replace(specimen, changes=(), concrete="as it stands"), 20.0)
 
@@ -406,10 +424,11 @@ def print_critical_temperatures(rows: list[dict[str, str]], common: dict) -> Non
 
 
 def retained(rows: list[dict[str, str]], name: str, kind: str, level: str, to: int, common: dict) -> np.ndarray:
-    """Strength or modulus over that of the cold specimen, which all concretes of one body share, seed by seed; strain at the
-    peak as it is."""
+    """Strength or modulus over that of the cold specimen, which concretes of the same contacts share, seed by seed; strain at
+    the peak as it is."""
+    shared = common if common.get("concrete") == ONE_DAMAGE else common | {"concrete": "as it stands"}
     hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
-    cold = [of(rows, name, test="cold", seed=s, **common | {"concrete": "as it stands"}) for s in SEEDS]
+    cold = [of(rows, name, test="cold", seed=s, **shared) for s in SEEDS]
     return np.array([h[0] / (1.0 if name == "strain_at_peak" else c[0]) for h, c in zip(hot, cold) if len(h) and len(c)])
 
 

@@ -635,6 +635,26 @@ class OtherRuns(PageOfRun):
         browser.open(self.page_of(RUNS / "compression"))
         self.assertIsNone(browser.run("return document.getElementById('properties')"))
 
+    def test_a_solid_stays_closed_where_blocks_leave(self):
+        browser.open(self.page_of(RUNS / "spalling_slab_3d"))
+        self.look("turned")
+        browser.press("End")
+        left, bared, leak = browser.run(
+            "const {body: b, frame} = pyroclast.scene, {values} = b.arrays.triangle, sum = [0, 0, 0]; let all = 0;"
+            "b.place(frame, 0);"
+            "for (const t of b.shown) {"
+            "  const [p, q, r] = [0, 1, 2].map((e) => b.space.subarray(3 * values[3 * t + e], 3 * values[3 * t + e] + 3)),"
+            "    [u, v] = [q, r].map((x) => x.map((c, k) => c - p[k])),"
+            "    area = [0, 1, 2].map((k) => u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);"
+            "  area.forEach((a, k) => { sum[k] += a; });"
+            "  all += Math.hypot(...area); }"
+            "return [[...Array(b.blocks).keys()].filter((k) => b.isGone(frame, k)).length, b.bared.of.length,"
+            "        Math.hypot(...sum) / all];")
+        self.assertGreater(left, 0)
+        self.assertGreater(bared, left)
+        self.assertLess(leak, 1e-5)  # single precision
+        self.assert_silent()
+
     def test_water_has_pressures_amounts_and_fields(self):
         run = pyroclast.read(RUNS / "kalifa_m100")
         browser.open(self.page_of(run.folder))

@@ -58,8 +58,8 @@ TEST(SolidDeck, BlocksFollowStonesOfAShape) {
   for (const char* const shape : {"kind = \"ellipse\"\nelongation = [1.2, 1.6]\nflatness = [1, 1.3]",
                                   "kind = \"harmonics\"\nelongation = [1, 1.4]\nroughness = [0.02, 0.05]"}) {
     std::string deck = shaped(shipped_case("starter_3d"), shape);
-    const auto begin = deck.find("rule = \"fit\"");
-    deck.replace(begin, std::string("rule = \"fit\"").size(), "rule = \"follow\"");
+    const auto begin = deck.find("rule = \"each\"");
+    deck.replace(begin, std::string("rule = \"each\"").size(), "rule = \"follow\"");
     const auto simulation = make_simulation(read(with(deck, "count = 3000", "count = 2000")));
     const auto& made = std::get<specimen::Specimen<3>>(*simulation->specimen());
     EXPECT_EQ(made.cells.cells.size(), 2000U) << shape;

@@ -185,7 +185,7 @@ TEST(FinerBlocksOfSolids, StonesAreSmallBesideTheBlocksAroundThem) {
                   .sieves = {0.0169, 0.0171},
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
-  p.superposition = Superposition::fit;
+  p.superposition = Superposition::each;
   const Specimen<3> s = made_in(p, body);
   const auto far =
       std::ranges::count_if(s.stones, [](const Stone<3>& ball) { return ball.centre[0] > 0.02; });

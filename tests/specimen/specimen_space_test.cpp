@@ -26,7 +26,7 @@ SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
                   .minimum_gap = 0.0005,
                   .attempts = 100000};
   p.blocks.count = blocks;
-  p.superposition = Superposition::fit;
+  p.superposition = Superposition::each;
   return p;
 }
 

@@ -144,60 +144,68 @@ TEST(Superpose, ByVolumesACellIsOfTheBallThatCoversMost) {
   EXPECT_EQ(by_volume(over, 0.999).stone, only({{0, 0}}));
 }
 
-// Promise: by the rule of fit a ball takes the cell of which it covers most, where that brings the volumes
+// Promise: by the rule `each` a ball takes the cell of which it covers most, where that brings the volumes
 // nearer to each other: so from half of a cell on.
-TEST(Superpose, ByFitABallTakesACellFromHalfOfItsVolumeOn) {
+TEST(Superpose, ByEachABallTakesACellFromHalfOfItsVolumeOn) {
   const Cubes cubes;
-  const auto by_fit = [&](const std::vector<Stone<3>>& balls) {
-    return cubes.superposed(balls, Superposition::fit);
+  const auto by_each = [&](const std::vector<Stone<3>>& balls) {
+    return cubes.superposed(balls, Superposition::each);
   };
   const double half = std::cbrt(0.5 * 6.0 / std::numbers::pi);
-  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).stone, only({{0, 0}}));
-  EXPECT_EQ(by_fit({ball({{0.5, 0.5, 0.5}}, 0.99 * half)}).stone, only({}));
-  EXPECT_EQ(by_fit({ball({{1.1, 0.5, 0.5}}, 1.01 * half)}).stone, only({{4, 0}}));
-  const double covered = by_fit({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).covered_fraction;
+  EXPECT_EQ(by_each({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).stone, only({{0, 0}}));
+  EXPECT_EQ(by_each({ball({{0.5, 0.5, 0.5}}, 0.99 * half)}).stone, only({}));
+  EXPECT_EQ(by_each({ball({{1.1, 0.5, 0.5}}, 1.01 * half)}).stone, only({{4, 0}}));
+  const double covered = by_each({ball({{0.5, 0.5, 0.5}}, 1.01 * half)}).covered_fraction;
   EXPECT_LT(covered, 1.0);
   EXPECT_GT(covered, 1.0 - 1e-15);
 }
 
 // Promise: larger balls choose first, whatever their order; who finds its cell taken takes the next, or none.
-TEST(Superpose, ByFitLargerBallsChooseFirst) {
+TEST(Superpose, ByEachLargerBallsChooseFirst) {
   const Cubes cubes;
-  const auto by_fit = [&](const std::vector<Stone<3>>& balls) {
-    return cubes.superposed(balls, Superposition::fit).stone;
+  const auto by_each = [&](const std::vector<Stone<3>>& balls) {
+    return cubes.superposed(balls, Superposition::each).stone;
   };
   const Stone<3> small = ball({{0.8, 0.5, 0.5}}, 1.1), large = ball({{0.5, 0.5, 0.5}}, 1.2);
-  EXPECT_EQ(by_fit({small, large}), only({{0, 1}, {4, 0}}));
-  EXPECT_EQ(by_fit({large, small}), only({{0, 0}, {4, 1}}));
+  EXPECT_EQ(by_each({small, large}), only({{0, 1}, {4, 0}}));
+  EXPECT_EQ(by_each({large, small}), only({{0, 0}, {4, 1}}));
   // the second has no other cell, so that the cell that is covered most of the others follows
   const Stone<3> within = ball({{0.5, 0.5, 0.5}}, 0.9);
-  EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.0), within}), only({{0, 0}}));
-  EXPECT_EQ(by_fit({ball({{0.6, 0.5, 0.5}}, 1.2), within, within}), only({{0, 0}, {4, 0}}));
+  EXPECT_EQ(by_each({ball({{0.6, 0.5, 0.5}}, 1.0), within}), only({{0, 0}}));
+  EXPECT_EQ(by_each({ball({{0.6, 0.5, 0.5}}, 1.2), within, within}), only({{0, 0}, {4, 0}}));
 }
 
 // Promise: then cells become aggregate, the most covered first, of the ball that covers most of them, as long
 // as the volumes come nearer; a share between theirs and those of the others is told.
-TEST(Superpose, ByFitTheMostCoveredCellsFollow) {
+TEST(Superpose, ByEachTheMostCoveredCellsFollow) {
   const Cubes cubes;
   // an eighth of a ball of 4.19 m³ in each cell: four cells come nearest
-  const auto even = cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0)}, Superposition::fit);
+  const auto even = cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0)}, Superposition::each);
   EXPECT_EQ(std::ranges::count(even.stone, 0), 4);
   EXPECT_NEAR(even.covered_fraction, std::numbers::pi / 6.0, 1e-9);
   // moved towards x: the four cells there have more
   const std::vector<Stone<3>> beside{ball({{1.05, 1.0, 1.0}}, 2.0)};
-  const auto moved = cubes.superposed(beside, Superposition::fit);
+  const auto moved = cubes.superposed(beside, Superposition::each);
   EXPECT_EQ(moved.stone, only({{4, 0}, {5, 0}, {6, 0}, {7, 0}}));
   EXPECT_EQ(cubes.superposed(beside, Superposition::area, moved.covered_fraction).stone, moved.stone);
   // towards one corner, with 5.58 m³: six cells, but for the one across and the first beside it
-  const auto to_corner = cubes.superposed({ball({{1.1, 1.1, 1.1}}, 2.2)}, Superposition::fit);
+  const auto to_corner = cubes.superposed({ball({{1.1, 1.1, 1.1}}, 2.2)}, Superposition::each);
   EXPECT_EQ(std::ranges::count(to_corner.stone, 0), 6);
   EXPECT_EQ(to_corner.stone[0], -1);
   EXPECT_EQ(to_corner.stone[7], 0);
   // with another ball beside, each cell is of the one that covers most of it
   const auto two =
-      cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0), ball({{0.5, 0.5, 0.5}}, 1.3)}, Superposition::fit);
+      cubes.superposed({ball({{1.0, 1.0, 1.0}}, 2.0), ball({{0.5, 0.5, 0.5}}, 1.3)}, Superposition::each);
   EXPECT_EQ(two.stone[0], 1);
   EXPECT_EQ(std::ranges::count(two.stone, 0), 4);
+}
+
+// Promise: by `fit` alone the most covered cells are aggregate, and a small ball may have none.
+TEST(Superpose, ByFitSmallBallsAreLost) {
+  const Cubes cubes;
+  const std::vector<Stone<3>> balls{ball({{0.6, 0.5, 0.5}}, 1.6), ball({{1.8, 1.8, 1.8}}, 0.4)};  // 2.18 m³
+  EXPECT_EQ(cubes.superposed(balls, Superposition::each).stone, only({{0, 0}, {7, 1}}));
+  EXPECT_EQ(cubes.superposed(balls, Superposition::fit).stone, only({{0, 0}, {4, 0}}));
 }
 
 }  // namespace

@@ -71,6 +71,13 @@ TEST(Superposition, TheFittingFractionKeepsTheArea) {
             std::nextafter(1.0, 0.0));  // nothing fits better than no cell
 }
 
+// Promise: by the rule `each` every circle has a cell before the most covered ones follow, as in space.
+TEST(Superposition, EachCircleHasItsCell) {
+  const std::vector<Stone<2>> circles{{{{0.9, 0.9}}, 0.1}, {{{0.3, 0.25}}, 0.8}};  // 0.51: two cells of 0.25
+  EXPECT_EQ(superposed(circles, unit_square(Superposition::fit)).stone, (std::vector<int>{1, 1, -1, -1}));
+  EXPECT_EQ(superposed(circles, unit_square(Superposition::each)).stone, (std::vector<int>{1, -1, -1, 0}));
+}
+
 TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
   const std::vector<Stone<2>> small{{{{0.25, 0.25}}, 0.02}};
   const std::vector<Stone<2>> beside{{{{0.6, 0.6}}, 0.2}};

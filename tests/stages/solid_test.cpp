@@ -143,7 +143,7 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
       true);
   auto parameters = setup.specimen;
   parameters.blocks.count = 120;
-  parameters.superposition = specimen::Superposition::fit;
+  parameters.superposition = specimen::Superposition::each;
   parameters.outline = specimen::Prism(section, specimen::Prism::Axis::y, kHeight);
   return make_body(specimen::make_specimen<3>(parameters), 1.0, {}, setup.moving);
 }

@@ -2,7 +2,7 @@
 contacts that ever become cracks.
 
 A page cuts the polyhedra, which are convex, by a plane across x, y or z: each cut is a convex polygon. From outside it
-shows their triangles, and contacts on the sides of the two blocks that they join.
+shows their triangles, and contacts on the sides of the two blocks that they join, and the sides that come to light where blocks leave.
 """
 
 from __future__ import annotations
@@ -64,6 +64,11 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         elif kind not in ("damage", "opening", "crack"):
             arrays[name] = packed_steps(column, STEPS[kind])
     notes = ["blocks of a solid move as rigid bodies"] if run.moves else []
+    inner, other = _across(point, triangle, owner, is_outer)
+    if "gone" in columns:
+        leaves = columns["gone"][-1] > 0.5
+        bared = leaves[other] & ~leaves[owner[inner]]
+        arrays["bared"], arrays["bared_by"] = packed_whole(inner[bared], 4), packed_whole(other[bared], 4)
     if modes:
         steps = exact_steps(run, columns["crack_step"][-1])
         kept = np.flatnonzero(steps >= 0)
@@ -72,7 +77,7 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         if (lost := int((beside[:, 0] < 0).sum())):
             notes.append(f"{lost} cracks whose two blocks are not found")
             kept, cells, beside = (values[beside[:, 0] >= 0] for values in (kept, cells, beside))
-        face, arrays["face_triangle"], arrays["triangle_face"] = _faces(beside, point, triangle, owner, is_outer)
+        face, arrays["face_triangle"], arrays["triangle_face"] = _faces(beside, owner[inner], inner, other)
         first_of = np.unique(face, return_index=True)[1]
         arrays["face"] = packed_whole(face, 4)
         arrays["middle"] = packed_steps(cells[first_of, 2], fine, 4)
@@ -106,13 +111,10 @@ def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndar
     return middle.reshape(-1, 3), (np.roll(corners, -2, axis=1) - middle).reshape(-1, 3)
 
 
-def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
-           is_outer: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
-    """Returns (K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
-
-    A face is where two blocks meet. beside: (K, 2), those of each contact.
+def _across(point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
+            is_outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the triangles (I,) between blocks, and the blocks (I,) on their other sides; where none is found, their own.
     """
-    blocks = int(owner.max()) + 1
     inner = np.flatnonzero(~is_outer)
     centre = meeting(point[triangle[inner]].mean(axis=1), _near(point))
     order = np.argsort(centre, kind="stable")  # two blocks have each of these triangles
@@ -120,11 +122,22 @@ def _faces(beside: np.ndarray, point: np.ndarray, triangle: np.ndarray, owner: n
     one, two = order[same], order[same + 1]
     other = owner[inner].copy()
     other[one], other[two] = owner[inner][two], owner[inner][one]
+    return inner, other
+
+
+def _faces(beside: np.ndarray, own: np.ndarray, inner: np.ndarray,
+           other: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
+    """Returns (K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
+
+    A face is where two blocks meet. beside: (K, 2), those of each contact. own, inner, other: blocks, numbers and blocks
+    across of the triangles between blocks.
+    """
+    blocks = int(max(own.max(), beside.max())) + 1
 
     def pair(blocks_: np.ndarray) -> np.ndarray:
         return blocks_.min(axis=1) * blocks + blocks_.max(axis=1)
 
-    of_triangle = pair(np.c_[owner[inner], other])
+    of_triangle = pair(np.c_[own, other])
     faces, face = np.unique(pair(beside), return_inverse=True)
     shown = np.isin(of_triangle, faces)
     return (face.ravel(), packed_whole(inner[shown], 4),

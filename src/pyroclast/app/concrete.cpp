@@ -413,7 +413,12 @@ std::string deck_text(const Asked& a, const Found& found, const ConcreteOptions&
                                  "plane; forces and energies are for this thickness",
                                  in(a.width, 1e3, "mm"), in(a.height, 1e3, "mm"))},
       {"EXTENT", a.is_solid ? "volume" : "area"},
-      {"ROUND", a.is_solid ? "balls" : "circles"},
+      {"SUPERPOSITION",
+       a.is_solid
+           ? "rule = \"each\"                # one for each ball, then blocks that balls cover most, up "
+             "to the balls' volume"
+           : "rule = \"fit\"                 # the blocks that circles cover most, until they take "
+             "their area"},
       {"FRACTION", fmt::format("{:.3g}", a.fraction)},
       {"FRACTION_SOURCE", source_of_fraction(a, o)},
       {"GRADING", grading(a)},

@@ -173,8 +173,10 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
       {{"area", specimen::Superposition::area,
         "circles, or balls, cover more than covered_fraction of the block"},
        {"fit", specimen::Superposition::fit,
-        "the same with the fraction by which the blocks take the area of the circles; in a solid each ball "
-        "has a block first"},
+        "the same with the fraction by which the blocks take the area of the circles, or the volume of the "
+        "balls"},
+       {"each", specimen::Superposition::each,
+        "the same, but each circle, or ball, has a block first: the largest chooses first"},
        {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"},
        {"follow", specimen::Superposition::follow,
         "nothing is superposed: edges of blocks, in a solid faces, follow the surfaces of the stones, "

@@ -115,6 +115,7 @@ using Inclusions = std::variant<AggregateParameters, FibreParameters>;
 enum class Superposition : std::uint8_t {
   area,      ///< a block is aggregate where circles cover more than a stated fraction of it
   fit,       ///< a block is aggregate above the fraction by which the blocks take the area of the circles
+  each,      ///< the same, but each stone, the largest first, has a block before
   centroid,  ///< a block is of the aggregate in whose circle its centroid lies
   follow     ///< nothing is superposed: blocks follow the surfaces of stones, by mirrored seeds
 };

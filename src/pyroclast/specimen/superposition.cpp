@@ -81,11 +81,12 @@ void give_each_its_cell(const Cells<Dim>& cells, std::span<const Stone<Dim>> sto
 
 /// Finds the share above which covered cells are aggregate, so that their extent comes as near as it can to
 /// that of the stones.
+/// \param each  each stone has a cell before
 template <int Dim>
 void fit(const Cells<Dim>& cells, std::span<const Stone<Dim>> stones, std::span<const CommonPart> parts,
-         std::span<const Cover> covers, Superposed& result) {
+         std::span<const Cover> covers, bool each, Superposed& result) {
   double missing = extent_of(stones);
-  if constexpr (Dim == 3) give_each_its_cell(cells, stones, parts, missing, result);
+  if (each) give_each_its_cell(cells, stones, parts, missing, result);
   struct Candidate {
     double share, extent;
   };
@@ -189,7 +190,9 @@ Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
   }
   const std::vector<CommonPart> parts = common_parts(cells, outline, stones);
   const std::vector<Cover> covers = covers_of<Dim>(cells, parts, stones);
-  if (parameters.superposition == Superposition::fit) fit<Dim>(cells, stones, parts, covers, result);
+  const bool each = parameters.superposition == Superposition::each;
+  if (each || parameters.superposition == Superposition::fit)
+    fit<Dim>(cells, stones, parts, covers, each, result);
   for (std::size_t cell = 0; cell < count; ++cell) {
     if (result.stone[cell] >= 0 || !(covers[cell].share > result.covered_fraction)) continue;
     result.phase[cell] = covers[cell].phase;

@@ -43,8 +43,8 @@ struct Superposed {
 
 /// Superposes stones by `parameters.superposition`; the rule of the centroid needs no covered fraction. By
 /// the rule `fit` the cells that are covered most become aggregate, while that brings their extent nearer to
-/// that of the stones; in space each stone, the largest first, takes one cell before: the one of which it
-/// covers most and that no larger stone took.
+/// that of the stones. By the rule `each` every stone, the largest first, takes one cell before: the one of
+/// which it covers most and that no larger stone took.
 template <int Dim>
 Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
                      std::span<const Stone<Dim>> stones, const SpecimenParameters& parameters, int matrix);

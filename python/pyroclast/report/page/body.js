@@ -248,9 +248,20 @@ export class Body {
     return [mode, most];
   }
 
-  // Contacts that a frame shows as cracks.
+  // Contacts that a frame shows as cracks: between blocks that are there.
   cracks(frame) {
-    return [...this.crackedBetween(-1, this.frames[frame].step)];
+    const found = [...this.crackedBetween(-1, this.frames[frame].step)];
+    if (!("gone" in this.arrays)) return found;
+    return found.filter((c) => !this.blocksBeside(c).some((b) => this.isGone(frame, b)));
+  }
+
+  // The two blocks that a contact joins.
+  blocksBeside(c) {
+    if (!this.blockOfCorner) {
+      this.blockOfCorner = new Int32Array(this.corners);
+      for (let b = 0; b < this.blocks; b++) this.blockOfCorner.fill(b, this.first[b], this.first[b + 1]);
+    }
+    return [this.blockOfCorner[this.side[4 * c]], this.blockOfCorner[this.side[4 * c + 2]]];
   }
 
   // Ends of the line that a contact is drawn as, pixels.

@@ -1,6 +1,6 @@
-// A solid from outside, in parallel projection: triangles of its outline and of faces that cracked. A graphics card
-// finds the nearest triangle of each pixel by WebGL. Without one the painter of plane bodies paints them from the
-// farthest to the nearest: it is faster than WebGL by the processor.
+// A solid from outside, in parallel projection: triangles of its outline, of faces that cracked, and of those that blocks
+// bared as they left. A graphics card finds the nearest triangle of each pixel by WebGL. Without one the painter of plane
+// bodies paints them from the farthest to the nearest: it is faster than WebGL by the processor.
 
 import {SolidBody} from "./solid.js";
 
@@ -22,10 +22,11 @@ const brightness = (light) => DARKEST + (1 - DARKEST) * light;
 export class OutsideBody extends SolidBody {
   prepare() {
     super.prepare();
-    const {outer, face, face_triangle: of, triangle_face: faces} = this.arrays;
+    const {outer, face, face_triangle: of, triangle_face: faces, bared, bared_by: by} = this.arrays;
     this.outline = [];
     outer.values.forEach((is, t) => is && this.outline.push(t));
     this.faces = face ? {of: of.values, on: faces.values, count: faces.values.length} : {of: [], on: [], count: 0};
+    this.bared = bared ? {of: bared.values, by: by.values} : {of: [], by: []};
     this.space = new Float32Array(3 * this.points); // m, places in the frame, from the middle of the specimen
     this.view = new Float32Array(3 * this.points); // the same as the eye sees them
     this.first = new Int32Array(1); // of polygons, which only the painter makes
@@ -130,6 +131,12 @@ export class OutsideBody extends SolidBody {
         shown.push(t);
         shows.push(this.blockOf[this.arrays.triangle.values[3 * t]]);
       }
+    if (!this.alone)
+      this.bared.of.forEach((t, k) => {
+        if (!this.isGone(frame, this.bared.by[k])) return;
+        shown.push(t);
+        shows.push(this.blockOf[this.arrays.triangle.values[3 * t]]);
+      });
     if (this.faces.count) {
       const worst = new Map();
       for (const c of super.cracks(frame)) {

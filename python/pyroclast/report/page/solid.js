@@ -73,6 +73,10 @@ export class SolidBody extends Body {
     return place.map((v, k) => v + (magnification * (p[k] + q[k])) / 2);
   }
 
+  blocksBeside(c) {
+    return [this.beside[2 * c], this.beside[2 * c + 1]];
+  }
+
   get moves() {
     return "shift_x" in this.arrays;
   }
@@ -226,7 +230,13 @@ export class CutBody extends SolidBody {
     const {rest, right, up} = this;
     this.placed = {frame, magnification};
     for (let p = 0; p < this.owner.length; p++) {
+      const isGone = this.isGone(frame, this.owner[p]);
       for (let i = this.first[p]; i < this.first[p + 1]; i++) {
+        if (isGone) {
+          // a polygon without area
+          [this.x[i], this.y[i]] = [right, up].map((k) => this.middles[3 * this.owner[p] + k]);
+          continue;
+        }
         const move = this.moves ? this.motion(frame, this.owner[p], rest.subarray(3 * i, 3 * i + 3)) : [0, 0, 0];
         this.x[i] = rest[3 * i + right] + magnification * move[right];
         this.y[i] = rest[3 * i + up] + magnification * move[up];

@@ -336,7 +336,9 @@ int FoundContacts<Dim>::face_of(const Key& key) const {
 }
 
 /// Returns a set of parameters of a pair: that of a contact of its own face; else that of the nearest contact
-/// of the interface, so that the pair has the temperature of its place. \param contact  contact of the face
+/// of the interface, so that the pair has the temperature of its place.
+///
+/// \param contact  contact of the face
 template <int Dim>
 int FoundContacts<Dim>::set_of(const Pair& pair, int contact) const {
   const auto& model = body_.model;

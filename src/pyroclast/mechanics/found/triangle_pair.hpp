@@ -327,8 +327,10 @@ std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<
 
 /// Returns how far the corners of two triangles that do not press must go at least until they may, m, but for
 /// a factor that bounds the change of gaps and places by the ways of the corners; 0 or less where they may at
-/// once. \param most_depth  depth from which on nothing presses, m \param within      largest way that is
-/// asked for, times that factor, m
+/// once.
+///
+/// \param most_depth  depth from which on nothing presses, m
+/// \param within  largest way that is asked for, times that factor, m
 double way_to_press(const Triangle& a, const Triangle& b, double most_depth, double within);
 
 // Steps are compiled for several instruction sets, and these once: no set's code gets into another's.
