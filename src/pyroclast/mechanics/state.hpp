@@ -102,7 +102,8 @@ struct StateArrays {
   Array<VectorPack<Dim>> force;  ///< sum of forces at the last step, N
   /// Largest sum of |stiffness| over a gridpoint's rows of the assembled matrix, by slot, N/m.
   Array<double> stiffness;
-  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of pieces and found contacts gather, m; in 3D only with these
+  /// Positions by slot, from which zones of pieces and found contacts gather, m; in 3D only for these.
+  Array<Vec<Dim>> gathered_position;
   Array<Four> from_last;         ///< places by slot, seen from the last gridpoint of the block, m; 3D only
   Array<Vec<Dim>> displacement;  ///< displacements by slot, from which faces gather, m
   /// Time step over moving mass by slot, s/kg; any finite number where idle.
