@@ -103,10 +103,11 @@ class Shares {
 template <int Dim>
 pyroclast::StepFunctions<Dim> counting_step() {
   using Parts = CountingStep<Dim>;
-  return {{count_in_bundles<Dim, Parts::place_corner_forces>, count_in_bundles<Dim, Parts::move_bundles>,
-           count_in_bundles<Dim, Parts::move_tied_parts>, Parts::sum_stiffness,
-           pyroclast::PorePressure<Dim, Counting>::add},
-          functions_of<Dim>};
+  return {
+      {count_in_bundles<Dim, Parts::place_corner_forces>, count_in_bundles<Dim, Parts::move_bundles>,
+       count_in_bundles<Dim, Parts::move_tied_parts>, Parts::sum_stiffness,
+       pyroclast::PorePressure<Dim, Counting>::add, nullptr, nullptr},  // first contacts alone are counted
+      functions_of<Dim>};
 }
 
 template pyroclast::StepFunctions<2> counting_step();

@@ -66,7 +66,7 @@ class Specimen:
     def deck(self, plane: pathlib.Path) -> pathlib.Path:
         """The deck for this specimen in the place of one of the plane."""
         if self.concrete == ONE_DAMAGE:
-            return _with_one_damage(SOLIDS[plane])
+            return with_one_damage(SOLIDS[plane])
         return SOLIDS[plane] if self.in_space else plane
 
     def of_strength(self, level: float) -> list[str]:
@@ -128,7 +128,7 @@ def _changed_deck(name: str, text: str) -> pathlib.Path:
     return made
 
 
-def _with_one_damage(deck: pathlib.Path) -> pathlib.Path:
+def with_one_damage(deck: pathlib.Path) -> pathlib.Path:
     """A hot solid with the contacts of cases/starter_3d.toml, which lose strength and energies as its own do."""
     def contacts(text: str) -> str:
         return text[text.index("[contacts]"):text.index("[contacts.aggregate_mortar]")]

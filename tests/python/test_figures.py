@@ -86,7 +86,7 @@ def assert_apart(test: unittest.TestCase, name: str, figure) -> None:
     """Panels with their labels, captions and legends lie apart, and within the page."""
     figure.set_dpi(100)
     renderer = FigureCanvasAgg(figure).get_renderer()
-    figure.draw(renderer)
+    figure.draw_without_rendering()
     boxes = []
     for axes in figure.axes:
         box = axes.get_tightbbox(renderer)
@@ -636,7 +636,7 @@ class WidthOfThePage(FolderTest):
 
     def assert_legends_cover_nothing(self, figure) -> None:
         renderer = FigureCanvasAgg(figure).get_renderer()
-        figure.draw(renderer)
+        figure.draw_without_rendering()
         for axes in figure.axes:
             legend = axes.get_legend()
             if legend is None or not hasattr(legend, "on_top"):

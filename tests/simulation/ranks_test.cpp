@@ -192,7 +192,11 @@ TEST_F(RunOnRanks, ABatchTakesThreeCollectives) {
   const Asked heated{deck(kUniform + kSettle + load("stress = \"2 MPa\"") + heat("60 degC"))};
   const Asked drives{shipped_case("notched_beam"), 200, 12}, control{shipped_case("biaxial"), 80, 8};
   const Asked creeps{shipped_case("anderberg_thelandersson"), 80, 60};
-  for (const Asked* asked : {&press, &heated, &drives, &control, &creeps})
+  // a body that rests in the first batch at new temperatures
+  const Asked quick{with(deck(kUniform + kSettle + load("stress = \"2 MPa\"") + heat("200 degC")),
+                         "unbalanced_ratio = 1e-3\nplaten_difference = \"20 kPa\"",
+                         "unbalanced_ratio = 0.5\nplaten_difference = \"20 MPa\"")};
+  for (const Asked* asked : {&press, &heated, &drives, &control, &creeps, &quick})
     RanksInThreads::run(2, [&](const auto& ranks) {
       const auto batches = calls_of(*asked, ranks);
       EXPECT_GT(batches.size(), 60U);

@@ -281,9 +281,9 @@ def settle(figure: Figure) -> Figure:
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
     for _ in range(4):
-        figure.draw(renderer)
+        figure.draw_without_rendering()
         _break_labels(figure, renderer)
-        figure.draw(renderer)
+        figure.draw_without_rendering()
         for axes in _with_legend_on_top(figure):
             _draw_on_top(axes, *axes.get_legend().on_top, axes.bbox.width / figure.dpi)
         if not _share_height(figure, of_page.highest, renderer):
@@ -293,7 +293,7 @@ def settle(figure: Figure) -> Figure:
         for one in figure.axes:
             if one.bbox.bounds == axes.bbox.bounds:
                 _lift(one, share)
-    figure.draw(renderer)
+    figure.draw_without_rendering()
     _break_labels(figure, renderer)  # axes may have become narrower
     return figure
 

@@ -41,7 +41,6 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
       layout(of, by.layout),
       step(step_functions<Dim>(by.instructions)),
       properties(std::move(with)) {
-  if (Dim != 2 && parameters.found.is_on) throw Error("contacts = found: made for 2D only; use first");
   if (Dim == 2 && parameters.gravity[2] != 0.0) throw Error("gravity acts across the plane of this body");
   if (!properties.creep.empty()) creep_strain.resize(model.zones.size());
   list_laws();
@@ -172,6 +171,11 @@ double Body<Dim>::block_size() const {
 template <int Dim>
 void Body<Dim>::place_positions() {
   const auto packs = static_cast<std::size_t>(layout.gridpoint_packs);
+  if (Dim == 2 || parameters.found.is_on) {
+    arrays.gathered_position = made<Vec<Dim>>(packs * kLanes);
+    for (int g = 0; g < model.gridpoint_count(); ++g)
+      arrays.gathered_position[layout.gridpoint_slot[g]] = model.position[g];
+  }
   if constexpr (Dim == 3) {
     arrays.from_last = made<Four>(packs * kLanes);
     for (int b = 0; b < model.block_count(); ++b) {
@@ -183,11 +187,9 @@ void Body<Dim>::place_positions() {
     }
   } else {
     arrays.position = made<VectorPack<Dim>>(packs);
-    arrays.gathered_position = made<Vec<Dim>>(packs * kLanes);
     const View<VectorPack<Dim>> position(arrays.position.data(), arrays.position.size());
     for (int g = 0; g < model.gridpoint_count(); ++g) {
       set_vector<Dim>(position, layout.gridpoint_slot[g], model.position[g]);
-      arrays.gathered_position[layout.gridpoint_slot[g]] = model.position[g];
     }
     for (int b = 0; b < static_cast<int>(layout.bundles.size()); ++b)
       for (int lane = 0; lane < kLanes; ++lane) {

@@ -34,7 +34,7 @@ struct MechanicsParameters {
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;  ///< time step, s: the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
-  FoundParameters found;   ///< contacts that are found; in the plane only, with finite kinematics
+  FoundParameters found;   ///< contacts that are found; in the plane with finite kinematics only
   InstructionSet instructions = best_instruction_set();
   bool loses_blocks = false;  ///< true where blocks may leave the body, see Mechanics::remove
   // The parameters from here on change speed, not results.
@@ -90,6 +90,7 @@ struct TieOfBundle {
   std::vector<int> slots;
 };
 
+template <int Dim>
 struct FoundData;
 
 /// Energies that the body books beside its arrays, J, see EnergyLedger.
@@ -195,7 +196,7 @@ struct Body {
   double least_force = 0.0;          ///< sum over all gridpoints, N; a smaller sum of forces counts as none
   double real_mass = 0.0, moving_mass = 0.0;  ///< kg
 
-  std::unique_ptr<FoundData> found;  ///< contacts that are found; null where contacts are the first ones
+  std::unique_ptr<FoundData<Dim>> found;  ///< contacts that are found; null where contacts are the first ones
 
   std::vector<bool> gone;            ///< by block, see is_gone; empty as long as none is
   std::vector<bool> left;            ///< by gridpoint: those of gone blocks; empty as long as none is

@@ -24,8 +24,7 @@ void Masses<Dim>::measure_stiffness() {
   body_.stiffness.resize(body_.model.position.size());
   for (int g = 0; g < body_.model.gridpoint_count(); ++g)
     body_.stiffness[g] = body_.state.stiffness[body_.layout.gridpoint_slot[g]];
-  if constexpr (Dim == 2)
-    if (body_.found) FoundContacts(body_).add_stiffness(body_.stiffness);
+  if (body_.found) FoundContacts<Dim>(body_).add_stiffness(body_.stiffness);
 }
 
 template <int Dim>
@@ -112,8 +111,7 @@ void Masses<Dim>::set_step_over_mass() {
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
     if (!body_.has_left(static_cast<int>(g)))
       step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
-  if constexpr (Dim == 2)
-    if (body_.found) FoundContacts(body_).follow_masses();
+  if (body_.found) FoundContacts<Dim>(body_).follow_masses();
 }
 
 template <int Dim>

@@ -30,11 +30,10 @@ Mechanics<Dim>::Mechanics(const ModelOf<Dim>& model, const std::vector<double>& 
       mover_(*body_) {
   Body<Dim>& body = *body_;
   Properties<Dim>(body).place();
-  if constexpr (Dim == 2) FoundContacts::make(body);
+  FoundContacts<Dim>::make(body);
   Masses<Dim>(body).measure_stiffness();
   Masses<Dim>(body).set(densities);
-  if constexpr (Dim == 2)
-    if (body.found) FoundContacts(body).begin();
+  if (body.found) FoundContacts<Dim>(body).begin();
   mover_.sweep(1, Pass::measure);
   // no force has acted yet
   std::fill(body.arrays.force.begin(), body.arrays.force.end(), VectorPack<Dim>{});
@@ -74,8 +73,7 @@ void Mechanics<Dim>::remove(const std::vector<int>& blocks) {
   const double held_before = held(), pushed_before = totals().work_of_pore_pressure();
   const auto old_force = read().forces(), velocity = read().velocities();
   gone.remove(blocks);
-  if constexpr (Dim == 2)
-    if (body.found) FoundContacts(body).forget_gone();
+  if (body.found) FoundContacts<Dim>(body).forget_gone();
   body.books.pore_pressure += pushed_before - totals().work_of_pore_pressure();
   const double begun = measure_at_last_forces();
   body.books.removed += held_before - held();
@@ -98,8 +96,7 @@ template <int Dim>
 double Mechanics<Dim>::measure_at_last_forces() {
   Body<Dim>& body = *body_;
   Properties<Dim>(body).place();
-  if constexpr (Dim == 2)
-    if (body.found) FoundContacts(body).follow_properties();
+  if (body.found) FoundContacts<Dim>(body).follow_properties();
   auto& displacement = body.arrays.displacement;
   const auto next = displacement;
   const double begun = body.steps > 0 ? time_step() : 0.0;
@@ -205,12 +202,11 @@ void Mechanics<Dim>::advance(int steps) {
 /// those that are due now.
 template <int Dim>
 int Mechanics<Dim>::steps_to_hand_over() {
-  if constexpr (Dim == 2)
-    if (body_->found) {
-      const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
-      if (since == 0) FoundContacts(*body_).hand_over();
-      return kStepsToHandOver - since;
-    }
+  if (body_->found) {
+    const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
+    if (since == 0) FoundContacts<Dim>(*body_).hand_over();
+    return kStepsToHandOver - since;
+  }
   return std::numeric_limits<int>::max();
 }
 
@@ -237,8 +233,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   body.visit_arrays(visitor);
   constraints().visit_state(visitor);
   Properties<Dim>(body).visit_state(visitor);
-  if constexpr (Dim == 2)
-    if (body.found) FoundContacts(body).visit_state(visitor);
+  if (body.found) FoundContacts<Dim>(body).visit_state(visitor);
   if (!visitor.replaces()) return;
   Masses<Dim>(body).follow_state();
   mover_.take_from_owners();

@@ -54,8 +54,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
     update_faces(s, stride.faces.first, stride.faces.last, measure);
     passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
   };
-  if constexpr (Dim == 2)
-    if (body.found) body.found->seen.moves = pass != Pass::measure;
+  if (body.found) body.found->seen.moves = pass != Pass::measure;
   const auto way_of_found = [&] {
     double longest = 0.0;
     for (const Worker& worker : workers_) longest = larger(longest, worker.way_of_found);
@@ -72,18 +71,16 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       for (Share& share : share_out(body.layout, threads, halo_.bundles_sent()))
         workers_.push_back({std::move(share), body.make_scratch(), 0.0});
     }
-    if constexpr (Dim == 2)
-      if (body.found) FoundContacts(body).search_where_needed();
+    if (body.found) FoundContacts<Dim>(body).search_where_needed();
     const bool ties_join_parts = body.ties_join_parts();
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = body.state;
-      FoundRows rows;  // those of this thread: the way changes from step to step
-      if constexpr (Dim == 2)
-        if (s.found) {
-          rows = *s.found;
-          s.found = &rows;
-        }
+      FoundRows<Dim> rows;  // those of this thread: the way changes from step to step
+      if (s.found) {
+        rows = *s.found;
+        s.found = &rows;
+      }
       const Share& share = worker.share;
       const ShareOfFound found =
           share_of_found(s, share.bundles, body.layout.gridpoint_packs, thread, threads);

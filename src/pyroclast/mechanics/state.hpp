@@ -102,7 +102,8 @@ struct StateArrays {
   Array<VectorPack<Dim>> force;  ///< sum of forces at the last step, N
   /// Largest sum of |stiffness| over a gridpoint's rows of the assembled matrix, by slot, N/m.
   Array<double> stiffness;
-  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of pieces gather, m; 2D only
+  /// Positions by slot, from which zones of pieces and found contacts gather, m; in 3D only for these.
+  Array<Vec<Dim>> gathered_position;
   Array<Four> from_last;         ///< places by slot, seen from the last gridpoint of the block, m; 3D only
   Array<Vec<Dim>> displacement;  ///< displacements by slot, from which faces gather, m
   /// Time step over moving mass by slot, s/kg; any finite number where idle.
@@ -226,6 +227,7 @@ struct StepParameters {
 
 template <int Dim>
 struct State;
+template <int Dim>
 struct FoundRows;
 
 /// Functions of a law for packs of faces that have it, compiled for one instruction set.
@@ -244,7 +246,7 @@ template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
   const PackFunctions<Dim>* laws = nullptr;  ///< functions of the laws of the body
-  FoundRows* found = nullptr;  ///< contacts that are found; null where contacts are the first ones
+  FoundRows<Dim>* found = nullptr;  ///< contacts that are found; null where contacts are the first ones
   /// Bits of the faces of each pack of faces that bear nothing any more: handed over to found contacts, or of
   /// a block that is gone. Empty as long as there are none.
   ConstView<std::uint8_t> left_out;
@@ -291,9 +293,9 @@ struct StepPasses {
   void (*sum_stiffness)(State<Dim>&, double* scratch);
   /// Adds the pressure of pore water to the forces of the contact points of packs of faces.
   void (*add_pore_pressure)(State<Dim>&, int first, int last);
-  // Found contacts, see FoundContactForces; null in 3D.
-  void (*update_found)(State<Dim>&, int first, int last) = nullptr;
-  double (*way_of_found)(const State<Dim>&, int first, int last) = nullptr;
+  // Found contacts, see FoundContactForces.
+  void (*update_found)(State<Dim>&, int first, int last);
+  double (*way_of_found)(const State<Dim>&, int first, int last);
 };
 
 /// Functions compiled for one instruction set, for bodies in 2D and in 3D.

@@ -157,7 +157,10 @@ void ExchangeStage::begin(Simulation& simulation) {
 }
 
 void ExchangeStage::read(const Simulation& simulation) {
-  if (!kept_.is_settling) read_before_change(simulation);
+  if (kept_.is_settling)
+    exchange_.read_start(simulation);
+  else
+    read_before_change(simulation);
 }
 
 bool ExchangeStage::advance(Simulation& simulation, int most_steps) {

@@ -11,6 +11,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/laws/common.hpp"
+#include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/reader.hpp"
 #include "pyroclast/model/loose_bodies.hpp"
@@ -44,41 +45,87 @@ constexpr Remembers kDamages[] = {Remembers::tension_damage, Remembers::shear_da
                                   Remembers::mixed_damage};
 
 /// Returns the internal variables of a broken point that was never touched.
-std::vector<double> broken_internals(const LawTable& law) {
-  std::vector<double> internals(law.internals(2).size());
+std::vector<double> broken_internals(const LawTable& law, int dim) {
+  std::vector<double> internals(law.internals(dim).size());
   for (const Remembers what : kDamages)
-    if (const int place = place_of(law, what, 2); place >= 0)
+    if (const int place = place_of(law, what, dim); place >= 0)
       internals[static_cast<std::size_t>(place)] = 1.0;
   return internals;
 }
 
 /// Tells whether a broken point of a law lets go of what it pulls.
-bool lets_go(const ContactProperties& properties) {
-  auto internals = broken_internals(*properties.law);
+bool lets_go(const ContactProperties& properties, int dim) {
+  auto internals = broken_internals(*properties.law, dim);
   std::vector<double> losses(properties.law->losses.size());
-  const double open[2] = {1e-3, 0.0};
-  return properties.law->update(2)(properties.constants().data(), open, internals.data(), losses.data())
+  const double open[3] = {1e-3, 0.0, 0.0};
+  return properties.law->update(dim)(properties.constants().data(), open, internals.data(), losses.data())
              .normal_traction == 0.0;
 }
+
+/// Returns the corners of a pair of triangles as the kernel has them.
+Triangle triangle_of(const TriangleCorners& corners, int first) {
+  return {corners[first], corners[first + 1], corners[first + 2]};
+}
+
+Overlap overlap_at(const TriangleCorners& corners) {
+  return overlap_of(triangle_of(corners, 0), triangle_of(corners, 3));
+}
+
+/// Pair of facets as searches and hand-overs see it.
+template <int Dim>
+struct PairShape;
+
+template <>
+struct PairShape<2> {
+  EdgePair<double> p;
+
+  PairShape(const std::array<Vec<2>, 4>& at, const BlockFacet<2>& a, const BlockFacet<2>& b)
+      : p(edge_pair<double>({at[0], at[1]}, {at[2], at[3]}, a.length, b.length)) {}
+  bool overlaps() const { return p.face; }
+  double overlap() const { return p.overlap; }
+  int points() const { return 2; }
+  double gap(int k) const { return p.gap[k]; }
+  double least_length() const { return std::min(p.length_a, p.length_b); }
+  double cosine() const { return p.cosine; }
+};
+
+template <>
+struct PairShape<3> {
+  Overlap names;
+  TrianglePair<double> p;
+  double least = 0.0;
+
+  PairShape(const TriangleCorners& at, const BlockFacet<3>& a, const BlockFacet<3>& b)
+      : names(overlap_at(at)), least(std::min(a.length, b.length)) {
+    if (names.count > 0) p = triangle_pair<double>(names, triangle_of(at, 0), triangle_of(at, 3));
+  }
+  bool overlaps() const { return names.count > 0; }
+  double overlap() const { return p.overlap; }
+  int points() const { return names.count; }
+  double gap(int k) const { return p.gap[k]; }
+  double least_length() const { return least; }
+  double cosine() const { return p.cosine; }
+};
 
 }  // namespace
 
 // The data
 
-void FoundContacts::make(Body<2>& body) {
+template <int Dim>
+void FoundContacts<Dim>::make(Body<Dim>& body) {
   if (!body.parameters.found.is_on) return;
-  if (body.parameters.kinematics != Kinematics::finite)
+  if (Dim == 2 && body.parameters.kinematics != Kinematics::finite)
     throw Error("contacts = found: blocks that meet others turn, which needs kinematics = finite");
   if (body.model.part) throw Error("contacts = found: one rank alone must hold the body");
-  body.found = std::make_unique<FoundData>();
-  FoundData& found = *body.found;
+  body.found = std::make_unique<FoundData<Dim>>();
+  FoundData<Dim>& found = *body.found;
   found.parameters = body.parameters.found;
   const auto& model = body.model;
 
   std::vector<LawOfRows> laws;
   for (const LawTable* table : body.laws) {
     LawOfRows& law = laws.emplace_back();
-    const auto infos = table->internals(2);
+    const auto infos = table->internals(Dim);
     law.internals = static_cast<int>(infos.size());
     law.losses = static_cast<int>(table->losses.size());
     law.constants = table->constant_count;
@@ -87,48 +134,78 @@ void FoundContacts::make(Body<2>& body) {
           fmt::format("contacts = found: the law \"{}\" has more than {} internal variables or losses",
                       table->name, LawOfRows::kMost));
     for (int i = 0; i < law.internals; ++i)
-      if (std::string_view(infos[i].name) == info::held_jump.name) law.held_jump = i;
-    std::ranges::copy(broken_internals(*table), law.broken);
+      if (std::string_view(infos[i].name) == info::held_jump.name)
+        law.held_jump = i;
+      else if (law.slip < 0 && std::string_view(infos[i].name) == info::slip.name)
+        law.slip = i;
+    std::ranges::copy(broken_internals(*table, Dim), law.broken);
   }
   found.arrays.laws = FlatArray<LawOfRows>(laws);
 
   const std::vector<int> block_of = gridpoint_blocks(model);
-  const auto add_facet = [&](std::array<int, 2> gridpoints, int face) {
-    const double length = norm(model.position[gridpoints[1]] - model.position[gridpoints[0]]);
-    found.facets.push_back({block_of[gridpoints[0]], gridpoints, face, face < 0, length});
+  const auto add_facet = [&](const std::array<int, Dim>& gridpoints, int face) {
+    found.facets.push_back({block_of[gridpoints[0]], gridpoints, face, face < 0, 0.0, 0.0});
+    BlockFacet<Dim>& facet = found.facets.back();
+    const auto at = [&](int i) -> const Vec<Dim>& { return model.position[gridpoints[i % Dim]]; };
+    for (int i = 0; i < (Dim == 2 ? 1 : Dim); ++i)
+      facet.length = std::max(facet.length, norm(at(i + 1) - at(i)));
+    if constexpr (Dim == 2)
+      facet.extent = facet.length;
+    else
+      facet.extent = 0.5 * norm(cross(at(1) - at(0), at(2) - at(0)));
   };
   for (const auto& face :
        pyroclast::outline(model, body.geometry, std::vector<bool>(model.block_count(), true)))
     add_facet(face.gridpoints, -1);
-  found.outline = static_cast<int>(found.facets.size());
   found.face_of_lane.assign(body.layout.faces.size() * kLanes, -1);
   for (int face = 0; face < model.face_count(); ++face) {
-    const int first = model.face_contacts[face];
-    const auto &begin = model.contacts[first], &end = model.contacts[first + 1];
-    add_facet({begin.a, end.a}, face);
-    add_facet({end.b, begin.b}, face);
+    found.first_of_face.push_back(static_cast<int>(found.facets.size()));
+    const int first = model.face_contacts[face], points = model.face_contacts[face + 1] - first;
+    if constexpr (Dim == 2) {
+      const auto &begin = model.contacts[first], &end = model.contacts[first + 1];
+      add_facet({begin.a, end.a}, face);
+      add_facet({end.b, begin.b}, face);
+    } else {
+      // the triangles of the fan from the first corner, as the zones have them; side b runs the other way
+      // round
+      const auto corner = [&](int i) -> const Contact<Dim>& { return model.contacts[first + i]; };
+      for (int i = 1; i + 1 < points; ++i) add_facet({corner(0).a, corner(i).a, corner(i + 1).a}, face);
+      for (int i = 1; i + 1 < points; ++i) add_facet({corner(0).b, corner(i + 1).b, corner(i).b}, face);
+    }
     const int slot = body.layout.contact_slot[first];
     found.face_of_lane[kLanes * body.layout.face_pack_of_point[slot / kLanes] + slot % kLanes] = face;
   }
+  found.first_of_face.push_back(static_cast<int>(found.facets.size()));
   found.is_handed_over.assign(static_cast<std::size_t>(model.face_count()), false);
 
   found.at_gridpoint = gridpoint_contacts(model);
   const auto blocks = static_cast<std::size_t>(model.block_count());
-  std::vector<double>& longest = found.longest;
-  longest.resize(blocks);
+  std::vector<double> longest(blocks);
   double sum = 0.0;
-  for (const BlockFacet& facet : found.facets) {
+  for (const BlockFacet<Dim>& facet : found.facets) {
     longest[facet.block] = std::max(longest[facet.block], facet.length);
     sum += facet.length;
   }
   const double mean_edge = sum / static_cast<double>(std::max<std::size_t>(found.facets.size(), 1));
   found.mean_edge = mean_edge;
+  std::vector<double> width(blocks, std::numeric_limits<double>::infinity());
+  if constexpr (Dim == 3)
+    for (const BlockFacet<Dim>& facet : found.facets) {
+      const auto at = [&](int i) -> const Vec<Dim>& { return model.position[facet.gridpoints[i]]; };
+      const Vec<Dim> area = cross(at(1) - at(0), at(2) - at(0)), normal = area * (1.0 / norm(area));
+      double across = 0.0;
+      for (int g = model.block_gridpoints[facet.block]; g < model.block_gridpoints[facet.block + 1]; ++g)
+        across = std::max(across, dot(normal, at(0) - model.position[g]));
+      width[facet.block] = std::min(width[facet.block], across);
+    }
   found.most_depth.resize(blocks);
+  found.broadest.resize(blocks);
   for (int b = 0; b < model.block_count(); ++b) {
-    double area = 0.0;
+    double volume = 0.0;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
-      area += body.geometry.volume[z] / model.thickness;
-    found.most_depth[b] = kMostDepth * area / longest[b];
+      volume += body.geometry.volume[z] / model.thickness;
+    found.broadest[b] = Dim == 2 ? longest[b] * model.thickness : volume / width[b];
+    found.most_depth[b] = kMostDepth * (Dim == 2 ? volume / longest[b] : width[b]);
   }
 
   found.contacts_of_block.resize(blocks);
@@ -137,7 +214,7 @@ void FoundContacts::make(Body<2>& body) {
   constexpr int kNone = -1, kSeveral = -2;
   found.interfaces.assign(static_cast<std::size_t>(materials * materials), kNone);
   for (int c = 0; c < model.contact_count(); ++c) {
-    const auto& contact = model.contacts[c];
+    const Joint& contact = model.joint(c);
     const int a = block_of[contact.a], b = block_of[contact.b];
     for (const int block : {a, b}) found.contacts_of_block[block].push_back(c);
     if (found.first_contact[contact.interface] < 0) found.first_contact[contact.interface] = c;
@@ -151,7 +228,7 @@ void FoundContacts::make(Body<2>& body) {
   std::vector<bool> serves(model.interface_names.size());
   for (int i = 0; i < std::ssize(serves); ++i)
     if (const int set = FoundContacts(body).set_of_interface(i); set >= 0)
-      serves[i] = lets_go(body.properties.contacts[set]);
+      serves[i] = lets_go(body.properties.contacts[set], Dim);
   found.of_body = interfaces_of_loose_bodies(model);
   const std::string& name = found.parameters.like;
   const int like = name.empty() ? 0 : place_in(model.interface_names, name);
@@ -171,36 +248,51 @@ void FoundContacts::make(Body<2>& body) {
   found.block_of_slot.resize(slots);
   for (int g = 0; g < model.gridpoint_count(); ++g)
     found.block_of_slot[body.layout.gridpoint_slot[g]] = block_of[g];
-  found.arrays.searched = body.made<Vec<2>>(slots);
-  found.searched_far = body.made<Vec<2>>(slots);
+  found.arrays.searched = body.template made<Vec<Dim>>(slots);
+  found.searched_far = body.template made<Vec<Dim>>(slots);
   body.state.found = &found.seen;
 }
 
-Vec<2> FoundContacts::place(int gridpoint, const FlatArray<Vec<2>>& displacement) const {
+template <int Dim>
+Vec<Dim> FoundContacts<Dim>::place(int gridpoint, const FlatArray<Vec<Dim>>& displacement) const {
   return body_.model.position[gridpoint] + displacement[body_.layout.gridpoint_slot[gridpoint]];
 }
 
-/// Returns the gridpoints of a pair: the ends of edge a, then those of edge b.
-std::array<int, 4> FoundContacts::corners(const Key& key) const {
+/// Returns the gridpoints of a pair: those of facet a, then those of facet b the other way round.
+template <int Dim>
+std::array<int, 2 * Dim> FoundContacts<Dim>::corners(const Key& key) const {
   const auto &a = found_.facets[key[0]].gridpoints, &b = found_.facets[key[1]].gridpoints;
-  return {a[0], a[1], b[1], b[0]};
+  if constexpr (Dim == 2)
+    return {a[0], a[1], b[1], b[0]};
+  else
+    return {a[0], a[1], a[2], b[0], b[2], b[1]};
 }
 
 /// \param place  returns the place of a gridpoint, m
+template <int Dim>
 template <class Place>
-EdgePair<double> FoundContacts::pair_at(const Key& key, Place place) const {
+typename FoundContacts<Dim>::Corners FoundContacts<Dim>::places(const Key& key, Place place) const {
   const auto at = corners(key);
-  return edge_pair<double>({place(at[0]), place(at[1])}, {place(at[2]), place(at[3])},
-                           found_.facets[key[0]].length, found_.facets[key[1]].length);
+  Corners places;
+  for (int i = 0; i < 2 * Dim; ++i) places[i] = place(at[i]);
+  return places;
 }
 
-double FoundContacts::most_depth(const Key& key) const {
+template <int Dim>
+PairShape<Dim> shape_of(const FoundData<Dim>& found, const FoundPair<Dim>& pair,
+                        const std::array<Vec<Dim>, 2 * Dim>& at) {
+  return {at, found.facets[pair.facets[0]], found.facets[pair.facets[1]]};
+}
+
+template <int Dim>
+double FoundContacts<Dim>::most_depth(const Key& key) const {
   return std::min(found_.most_depth[found_.facets[key[0]].block],
                   found_.most_depth[found_.facets[key[1]].block]);
 }
 
 /// Tells whether a contact that is not handed over joins two gridpoints.
-bool FoundContacts::holds_together(int a, int b) const {
+template <int Dim>
+bool FoundContacts<Dim>::holds_together(int a, int b) const {
   const GridpointContacts& at = found_.at_gridpoint;
   for (int i = at.begin[a]; i < at.begin[a + 1]; ++i) {
     const auto& contact = body_.model.contacts[at.contact_side[i] / 2];
@@ -209,17 +301,24 @@ bool FoundContacts::holds_together(int a, int b) const {
   return false;
 }
 
-/// Returns the bits of the ends that may press: at the mouth of a notch or the root of a crack, where a
-/// contact still joins both corners, it presses alone.
-std::uint32_t FoundContacts::ends_that_count(const FoundPair& pair) const {
-  if (face_of(pair.facets) >= 0) return 3;
-  const auto at = corners(pair.facets);
-  return (holds_together(at[0], at[2]) ? 0U : 1U) | (holds_together(at[1], at[3]) ? 0U : 2U);
+/// Returns the bits of the corners of a pair that a contact still joins to a corner across, at the mouth of a
+/// notch or the root of a crack: the contact presses there alone.
+template <int Dim>
+std::uint32_t FoundContacts<Dim>::joined_corners(const Key& key) const {
+  if (face_of(key) >= 0) return 0;
+  const auto at = corners(key);
+  std::uint32_t joined = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = Dim; j < 2 * Dim; ++j)
+      if ((Dim == 3 || j == i + Dim) && holds_together(at[i], at[j]))
+        joined |= 1U << static_cast<unsigned>(i) | 1U << static_cast<unsigned>(j);
+  return joined;
 }
 
 /// Returns the interface of a pair: that of its face; or that of a loose body, of two the one that the deck
 /// names later; else that of the two materials.
-int FoundContacts::interface_of(const Key& key) const {
+template <int Dim>
+int FoundContacts<Dim>::interface_of(const Key& key) const {
   if (const int face = face_of(key); face >= 0)
     return body_.model.contacts[body_.model.face_contacts[face]].interface;
   const auto of_body = [&](int facet) { return found_.of_body[found_.facets[facet].block]; };
@@ -230,52 +329,73 @@ int FoundContacts::interface_of(const Key& key) const {
 }
 
 /// Returns the face whose two sides a pair is; -1 for other pairs.
-int FoundContacts::face_of(const Key& key) const {
+template <int Dim>
+int FoundContacts<Dim>::face_of(const Key& key) const {
   const int face = found_.facets[key[0]].face;
   return found_.facets[key[1]].face == face ? face : -1;
 }
 
-/// Returns the set of parameters of an end of a pair: that of the face's own contact; else that of the
-/// nearest contact of the interface, so that the pair has the temperature of its place.
-int FoundContacts::set_of(const FoundPair& pair, int end) const {
+/// Returns a set of parameters of a pair: that of a contact of its own face; else that of the nearest contact
+/// of the interface, so that the pair has the temperature of its place.
+///
+/// \param contact  contact of the face
+template <int Dim>
+int FoundContacts<Dim>::set_of(const Pair& pair, int contact) const {
   const auto& model = body_.model;
   const auto& of_contact = body_.properties.of_contact;
-  const BlockFacet &first = found_.facets[pair.facets[0]], &second = found_.facets[pair.facets[1]];
-  if (const int face = face_of(pair.facets); face >= 0) return of_contact[model.face_contacts[face] + end];
+  const BlockFacet<Dim>&first = found_.facets[pair.facets[0]], &second = found_.facets[pair.facets[1]];
+  if (const int face = face_of(pair.facets); face >= 0)
+    return of_contact[model.face_contacts[face] + contact];
   const int interface = pair.interface;
-  for (const BlockFacet& facet : {first, second})
+  for (const BlockFacet<Dim>& facet : {first, second})
     if (facet.face >= 0)
       if (const int c = model.face_contacts[facet.face]; model.contacts[c].interface == interface)
         return of_contact[c];
-  for (const BlockFacet& facet : {first, second})
+  for (const BlockFacet<Dim>& facet : {first, second})
     for (const int c : found_.contacts_of_block[facet.block])
       if (model.contacts[c].interface == interface) return of_contact[c];
   return set_of_interface(interface);
 }
 
+/// Returns the sets of parameters of a pair; in space of a face that is handed over that of the contact at
+/// the second corner of the first facet.
+template <int Dim>
+std::array<int, kSetsOfPair<Dim>> FoundContacts<Dim>::sets_of(const Pair& pair) const {
+  if constexpr (Dim == 2) {
+    return {set_of(pair, 0), set_of(pair, 1)};
+  } else {
+    const int face = face_of(pair.facets);
+    return {set_of(pair, face < 0 ? 0 : pair.facets[0] - found_.first_of_face[face] + 1)};
+  }
+}
+
 /// Returns the set of an interface at no special place; -1 where the body has none.
-int FoundContacts::set_of_interface(int interface) const {
+template <int Dim>
+int FoundContacts<Dim>::set_of_interface(int interface) const {
   if (!body_.properties.of_interface.empty()) return body_.properties.of_interface[interface];
   const int c = found_.first_contact[interface];
   return c < 0 ? -1 : body_.properties.of_contact[c];
 }
 
-const LawTable& FoundContacts::law_of(const FoundPair& pair) const {
+template <int Dim>
+const LawTable& FoundContacts<Dim>::law_of(const Pair& pair) const {
   return body_.properties.contacts.law(pair.sets[0]);
 }
 
-int FoundContacts::law_index(const FoundPair& pair) const {
+template <int Dim>
+int FoundContacts<Dim>::law_index(const Pair& pair) const {
   return place_in(body_.laws, &law_of(pair));
 }
 
-FoundPair FoundContacts::new_pair(const Key& key) const {
-  FoundPair pair;
+template <int Dim>
+FoundPair<Dim> FoundContacts<Dim>::new_pair(const Key& key) const {
+  Pair pair;
   pair.facets = key;
   pair.interface = interface_of(key);
-  pair.sets = {set_of(pair, 0), set_of(pair, 1)};
+  pair.sets = sets_of(pair);
   pair.law = law_index(pair);
   const LawOfRows& law = found_.arrays.laws[pair.law];
-  for (int end = 0; end < 2; ++end)
+  for (int point = 0; point < kPointsOfPair<Dim>; ++point)
     pair.internals.insert(pair.internals.end(), law.broken, law.broken + law.internals);
   pair.lost.resize(static_cast<std::size_t>(law.losses));
   return pair;
@@ -283,7 +403,8 @@ FoundPair FoundContacts::new_pair(const Key& key) const {
 
 /// Returns the coefficient of damping of a pair, Pa s/m: the share of 2 sqrt(K_n m / A) that the parameters
 /// ask for, with the mass of the smaller block over its longest facet.
-double FoundContacts::damping_of(const FoundPair& pair, double stiffness) const {
+template <int Dim>
+double FoundContacts<Dim>::damping_of(const Pair& pair, double stiffness) const {
   if (found_.parameters.damping == 0.0) return 0.0;
   double mass_of_area = std::numeric_limits<double>::infinity();
   for (const int facet : pair.facets) {
@@ -291,12 +412,13 @@ double FoundContacts::damping_of(const FoundPair& pair, double stiffness) const 
     double mass = 0.0;
     for (int g = body_.model.block_gridpoints[block]; g < body_.model.block_gridpoints[block + 1]; ++g)
       mass += body_.mass[g];
-    mass_of_area = std::min(mass_of_area, mass / (found_.longest[block] * body_.model.thickness));
+    mass_of_area = std::min(mass_of_area, mass / found_.broadest[block]);
   }
   return 2.0 * found_.parameters.damping * std::sqrt(stiffness * mass_of_area);
 }
 
-void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
+template <int Dim>
+void FoundContacts<Dim>::add_stiffness(std::vector<double>& of_gridpoints) const {
   const auto& model = body_.model;
   const auto& sets = body_.properties.contacts;
   const auto& of_contact = body_.properties.of_contact;
@@ -323,7 +445,7 @@ void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
   const double share = kGridpointDamping * found_.parameters.damping,
                grown = share + std::sqrt(1.0 + share * share);
   const int materials = static_cast<int>(model.material_names.size());
-  for (const BlockFacet& facet : found_.facets) {
+  for (const BlockFacet<Dim>& facet : found_.facets) {
     // any block may meet any body
     double needed = of_bodies;
     for (int other = 0; other < materials; ++other)
@@ -331,22 +453,24 @@ void FoundContacts::add_stiffness(std::vector<double>& of_gridpoints) const {
           needed, of_interface[found_.interfaces[model.block_material[facet.block] * materials + other]]);
     needed *= grown * grown;
     if (facet.face >= 0) needed -= stiffness_of_set(of_contact[model.face_contacts[facet.face]]);
-    // the factor 2 counts the gridpoint itself and those across; half of the edge acts on each end
+    // the factor 2 counts the gridpoint itself and those across; each corner has its part of the facet
     if (needed > 0.0)
       for (const int g : facet.gridpoints)
-        of_gridpoints[g] += 2.0 * needed * 0.5 * facet.length * model.thickness;
+        of_gridpoints[g] += 2.0 * needed * (1.0 / Dim) * facet.extent * model.thickness;
   }
 }
 
 // The search
 
-void FoundContacts::begin() {
+template <int Dim>
+void FoundContacts<Dim>::begin() {
   search();
   leave_out_overlaps(std::vector<bool>(found_.facets.size(), true), kTouching);
   make_rows();
 }
 
-void FoundContacts::search_where_needed() {
+template <int Dim>
+void FoundContacts<Dim>::search_where_needed() {
   const auto watched = static_cast<int>(found_.arrays.watched.size());
   found_.seen.way = found_.has_near ? body_.step.passes.way_of_found(body_.state, 0, watched) : 0.0;
   if (!found_.has_near || !(found_.seen.way <= 1.0)) {
@@ -358,13 +482,14 @@ void FoundContacts::search_where_needed() {
 
 /// Finds the near pairs, and first the far ones where they are not known any more. Rows stay where they hold
 /// the same pairs.
-void FoundContacts::search() {
+template <int Dim>
+void FoundContacts<Dim>::search() {
   take_back();
   for (std::size_t f = 0; found_.has_far && f < found_.facets.size(); ++f)
     for (const int g : found_.facets[f].gridpoints) {
       if (!found_.is_listed[f]) break;
       const int slot = body_.layout.gridpoint_slot[g];
-      const Vec<2> way = body_.arrays.displacement[slot] - found_.searched_far[slot];
+      const Vec<Dim> way = body_.arrays.displacement[slot] - found_.searched_far[slot];
       const double most = 0.5 * found_.skin[found_.facets[f].block];
       found_.has_far = found_.has_far && dot(way, way) <= most * most;
     }
@@ -378,11 +503,12 @@ void FoundContacts::search() {
 
 /// Returns twice the way that each block's fastest gridpoint goes in some steps, m.
 /// \param least, most  bounds, m
-std::vector<double> FoundContacts::ways(double steps, double least, double most) const {
-  std::vector<double> ways(found_.longest.size(), least);
+template <int Dim>
+std::vector<double> FoundContacts<Dim>::ways(double steps, double least, double most) const {
+  std::vector<double> ways(found_.broadest.size(), least);
   for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
     const int slot = body_.layout.gridpoint_slot[g];
-    const double way = 2.0 * steps * body_.state.time_step * norm(vector_at<2>(body_.state.velocity, slot));
+    const double way = 2.0 * steps * body_.state.time_step * norm(vector_at<Dim>(body_.state.velocity, slot));
     double& of_block = ways[found_.block_of_slot[slot]];
     if (!(way <= of_block)) of_block = way < most ? way : most;
   }
@@ -391,40 +517,51 @@ std::vector<double> FoundContacts::ways(double steps, double least, double most)
 
 /// Returns the box of a facet at the search for far pairs, grown by half of the largest distance of a pair
 /// that counts before the next such search; none for a facet that has flown off, or has no number.
-std::optional<FoundContacts::Box> FoundContacts::box_of(int index) const {
-  const BlockFacet& facet = found_.facets[index];
-  const Vec<2> a = place(facet.gridpoints[0], found_.searched_far),
-               b = place(facet.gridpoints[1], found_.searched_far);
-  const double farthest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1])});
+template <int Dim>
+std::optional<typename FoundContacts<Dim>::Box> FoundContacts<Dim>::box_of(int index) const {
+  const BlockFacet<Dim>& facet = found_.facets[index];
+  Box box;
+  double farthest = 0.0;
+  for (int k = 0; k < Dim; ++k) {
+    const Vec<Dim> at = place(facet.gridpoints[k], found_.searched_far);
+    for (int i = 0; i < Dim; ++i) {
+      box.low[i] = k == 0 ? at[i] : std::min(box.low[i], at[i]);
+      box.high[i] = k == 0 ? at[i] : std::max(box.high[i], at[i]);
+      if (!(std::abs(at[i]) <= farthest)) farthest = std::abs(at[i]);
+    }
+  }
   if (!(farthest < kFarthest * found_.mean_edge)) return {};
   const double grow =
       0.5 * ((1.0 + kMargin * kLongestNear) * found_.skin[facet.block] + found_.most_depth[facet.block]);
-  Box box;
-  for (int i = 0; i < 2; ++i) {
-    box.low[i] = std::min(a[i], b[i]) - grow;
-    box.high[i] = std::max(a[i], b[i]) + grow;
+  for (int i = 0; i < Dim; ++i) {
+    box.low[i] -= grow;
+    box.high[i] += grow;
   }
   return box;
 }
 
 /// Lists a pair of free facets as far where their boxes meet and it may press before the next such search.
-void FoundContacts::list_if_far(int a, const Box& box_a, int b, const Box& box_b) {
+template <int Dim>
+void FoundContacts<Dim>::list_if_far(int a, const Box& box_a, int b, const Box& box_b) {
   if (found_.facets[a].block == found_.facets[b].block) return;
-  for (int k = 0; k < 2; ++k)
+  for (int k = 0; k < Dim; ++k)
     if (box_a.low[k] > box_b.high[k] || box_b.low[k] > box_a.high[k]) return;
   const Key key{std::min(a, b), std::max(a, b)};
-  const auto p = pair_at(key, [&](int g) { return place(g, found_.searched_far); });
+  const Corners at = places(key, [&](int g) { return place(g, found_.searched_far); });
   const double skin = std::max(found_.skin[found_.facets[a].block], found_.skin[found_.facets[b].block]);
-  if (way_to_press(key, p) < kMargin * (1.0 + kLongestNear) * skin) found_.far.push_back(key);
+  const double within = kMargin * (1.0 + kLongestNear) * skin;
+  if (way_to_press(key, at, within) < within) found_.far.push_back(key);
 }
 
-void FoundContacts::sort_far() {
+template <int Dim>
+void FoundContacts<Dim>::sort_far() {
   std::sort(found_.far.begin(), found_.far.end());
   found_.far.erase(std::unique(found_.far.begin(), found_.far.end()), found_.far.end());
 }
 
 /// Lists the far pairs of free facets.
-void FoundContacts::find_far() {
+template <int Dim>
+void FoundContacts<Dim>::find_far() {
   found_.skin = ways(kFarOverNear * found_.parameters.steps, found_.parameters.skin * found_.mean_edge,
                      std::max(kLongestFar, found_.parameters.skin) * found_.mean_edge);
   found_.searched_far = body_.arrays.displacement;
@@ -443,18 +580,35 @@ void FoundContacts::find_far() {
   }
   // cells of a grid, with the facets whose boxes reach into them
   const double cell = free.empty() ? 1.0 : 2.0 * sum / static_cast<double>(free.size());
-  std::vector<std::array<int, 3>> entries;
+  struct Entry {
+    std::array<int, Dim> cell;
+    int facet;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> entries;
   const auto cell_of = [&](double x) { return static_cast<int>(std::floor(x / cell)); };
-  for (int i = 0; i < std::ssize(free); ++i)
-    for (int x = cell_of(boxes[i].low[0]); x <= cell_of(boxes[i].high[0]); ++x)
-      for (int y = cell_of(boxes[i].low[1]); y <= cell_of(boxes[i].high[1]); ++y)
-        entries.push_back({x, y, i});
+  for (int i = 0; i < std::ssize(free); ++i) {
+    std::array<int, Dim> first, last;
+    for (int k = 0; k < Dim; ++k) {
+      first[k] = cell_of(boxes[i].low[k]);
+      last[k] = cell_of(boxes[i].high[k]);
+    }
+    for (std::array<int, Dim> at = first;;) {
+      entries.push_back({at, i});
+      int k = Dim - 1;
+      while (k >= 0 && at[k] == last[k]) {
+        at[k] = first[k];
+        --k;
+      }
+      if (k < 0) break;
+      ++at[k];
+    }
+  }
   std::sort(entries.begin(), entries.end());
   found_.far.clear();
-  const auto same_cell = [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; };
   for (std::size_t i = 0; i < entries.size(); ++i)
-    for (std::size_t j = i + 1; j < entries.size() && same_cell(entries[i], entries[j]); ++j) {
-      const int a = entries[i][2], b = entries[j][2];
+    for (std::size_t j = i + 1; j < entries.size() && entries[i].cell == entries[j].cell; ++j) {
+      const int a = entries[i].facet, b = entries[j].facet;
       list_if_far(free[a], boxes[a], free[b], boxes[b]);
     }
   sort_far();
@@ -462,7 +616,8 @@ void FoundContacts::find_far() {
 }
 
 /// Adds facets that have just become free to the lists of far pairs that hold.
-void FoundContacts::add_to_far(const std::vector<int>& facets) {
+template <int Dim>
+void FoundContacts<Dim>::add_to_far(const std::vector<int>& facets) {
   if (!found_.has_far) return;
   for (const int a : facets) {
     const auto box = box_of(a);
@@ -475,7 +630,8 @@ void FoundContacts::add_to_far(const std::vector<int>& facets) {
 }
 
 /// Lists the packs of gridpoints of free facets, and the ways that these may go.
-void FoundContacts::watch() {
+template <int Dim>
+void FoundContacts<Dim>::watch() {
   std::vector<WatchedPack> watched;
   std::vector<int> entry(static_cast<std::size_t>(body_.layout.gridpoint_packs), -1);
   std::vector<bool> is_watched(found_.block_of_slot.size());
@@ -500,37 +656,52 @@ void FoundContacts::watch() {
 
 /// Returns how far the corners of a pair that does not press must go at least until it may, m, but for
 /// kMargin; 0 or less where it may at once.
-double FoundContacts::way_to_press(const Key& key, const EdgePair<double>& p) const {
-  if (!(p.overlap > 0.0) || !(p.cosine > 0.0))
-    return std::max(-p.overlap, -p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
-  const auto [least, most] = std::minmax(p.gap[0], p.gap[1]);
-  return std::max(least, -most_depth(key) - most);
+/// \param within  largest way that is asked for, times kMargin, m
+template <int Dim>
+double FoundContacts<Dim>::way_to_press(const Key& key, const Corners& at, double within) const {
+  if constexpr (Dim == 3) {
+    return pyroclast::way_to_press(triangle_of(at, 0), triangle_of(at, 3), most_depth(key), within);
+  } else {
+    const EdgePair<double> p = PairShape<2>(at, found_.facets[key[0]], found_.facets[key[1]]).p;
+    if (!(p.overlap > 0.0) || !(p.cosine > 0.0))
+      return std::max(-p.overlap, -p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
+    const auto [least, most] = std::minmax(p.gap[0], p.gap[1]);
+    return std::max(least, -most_depth(key) - most);
+  }
 }
 
-/// Returns the same of a pair that is handed over and rests: until an end goes through the law, or until its
-/// edges may leave each other.
-double FoundContacts::way_to_change(const FoundPair& pair, const EdgePair<double>& p) const {
-  double way = std::min(p.overlap, p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
-  for (int k = 0; k < 2; ++k) way = std::min(way, p.gap[k] + pair.ends[k].offset - pair.ends[k].rest);
-  return way;
+/// Returns the same of a pair that is handed over and rests: until a point goes through the law, or until its
+/// facets may leave each other. In space such pairs are always near.
+template <int Dim>
+double FoundContacts<Dim>::way_to_change(const Pair& pair, const Corners& at) const {
+  if constexpr (Dim == 3) {
+    return 0.0;
+  } else {
+    const EdgePair<double> p = shape_of(found_, pair, at).p;
+    double way = std::min(p.overlap, p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
+    for (int k = 0; k < 2; ++k) way = std::min(way, p.gap[k] + pair.points[k].offset - pair.points[k].rest);
+    return way;
+  }
 }
 
 /// Returns FoundPair::wakes of a pair that does not press; 1 or more where it cannot before the next search.
 /// \param handed_over  the pair where it is handed over, else null
-double FoundContacts::wakes(const Key& key, const FoundPair* handed_over) const {
-  const auto p = pair_at(key, [&](int g) { return place(g, body_.arrays.displacement); });
-  const double way = handed_over ? way_to_change(*handed_over, p) : way_to_press(key, p);
+template <int Dim>
+double FoundContacts<Dim>::wakes(const Key& key, const Pair* handed_over) const {
+  const Corners at = places(key, [&](int g) { return place(g, body_.arrays.displacement); });
   const double reach =
       std::max(found_.reach[found_.facets[key[0]].block], found_.reach[found_.facets[key[1]].block]);
+  const double way = handed_over ? way_to_change(*handed_over, at) : way_to_press(key, at, kMargin * reach);
   const double share = way / (kMargin * reach);
   return share > 0.0 ? share * share : 0.0;
 }
 
 /// Lets rows and gridpoints sleep while no pair of theirs can press.
-void FoundContacts::let_sleep() {
+template <int Dim>
+void FoundContacts<Dim>::let_sleep() {
   auto& arrays = found_.arrays;
-  for (FoundRow& row : arrays.rows) row.wakes = std::numeric_limits<double>::max();
-  for (const FoundPair& pair : found_.pairs)
+  for (FoundRow<Dim>& row : arrays.rows) row.wakes = std::numeric_limits<double>::max();
+  for (const Pair& pair : found_.pairs)
     if (pair.slot >= 0) {
       double& wakes = arrays.rows[pair.slot / kLanes].wakes;
       wakes = std::min(wakes, pair.wakes);
@@ -538,18 +709,19 @@ void FoundContacts::let_sleep() {
   for (LoadedGridpoint& gridpoint : arrays.loaded) {
     gridpoint.wakes = std::numeric_limits<double>::max();
     for (int k = gridpoint.first_force; k < gridpoint.last_force; ++k)
-      gridpoint.wakes = std::min(gridpoint.wakes, arrays.rows[arrays.acting[k] / (4 * kLanes)].wakes);
+      gridpoint.wakes = std::min(gridpoint.wakes, arrays.rows[arrays.acting[k] / (2 * Dim * kLanes)].wakes);
   }
 }
 
 /// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether the near
 /// ones are others than before.
-bool FoundContacts::find_near() {
+template <int Dim>
+bool FoundContacts<Dim>::find_near() {
   std::vector<double> reach =
       ways(found_.parameters.steps, found_.parameters.reach * found_.mean_edge, found_.mean_edge);
   for (std::size_t b = 0; b < reach.size(); ++b) reach[b] = std::min(reach[b], kLongestNear * found_.skin[b]);
   found_.reach = std::move(reach);
-  std::vector<FoundPair> next;
+  std::vector<Pair> next;
   next.reserve(found_.pairs.size());
   bool others = false;
   auto old = found_.pairs.begin();
@@ -587,7 +759,8 @@ bool FoundContacts::find_near() {
 
 /// Puts near pairs into rows: those of one law and its choices side by side, first those that press, and then
 /// those that wake sooner.
-void FoundContacts::make_rows() {
+template <int Dim>
+void FoundContacts<Dim>::make_rows() {
   struct Group {
     int law;
     std::vector<int> choices;
@@ -597,43 +770,43 @@ void FoundContacts::make_rows() {
   };
   std::vector<std::pair<Group, int>> order;
   for (int i = 0; i < std::ssize(found_.pairs); ++i) {
-    FoundPair& pair = found_.pairs[i];
+    Pair& pair = found_.pairs[i];
     pair.slot = -1;
     if (!pair.is_near) continue;
-    if (pair.sets[0] < 0) pair.sets = {set_of(pair, 0), set_of(pair, 1)};
+    if (pair.sets[0] < 0) pair.sets = sets_of(pair);
     order.push_back({{pair.law, body_.properties.contacts.choices(pair.sets[0]), pair.wakes}, i});
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;
-  std::vector<FoundRow> rows;
+  std::vector<FoundRow<Dim>> rows;
   std::vector<std::size_t> firsts{0};  // entries of `order`
   int internals = 0, losses = 0, constants = 0, choices = 0;
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
     while (end < order.size() && end < i + kLanes && order[end].first.goes_with(order[i].first)) ++end;
-    FoundRow& row = rows.emplace_back();
+    FoundRow<Dim>& row = rows.emplace_back();
     row.law = order[i].first.law;
     const LawOfRows& law = arrays.laws[row.law];
-    row.first_internal = std::exchange(internals, internals + 2 * law.internals);
+    row.first_internal = std::exchange(internals, internals + kPointsOfPair<Dim> * law.internals);
     row.first_loss = std::exchange(losses, losses + law.losses);
-    row.first_constant = std::exchange(constants, constants + 2 * law.constants);
+    row.first_constant = std::exchange(constants, constants + kSetsOfPair<Dim> * law.constants);
     const int bytes = static_cast<int>((body_.laws[row.law]->constants_size + 63) / 64 * 64);
     row.first_choice = std::exchange(choices, choices + bytes);
     i = end;
     firsts.push_back(end);
   }
-  arrays.rows = FlatArray<FoundRow>(rows);
+  arrays.rows = FlatArray<FoundRow<Dim>>(rows);
   arrays.internals = FlatArray<Line>(static_cast<std::size_t>(internals));
   arrays.lost = FlatArray<Line>(static_cast<std::size_t>(losses));
   arrays.constants = FlatArray<Line>(static_cast<std::size_t>(constants));
   arrays.choices = FlatArray<std::byte>(static_cast<std::size_t>(choices));
-  arrays.forces = FlatArray<Vec<2>>(4 * kLanes * rows.size());
+  arrays.forces = FlatArray<Vec<Dim>>(2 * Dim * kLanes * rows.size());
   found_.constants.resize(static_cast<std::size_t>(body_.properties.contacts.size()));
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::size_t at = firsts[r] + static_cast<std::size_t>(lane);
       const bool idles = at >= firsts[r + 1];
-      FoundPair& pair = found_.pairs[order[idles ? firsts[r] : at].second];
+      Pair& pair = found_.pairs[order[idles ? firsts[r] : at].second];
       if (!idles) pair.slot = slot_of(static_cast<int>(r), lane);
       // an idle lane is a new pair of the same facets, without thickness
       put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane);
@@ -647,7 +820,8 @@ void FoundContacts::make_rows() {
 }
 
 /// Returns the constants of a set of parameters, derived when they are first asked for.
-const ConstantsOfSet& FoundContacts::constants_of(int set) const {
+template <int Dim>
+const ConstantsOfSet& FoundContacts<Dim>::constants_of(int set) const {
   ConstantsOfSet& constants = found_.constants[set];
   if (!constants.bytes.empty()) return constants;
   const LawTable& law = body_.properties.contacts.law(set);
@@ -659,15 +833,14 @@ const ConstantsOfSet& FoundContacts::constants_of(int set) const {
   return constants;
 }
 
-void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane) {
+template <int Dim>
+void FoundContacts<Dim>::put_into_row(const Pair& pair, int index, int lane) {
   auto& arrays = found_.arrays;
-  FoundRow& row = arrays.rows[index];
+  FoundRow<Dim>& row = arrays.rows[index];
   const LawOfRows& law = arrays.laws[row.law];
   const auto at = corners(pair.facets);
-  for (int i = 0; i < 4; ++i) row.corners[i][lane] = offset_of<2>(body_.layout.gridpoint_slot[at[i]]);
+  for (int i = 0; i < 2 * Dim; ++i) row.corners[i][lane] = offset_of<Dim>(body_.layout.gridpoint_slot[at[i]]);
   const auto put = [&](Line& line, double number) { line.number[lane] = number; };
-  put(row.unloaded_a, found_.facets[pair.facets[0]].length);
-  put(row.unloaded_b, found_.facets[pair.facets[1]].length);
   put(row.thickness, body_.model.thickness * pair.ratio);
   put(row.most_depth, most_depth(pair.facets));
   put(row.not_counted, pair.not_counted);
@@ -678,37 +851,52 @@ void FoundContacts::put_into_row(const FoundPair& pair, int index, int lane) {
   put(row.damping, damping_of(pair, constants_of(pair.sets[0]).stiffness.normal));
   const auto bit = 1U << static_cast<unsigned>(lane);
   if (pair.is_handed_over) row.handed_over |= bit;
-  const auto ends = ends_that_count(pair);
-  for (int k = 0; k < 2; ++k) {
-    if ((ends >> static_cast<unsigned>(k) & 1U) != 0) row.counts[k] |= bit;
-    put(row.area[k], pair.ends[k].area);
-    put(row.held[k], pair.ends[k].held);
-    put(row.shift[k], pair.ends[k].shift);
-    put(row.offset[k], pair.ends[k].offset);
-    put(row.rest[k], pair.ends[k].rest);
-    put(row.damped[k], pair.ends[k].damped);
-    const ConstantsOfSet& constants = constants_of(pair.sets[k]);
-    if (lane == 0 && k == 0) std::ranges::copy(constants.bytes, arrays.choices.begin() + row.first_choice);
+  for (int set = 0; set < kSetsOfPair<Dim>; ++set) {
+    const ConstantsOfSet& constants = constants_of(pair.sets[set]);
+    if (lane == 0 && set == 0) std::ranges::copy(constants.bytes, arrays.choices.begin() + row.first_choice);
     for (int i = 0; i < law.constants; ++i)
-      put(arrays.constants[row.first_constant + k * law.constants + i], constants.numbers[i]);
-    put(row.shear_stiffness[k], constants.stiffness.shear);
+      put(arrays.constants[row.first_constant + set * law.constants + i], constants.numbers[i]);
+    put(row.shear_stiffness[set], constants.stiffness.shear);
+  }
+  for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
+    const PairPoint<Dim>& point = pair.points[k];
+    put(row.area[k], point.area);
+    for (int i = 0; i + 1 < Dim; ++i) {
+      put(row.held[k][i], point.held[i]);
+      put(row.shift[k][i], point.shift[i]);
+    }
+    put(row.offset[k], point.offset);
+    put(row.rest[k], point.rest);
+    put(row.damped[k], point.damped);
     for (int i = 0; i < law.internals; ++i)
       put(arrays.internals[row.first_internal + k * law.internals + i],
           pair.internals[k * law.internals + i]);
+  }
+  const std::uint32_t joined = joined_corners(pair.facets);
+  if constexpr (Dim == 2) {
+    put(row.unloaded_a, found_.facets[pair.facets[0]].length);
+    put(row.unloaded_b, found_.facets[pair.facets[1]].length);
+    for (int k = 0; k < 2; ++k)
+      if ((joined >> static_cast<unsigned>(k) & 1U) == 0) row.counts[k] |= bit;
+  } else {
+    row.pressed_at[lane] = pair.pressed_at;
+    row.overlap[lane] = pair.bears() || pair.is_handed_over ? overlap_at(pair.pressed_at) : Overlap{};
+    row.joined[lane] = joined;
   }
   for (int i = 0; i < law.losses; ++i) put(arrays.lost[row.first_loss + i], pair.lost[i]);
 }
 
 /// Lists the forces of each gridpoint in the order of the pairs' keys.
-void FoundContacts::list_loads() {
+template <int Dim>
+void FoundContacts<Dim>::list_loads() {
   auto& arrays = found_.arrays;
   std::vector<std::array<int, 2>> forces;  // slot, and entry of the force
-  for (const FoundPair& pair : found_.pairs) {
+  for (const Pair& pair : found_.pairs) {
     if (pair.slot < 0) continue;
     const auto at = corners(pair.facets);
-    for (int i = 0; i < 4; ++i)
-      forces.push_back(
-          {body_.layout.gridpoint_slot[at[i]], (4 * (pair.slot / kLanes) + i) * kLanes + pair.slot % kLanes});
+    for (int i = 0; i < 2 * Dim; ++i)
+      forces.push_back({body_.layout.gridpoint_slot[at[i]],
+                        (2 * Dim * (pair.slot / kLanes) + i) * kLanes + pair.slot % kLanes});
   }
   std::stable_sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
   std::vector<LoadedGridpoint> loaded;
@@ -732,46 +920,52 @@ void FoundContacts::list_loads() {
 }
 
 /// Gives pairs the numbers that they have in rows.
-void FoundContacts::take_back() {
-  for (FoundPair& pair : found_.pairs) take_from_row(found_, pair);
+template <int Dim>
+void FoundContacts<Dim>::take_back() {
+  for (Pair& pair : found_.pairs) take_from_row(found_, pair);
 }
 
-void FoundContacts::forget_lists() {
-  for (FoundPair& pair : found_.pairs) pair.slot = -1;
+template <int Dim>
+void FoundContacts<Dim>::forget_lists() {
+  for (Pair& pair : found_.pairs) pair.slot = -1;
   found_.has_far = found_.has_near = found_.has_rows = false;
   found_.constants.clear();
 }
 
-void FoundContacts::follow_properties() {
+template <int Dim>
+void FoundContacts<Dim>::follow_properties() {
   take_back();
-  for (FoundPair& pair : found_.pairs) {
-    pair.sets = {-1, -1};
+  for (Pair& pair : found_.pairs) {
+    pair.sets = Pair::not_known();
     pair.slot = -1;
-    for (PairEnd& end : pair.ends)
-      if (pair.is_handed_over && end.area == 0.0) end.rest = std::numeric_limits<double>::max();
+    for (PairPoint<Dim>& point : pair.points)
+      if (pair.is_handed_over && point.area == 0.0) point.rest = std::numeric_limits<double>::max();
   }
   found_.constants.clear();
   found_.has_near = found_.has_rows = false;
 }
 
-void FoundContacts::follow_masses() {
+template <int Dim>
+void FoundContacts<Dim>::follow_masses() {
   take_back();
   found_.has_rows = false;
 }
 
 // Faces that are handed over
 
-std::vector<int> FoundContacts::broken_faces() const {
+template <int Dim>
+std::vector<int> FoundContacts<Dim>::broken_faces() const {
   std::vector<int> faces;
   const auto& s = body_.arrays;
   for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {
     const LawTable& law = body_.law_of_pack(pack);
-    const auto count = static_cast<int>(law.internals(2).size());
+    const auto count = static_cast<int>(law.internals(Dim).size());
+    const int points = body_.layout.first_point_of(pack + 1) - body_.layout.first_point_of(pack);
     unsigned broken = 0xffU & ~static_cast<unsigned>(body_.left_out.empty() ? 0 : body_.left_out[pack]);
-    for (int point = 0; point < 2; ++point) {
+    for (int point = 0; point < points; ++point) {
       unsigned of_point = 0;
       for (const Remembers what : kDamages)
-        if (const int place = place_of(law, what, 2); place >= 0)
+        if (const int place = place_of(law, what, Dim); place >= 0)
           for (int lane = 0; lane < kLanes; ++lane)
             if (s.internals[s.first_internal[pack] + point * count + place].number[lane] >= 1.0)
               of_point |= 1U << static_cast<unsigned>(lane);
@@ -786,73 +980,154 @@ std::vector<int> FoundContacts::broken_faces() const {
   return faces;
 }
 
-void FoundContacts::mark_handed_over(int face) {
+template <int Dim>
+void FoundContacts<Dim>::mark_handed_over(int face) {
   found_.is_handed_over[face] = true;
-  for (int side = 0; side < 2; ++side) found_.facets[found_.outline + 2 * face + side].is_free = true;
+  for (int f = found_.first_of_face[face]; f < found_.first_of_face[face + 1]; ++f)
+    found_.facets[f].is_free = true;
   body_.leave_out(face);
 }
 
-/// Returns the pair of the two sides of a face, with the areas, jumps and history of its contact points at
+/// Returns the pairs of the two sides of a face, with the areas, jumps and history of its contact points at
 /// the displacements of the last forces.
-FoundPair FoundContacts::pair_of_face(int face) const {
-  const Reader<2> read(body_);
-  FoundPair pair = new_pair({found_.outline + 2 * face, found_.outline + 2 * face + 1});
-  const auto p =
-      pair_at(pair.facets, [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); });
-  if (!p.face) return pair;  // the sides have left each other already
-  pair.is_handed_over = true;
-  pair.internals.clear();
-  const int first = body_.model.face_contacts[face];
-  const double area = body_.model.contacts[first].area;
-  pair.ratio = area / (p.cosine * p.cosine * 0.5 * p.overlap * body_.model.thickness);
-  for (int k = 0; k < 2; ++k) {
-    const ContactState state = read.contact(first + k);
-    const double stiffness =
-        body_.properties.contacts[body_.properties.of_contact[first + k]].stiffness().shear;
-    pair.ends[k] = {area,
-                    state.shear_traction[0] / stiffness,
-                    state.tangential_jump[0] - p.slide[k],
-                    state.opening - p.gap[k],
-                    0.0,
-                    0.0};
-    pair.internals.insert(pair.internals.end(), state.internals.begin(), state.internals.end());
-    pair.stored += state.stored * area;
+template <int Dim>
+std::vector<FoundPair<Dim>> FoundContacts<Dim>::pairs_of_face(int face) const {
+  const Reader<Dim> read(body_);
+  const auto at = [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); };
+  const int begin = found_.first_of_face[face], end = found_.first_of_face[face + 1],
+            middle = (begin + end) / 2;
+  const int first = body_.model.face_contacts[face], last = body_.model.face_contacts[face + 1];
+  std::vector<Pair> pairs;
+  std::vector<PairShape<Dim>> shapes;
+  double face_area = 0.0, stored = 0.0, overlap = 0.0;
+  for (int c = first; c < last; ++c) {
+    face_area += body_.model.contacts[c].area;
+    stored += read.contact(c).stored * body_.model.contacts[c].area;
   }
-  return pair;
+  for (int a = begin; a < middle; ++a)
+    for (int b = middle; b < end; ++b) {
+      pairs.push_back(new_pair({a, b}));
+      shapes.push_back(shape_of(found_, pairs.back(), places(pairs.back().facets, at)));
+      const auto& shape = shapes.back();
+      if (shape.overlaps()) overlap += shape.cosine() * shape.cosine() * shape.overlap();
+    }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!shapes[i].overlaps()) continue;  // they have left each other already, or never met
+    Pair& pair = pairs[i];
+    pair.is_handed_over = true;
+    if constexpr (Dim == 2) {
+      const EdgePair<double>& p = shapes[i].p;
+      const double area = body_.model.contacts[first].area;
+      pair.internals.clear();
+      pair.ratio = area / (p.cosine * p.cosine * 0.5 * p.overlap * body_.model.thickness);
+      for (int k = 0; k < 2; ++k) {
+        const ContactState state = read.contact(first + k);
+        pair.points[k] = {area,
+                          {{state.shear_traction[0] / shear_stiffness_of(first + k)}},
+                          {{state.tangential_jump[0] - p.slide[k]}},
+                          state.opening - p.gap[k],
+                          0.0,
+                          0.0};
+        pair.internals.insert(pair.internals.end(), state.internals.begin(), state.internals.end());
+        pair.stored += state.stored * area;
+      }
+    } else {
+      pair.ratio = face_area / overlap;
+      pair.pressed_at = places(pair.facets, at);
+      take_history(shapes[i].p, shapes[i].points(), first, last, pair);
+      // its points are others than those of the face, and so is their energy, a little
+      stored -= pair.stored;
+    }
+  }
+  if (Dim == 3 && overlap > 0.0) pairs.front().lost_area = stored;
+  return pairs;
 }
 
-void FoundContacts::hand_over() {
+template <int Dim>
+double FoundContacts<Dim>::shear_stiffness_of(int contact) const {
+  return body_.properties.contacts[body_.properties.of_contact[contact]].stiffness().shear;
+}
+
+/// Gives the points of a pair of triangles the state of the nearest contacts of their face.
+/// \param first, last  contacts of the face
+template <int Dim>
+void FoundContacts<Dim>::take_history(const TrianglePair<double>& p, int points, int first, int last,
+                                      Pair& pair) const {
+  if constexpr (Dim == 3) {
+    const Reader<Dim> read(body_);
+    const LawOfRows& law = found_.arrays.laws[pair.law];
+    const auto tangents = tangents_of(p);
+    for (int k = 0; k < points; ++k) {
+      const Vec<3> place = p.on_a(k);
+      int nearest = first;
+      double least = std::numeric_limits<double>::infinity();
+      for (int c = first; c < last; ++c) {
+        const int g = body_.model.contacts[c].a;
+        const Vec<3> way = body_.model.position[g] + read.displacement_of_force(g) - place;
+        if (dot(way, way) < least) {
+          least = dot(way, way);
+          nearest = c;
+        }
+      }
+      const ContactState state = read.contact(nearest);
+      const auto frame = read.frame_of_forces(nearest);
+      const auto turned = [&](const Vec<2>& v) {
+        const Vec<3> in_space = frame.tangents[0] * v[0] + frame.tangents[1] * v[1];
+        return Vec<2>{{dot(in_space, tangents[0]), dot(in_space, tangents[1])}};
+      };
+      PairPoint<Dim>& point = pair.points[k];
+      point.area = pair.ratio * p.cosine * p.cosine * p.part[k];
+      point.held = turned(state.shear_traction * (1.0 / shear_stiffness_of(nearest)));
+      point.shift = turned(state.tangential_jump);
+      point.offset = state.opening - p.gap[k];
+      double* const internals = &pair.internals[static_cast<std::size_t>(k * law.internals)];
+      std::ranges::copy(state.internals, internals);
+      if (law.slip >= 0) {
+        const Vec<2> slip = turned({{internals[law.slip], internals[law.slip + 1]}});
+        internals[law.slip] = slip[0];
+        internals[law.slip + 1] = slip[1];
+      }
+      pair.stored += state.stored * point.area;
+    }
+  }
+}
+
+template <int Dim>
+void FoundContacts<Dim>::hand_over() {
   const std::vector<int> faces = broken_faces();
   if (faces.empty()) return;
   take_back();
   // facets beside the face are fresh too: where it held them together they may press from now on
   std::vector<bool> ends(body_.model.position.size()), fresh(found_.facets.size());
   for (const int face : faces) {
-    found_.pairs.push_back(pair_of_face(face));
-    for (const int contact : {body_.model.face_contacts[face], body_.model.face_contacts[face] + 1})
+    for (Pair& pair : pairs_of_face(face))
+      if (Dim == 2 || pair.is_handed_over || pair.has_lost()) found_.pairs.push_back(std::move(pair));
+    for (int contact = body_.model.face_contacts[face]; contact < body_.model.face_contacts[face + 1];
+         ++contact)
       ends[body_.model.contacts[contact].a] = ends[body_.model.contacts[contact].b] = true;
   }
   for (std::size_t f = 0; f < fresh.size(); ++f)
-    fresh[f] = ends[found_.facets[f].gridpoints[0]] || ends[found_.facets[f].gridpoints[1]];
+    for (const int g : found_.facets[f].gridpoints) fresh[f] = fresh[f] || ends[g];
   std::vector<int> sides;
   for (const int face : faces) {
     mark_handed_over(face);
-    for (int side = 0; side < 2; ++side) sides.push_back(found_.outline + 2 * face + side);
+    for (int f = found_.first_of_face[face]; f < found_.first_of_face[face + 1]; ++f) sides.push_back(f);
   }
   std::sort(found_.pairs.begin(), found_.pairs.end(),
-            [](const FoundPair& a, const FoundPair& b) { return a.facets < b.facets; });
+            [](const Pair& a, const Pair& b) { return a.facets < b.facets; });
   add_to_far(sides);
   search();
   leave_out_overlaps(fresh, 0.0);
   make_rows();
 }
 
-void FoundContacts::forget_gone() {
+template <int Dim>
+void FoundContacts<Dim>::forget_gone() {
   take_back();
   const auto is_gone = [&](int facet) { return body_.is_gone(found_.facets[facet].block); };
-  for (FoundPair& pair : found_.pairs) {
+  for (Pair& pair : found_.pairs) {
     if (!is_gone(pair.facets[0]) && !is_gone(pair.facets[1])) continue;
-    FoundPair lost = new_pair(pair.facets);
+    Pair lost = new_pair(pair.facets);
     lost.is_near = false;
     lost.lost = pair.lost;
     lost.lost_area = pair.lost_area;
@@ -861,10 +1136,10 @@ void FoundContacts::forget_gone() {
   }
   std::vector<bool> fresh(found_.facets.size());
   for (int face = 0; face < body_.model.face_count(); ++face) {
-    const int side = found_.outline + 2 * face;
-    if (found_.is_handed_over[face] || (!is_gone(side) && !is_gone(side + 1))) continue;
+    const int begin = found_.first_of_face[face], end = found_.first_of_face[face + 1];
+    if (found_.is_handed_over[face] || (!is_gone(begin) && !is_gone(end - 1))) continue;
     mark_handed_over(face);
-    fresh[side] = fresh[side + 1] = true;
+    std::fill(fresh.begin() + begin, fresh.begin() + end, true);
   }
   bury_gone();
   forget_lists();
@@ -874,36 +1149,41 @@ void FoundContacts::forget_gone() {
 }
 
 /// Takes the facets of gone blocks out of all searches.
-void FoundContacts::bury_gone() {
-  for (BlockFacet& facet : found_.facets)
+template <int Dim>
+void FoundContacts<Dim>::bury_gone() {
+  for (BlockFacet<Dim>& facet : found_.facets)
     if (body_.is_gone(facet.block)) facet.is_free = false;
 }
 
 /// Leaves out the present overlap of pairs that lie in each other as they begin.
 /// \param fresh      true for facets that begin
 /// \param tolerance  depth over the length of an edge that is none
-void FoundContacts::leave_out_overlaps(const std::vector<bool>& fresh, double tolerance) {
-  const Reader<2> read(body_);
-  for (FoundPair& pair : found_.pairs) {
+template <int Dim>
+void FoundContacts<Dim>::leave_out_overlaps(const std::vector<bool>& fresh, double tolerance) {
+  const Reader<Dim> read(body_);
+  for (Pair& pair : found_.pairs) {
     if (!pair.is_near || pair.remembers() || !(fresh[pair.facets[0]] || fresh[pair.facets[1]])) continue;
-    const auto p =
-        pair_at(pair.facets, [&](int g) { return body_.model.position[g] + read.displacement_of_force(g); });
-    if (!p.face) continue;
-    const double least = -tolerance * std::min(p.length_a, p.length_b), most = -most_depth(pair.facets);
-    const auto lies_in = [&](double gap) { return gap < least && gap > most; };
-    if (lies_in(p.gap[0]) || lies_in(p.gap[1])) {
-      pair.not_counted = p.overlap;
-      pair.wakes = 0.0;
-    }
+    const auto shape = shape_of(found_, pair, places(pair.facets, [&](int g) {
+                                  return body_.model.position[g] + read.displacement_of_force(g);
+                                }));
+    if (!shape.overlaps()) continue;
+    const double least = -tolerance * shape.least_length(), most = -most_depth(pair.facets);
+    bool lies_in = false;
+    for (int k = 0; k < shape.points(); ++k)
+      lies_in = lies_in || (shape.gap(k) < least && shape.gap(k) > most);
+    if (!lies_in) continue;
+    pair.not_counted = shape.overlap();
+    pair.wakes = 0.0;
   }
 }
 
 // Sums and states
 
-void take_from_row(const FoundData& found, FoundPair& pair) {
+template <int Dim>
+void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair) {
   if (pair.slot < 0) return;
   const auto& arrays = found.arrays;
-  const FoundRow& row = arrays.rows[pair.slot / kLanes];
+  const FoundRow<Dim>& row = arrays.rows[pair.slot / kLanes];
   const LawOfRows& law = arrays.laws[row.law];
   const int lane = pair.slot % kLanes;
   const bool was_handed_over = pair.is_handed_over;
@@ -913,50 +1193,60 @@ void take_from_row(const FoundData& found, FoundPair& pair) {
   pair.applied = row.applied.number[lane];
   pair.lost_area = row.lost_area.number[lane];
   pair.lost_damping = row.lost_damping.number[lane];
-  for (int k = 0; k < 2; ++k) {
-    PairEnd& end = pair.ends[k];
-    end.area = row.area[k].number[lane];
-    end.held = row.held[k].number[lane];
-    end.shift = row.shift[k].number[lane];
-    end.rest = row.rest[k].number[lane];
-    end.damped = row.damped[k].number[lane];
+  if constexpr (Dim == 3) pair.pressed_at = row.pressed_at[lane];
+  for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
+    PairPoint<Dim>& point = pair.points[k];
+    point.area = row.area[k].number[lane];
+    for (int i = 0; i + 1 < Dim; ++i) {
+      point.held[i] = row.held[k][i].number[lane];
+      point.shift[i] = row.shift[k][i].number[lane];
+    }
+    point.offset = row.offset[k].number[lane];
+    point.rest = row.rest[k].number[lane];
+    point.damped = row.damped[k].number[lane];
     for (int i = 0; i < law.internals; ++i)
       pair.internals[k * law.internals + i] =
           arrays.internals[row.first_internal + k * law.internals + i].number[lane];
   }
   for (int i = 0; i < law.losses; ++i) pair.lost[i] = arrays.lost[row.first_loss + i].number[lane];
-  if (was_handed_over &&
-      !pair.is_handed_over) {  // the sides have left each other: what follows is a new pair
-    pair.ratio = 1.0;
-    for (PairEnd& end : pair.ends) end.offset = 0.0;
-  }
+  // the sides have left each other: what follows is a new pair
+  if (was_handed_over && !pair.is_handed_over) pair.ratio = 1.0;
 }
 
-double stored_by(const FoundData& found) {
+template <int Dim>
+double stored_by(const FoundData<Dim>& found) {
   double sum = 0.0;
-  for (const FoundPair& pair : found.pairs)
+  for (const FoundPair<Dim>& pair : found.pairs)
     sum +=
         pair.slot < 0 ? pair.stored : found.arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes];
   return sum;
 }
 
-double applied_by(const FoundData& found) {
+template <int Dim>
+double applied_by(const FoundData<Dim>& found) {
   double sum = 0.0;
-  for (const FoundPair& pair : found.pairs)
+  for (const FoundPair<Dim>& pair : found.pairs)
     sum += pair.slot < 0 ? pair.applied
                          : found.arrays.rows[pair.slot / kLanes].applied.number[pair.slot % kLanes];
   return sum;
 }
 
-void FoundContacts::visit_state(StateVisitor& visitor) {
+template <int Dim>
+void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
   const StateVisitor::Scope scope(visitor, "found");
   std::vector<int> faces, keys;
   std::vector<double> numbers;
-  const auto each_number = [](FoundPair& pair, auto f) {
+  const auto each_number = [](Pair& pair, auto f) {
     f(pair.ratio), f(pair.not_counted), f(pair.stored), f(pair.applied), f(pair.lost_area),
         f(pair.lost_damping);
-    for (PairEnd& end : pair.ends)
-      f(end.area), f(end.held), f(end.shift), f(end.offset), f(end.rest), f(end.damped);
+    for (PairPoint<Dim>& point : pair.points) {
+      f(point.area);
+      for (double& number : point.held.c) f(number);
+      for (double& number : point.shift.c) f(number);
+      f(point.offset), f(point.rest), f(point.damped);
+    }
+    for (Vec<Dim>& corner : pair.pressed_at)
+      for (double& number : corner.c) f(number);
     for (double& number : pair.internals) f(number);
     for (double& number : pair.lost) f(number);
   };
@@ -964,7 +1254,7 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
     take_back();
     for (int face = 0; face < std::ssize(found_.is_handed_over); ++face)
       if (found_.is_handed_over[face]) faces.push_back(face);
-    for (FoundPair& pair : found_.pairs) {
+    for (Pair& pair : found_.pairs) {
       if (!pair.remembers() && !pair.has_lost()) continue;
       keys.insert(keys.end(), {pair.facets[0], pair.facets[1], pair.is_handed_over ? 1 : 0});
       each_number(pair, [&](double& number) { numbers.push_back(number); });
@@ -976,7 +1266,7 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
   if (!visitor.replaces()) return;
 
   std::fill(found_.is_handed_over.begin(), found_.is_handed_over.end(), false);
-  for (BlockFacet& facet : found_.facets) facet.is_free = facet.face < 0;
+  for (BlockFacet<Dim>& facet : found_.facets) facet.is_free = facet.face < 0;
   for (const int face : faces) mark_handed_over(face);
   found_.pairs.clear();
   visitor.require(keys.size() % 3 == 0, "pairs", "is cut off");
@@ -990,7 +1280,7 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
                     "names a facet that is not free");
     const bool is_handed_over = keys[i + 2] != 0;
     visitor.require(!is_handed_over || face_of(key) >= 0, "pairs", "hands over facets of two faces");
-    FoundPair pair = new_pair(key);
+    Pair pair = new_pair(key);
     pair.is_handed_over = is_handed_over;
     each_number(pair, [&](double& number) {
       visitor.require(taken < numbers.size(), "numbers", "are fewer than the pairs have");
@@ -1002,5 +1292,14 @@ void FoundContacts::visit_state(StateVisitor& visitor) {
   bury_gone();
   forget_lists();
 }
+
+template class FoundContacts<2>;
+template class FoundContacts<3>;
+template void take_from_row(const FoundData<2>&, FoundPair<2>&);
+template void take_from_row(const FoundData<3>&, FoundPair<3>&);
+template double stored_by(const FoundData<2>&);
+template double stored_by(const FoundData<3>&);
+template double applied_by(const FoundData<2>&);
+template double applied_by(const FoundData<3>&);
 
 }  // namespace pyroclast

@@ -9,15 +9,16 @@
 
 namespace pyroclast {
 
-/// Finder of contacts of a plane body: makes the data, searches for pairs, hands broken faces over to pairs,
+/// Finder of contacts of a body: makes the data, searches for pairs, hands broken faces over to pairs,
 /// and keeps the pairs' history. The step works on rows of pairs, see FoundContactForces.
+template <int Dim>
 class FoundContacts {
  public:
-  explicit FoundContacts(Body<2>& body) : body_(body), found_(*body.found) {}
+  explicit FoundContacts(Body<Dim>& body) : body_(body), found_(*body.found) {}
 
   /// Makes the data of a body whose parameters say so. Throws Error where its kinematics, its ranks or the
   /// laws of its interfaces do not allow it.
-  static void make(Body<2>& body);
+  static void make(Body<Dim>& body);
 
   /// Searches for the pairs at the beginning of a run; where blocks lie in each other already, that part of
   /// their overlap does not count.
@@ -39,25 +40,30 @@ class FoundContacts {
 
  private:
   using Key = std::array<int, 2>;
-  Vec<2> place(int gridpoint, const FlatArray<Vec<2>>& displacement) const;
+  using Pair = FoundPair<Dim>;
+  /// Places of the corners of a pair: those of a, then of b, m.
+  using Corners = std::array<Vec<Dim>, 2 * Dim>;
+  Vec<Dim> place(int gridpoint, const FlatArray<Vec<Dim>>& displacement) const;
   template <class Place>
-  EdgePair<double> pair_at(const Key& key, Place place) const;
+  Corners places(const Key& key, Place place) const;
   double most_depth(const Key& key) const;
-  std::array<int, 4> corners(const Key& key) const;
-  std::uint32_t ends_that_count(const FoundPair& pair) const;
+  std::array<int, 2 * Dim> corners(const Key& key) const;
+  std::uint32_t joined_corners(const Key& key) const;
+  void place_shape(const Pair& pair, int row, int lane);
   bool holds_together(int a, int b) const;
   int interface_of(const Key& key) const;
   int face_of(const Key& key) const;
-  int set_of(const FoundPair& pair, int end) const;
+  int set_of(const Pair& pair, int place) const;
+  std::array<int, kSetsOfPair<Dim>> sets_of(const Pair& pair) const;
   int set_of_interface(int interface) const;
-  const LawTable& law_of(const FoundPair& pair) const;
-  int law_index(const FoundPair& pair) const;
-  double damping_of(const FoundPair& pair, double stiffness) const;
+  const LawTable& law_of(const Pair& pair) const;
+  int law_index(const Pair& pair) const;
+  double damping_of(const Pair& pair, double stiffness) const;
   const ConstantsOfSet& constants_of(int set) const;
-  FoundPair new_pair(const Key& key) const;
+  Pair new_pair(const Key& key) const;
 
   struct Box {
-    Vec<2> low, high;
+    Vec<Dim> low, high;
   };
   void find_far();
   std::optional<Box> box_of(int facet) const;
@@ -67,42 +73,50 @@ class FoundContacts {
   void watch();
   std::vector<double> ways(double steps, double least, double most) const;
   bool find_near();
-  double way_to_press(const Key& key, const EdgePair<double>& p) const;
-  double way_to_change(const FoundPair& pair, const EdgePair<double>& p) const;
-  double wakes(const Key& key, const FoundPair* handed_over) const;
+  double way_to_press(const Key& key, const Corners& at, double within) const;
+  double way_to_change(const Pair& pair, const Corners& at) const;
+  double wakes(const Key& key, const Pair* handed_over) const;
   void let_sleep();
   void search();
   void make_rows();
-  void put_into_row(const FoundPair& pair, int row, int lane);
+  void put_into_row(const Pair& pair, int row, int lane);
   void list_loads();
   void take_back();
   void mark_handed_over(int face);
   void bury_gone();
   std::vector<int> broken_faces() const;
-  FoundPair pair_of_face(int face) const;
+  std::vector<Pair> pairs_of_face(int face) const;
+  double shear_stiffness_of(int contact) const;
+  void take_history(const TrianglePair<double>& p, int points, int first, int last, Pair& pair) const;
   void leave_out_overlaps(const std::vector<bool>& fresh, double tolerance);
   void forget_lists();
 
-  Body<2>& body_;
-  FoundData& found_;
+  Body<Dim>& body_;
+  FoundData<Dim>& found_;
 };
 
+extern template class FoundContacts<2>;
+extern template class FoundContacts<3>;
+
 /// Gives a pair the numbers that it has in its row; does nothing where it stands in none.
-void take_from_row(const FoundData& found, FoundPair& pair);
+template <int Dim>
+void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair);
 /// Returns the energy that found pairs store, J.
-double stored_by(const FoundData& found);
+template <int Dim>
+double stored_by(const FoundData<Dim>& found);
 /// Returns the sum of the magnitudes of the forces of found pairs, N.
-double applied_by(const FoundData& found);
+template <int Dim>
+double applied_by(const FoundData<Dim>& found);
 /// Calls `f(law, losses, lost_area, lost_damping)` for the energies, J, that each pair has lost: those of its
 /// law, those that a changing area takes, and those of damping.
-template <class F>
-void for_each_loss(const FoundData& found, F f) {
+template <int Dim, class F>
+void for_each_loss(const FoundData<Dim>& found, F f) {
   std::vector<double> losses;
-  for (const FoundPair& pair : found.pairs) {
+  for (const FoundPair<Dim>& pair : found.pairs) {
     losses = pair.lost;
     double lost_area = pair.lost_area, lost_damping = pair.lost_damping;
     if (pair.slot >= 0) {
-      const FoundRow& row = found.arrays.rows[pair.slot / kLanes];
+      const FoundRow<Dim>& row = found.arrays.rows[pair.slot / kLanes];
       const int lane = pair.slot % kLanes;
       for (std::size_t i = 0; i < losses.size(); ++i)
         losses[i] = found.arrays.lost[row.first_loss + static_cast<int>(i)].number[lane];

@@ -9,12 +9,12 @@ namespace pyroclast {
 std::vector<FoundPoint> found_points(const Body<2>& body) {
   std::vector<FoundPoint> points;
   if (!body.found) return points;
-  const FoundData& found = *body.found;
+  const FoundData<2>& found = *body.found;
   const Reader<2> read(body);
-  for (FoundPair pair : found.pairs) {
+  for (FoundPair<2> pair : found.pairs) {
     take_from_row(found, pair);
-    if (!(pair.ends[0].area > 0.0 || pair.ends[1].area > 0.0)) continue;
-    const BlockFacet &first = found.facets[pair.facets[0]], &second = found.facets[pair.facets[1]];
+    if (!pair.bears()) continue;
+    const BlockFacet<2>&first = found.facets[pair.facets[0]], &second = found.facets[pair.facets[1]];
     const auto at = [&](int g) { return body.model.position[g] + read.displacement_of_force(g); };
     const std::array<Vec<2>, 2> a{at(first.gridpoints[0]), at(first.gridpoints[1])};
     const std::array<Vec<2>, 2> b{at(second.gridpoints[1]), at(second.gridpoints[0])};
@@ -26,7 +26,7 @@ std::vector<FoundPoint> found_points(const Body<2>& body) {
     const LawTable& law = body.properties.contacts.law(pair.sets[0]);
     const std::size_t count = law.internals(2).size();
     for (int k = 0; k < 2; ++k) {
-      const PairEnd& end = pair.ends[k];
+      const PairPoint<2>& end = pair.points[k];
       if (!(end.area > 0.0)) continue;
       FoundPoint& point = points.emplace_back();
       point.blocks = {first.block, second.block};
@@ -38,7 +38,7 @@ std::vector<FoundPoint> found_points(const Body<2>& body) {
       point.area = end.area;
       point.length = end.area / body.model.thickness;
       point.opening = p.gap[k] + end.offset;
-      point.slip = p.slide[k] + end.shift;
+      point.slip = p.slide[k] + end.shift[0];
       // the law, taken to the same jump once more, gives the same tractions
       const double jump[2] = {point.opening, point.slip};
       std::vector<double> internals(pair.internals.begin() + static_cast<std::ptrdiff_t>(k * count),

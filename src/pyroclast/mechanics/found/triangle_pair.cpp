@@ -144,10 +144,14 @@ Overlap overlap_of(const Triangle& a, const Triangle& b) {
                         polygon.corners[k + 1].at - polygon.corners[0].at);
   if (count < 3 || !(area > kLeastOverlap * norm(plane.area_a + plane.area_b))) return overlap;
 
-  overlap.count = count;
+  // Crossings of edges that are almost parallel stand on an almost straight side. They are left out, as long
+  // as there are three others.
+  std::array<OverlapCorner, kMostCut> corners{};
+  std::array<bool, kMostCut> is_straight{};
+  int straight = 0;
   for (int k = 0; k < count; ++k) {
     using Kind = OverlapCorner::Kind;
-    OverlapCorner& corner = overlap.corners[k];
+    OverlapCorner& corner = corners[k];
     const Vec<2>& at = polygon.corners[k].at;
     corner.before = polygon.corners[k == 0 ? count - 1 : k - 1].edge;
     corner.behind = polygon.corners[k].edge;
@@ -155,11 +159,14 @@ Overlap overlap_of(const Triangle& a, const Triangle& b) {
     if (before_of_a != behind_of_a) {
       const int i = corner.edge_a(), j = corner.edge_b();
       const Vec<3> edge_a = a[(i + 1) % 3] - a[i], edge_b = b[(j + 1) % 3] - b[j];
-      if (std::abs(dot(cross(edge_a, edge_b), plane.normal)) >= kParallel * norm(edge_a) * norm(edge_b)) {
+      const double lengths = norm(edge_a) * norm(edge_b);
+      if (std::abs(dot(cross(edge_a, edge_b), plane.normal)) >= kParallel * lengths) {
         corner.kind = Kind::crossing;
       } else {
         corner.at_a = weights_on_edge(flat_a, i, at);
         corner.at_b = weights_on_edge(flat_b, j, at);
+        is_straight[k] = dot(edge_a, edge_b) > 0.0;
+        straight += is_straight[k] ? 1 : 0;
       }
     } else if (corner.behind % 3 == (corner.before + 1) % 3) {
       corner.kind = behind_of_a ? Kind::of_a : Kind::of_b;
@@ -168,6 +175,9 @@ Overlap overlap_of(const Triangle& a, const Triangle& b) {
       corner.at_b = weights_in(flat_b, at);
     }
   }
+  const bool keeps_straight = count - straight < 3;
+  for (int k = 0; k < count; ++k)
+    if (keeps_straight || !is_straight[k]) overlap.corners[overlap.count++] = corners[k];
   return overlap;
 }
 

@@ -27,8 +27,8 @@ struct OverlapCorner {
     of_a,      ///< corner of a
     of_b,      ///< corner of b
     crossing,  ///< crossing of an edge of a and an edge of b
-    /// Place that does not follow the edges: where they are parallel their crossing runs along them, and
-    /// where they coincide rounding alone says which corner it is.
+    /// Place that does not follow the edges: where they are almost parallel their crossing would run along
+    /// them, and where they coincide rounding alone says which corner it is.
     fixed
   };
   Kind kind = Kind::fixed;

@@ -3,23 +3,28 @@
 #include <array>
 #include <limits>
 
+#include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/rows.hpp"
 #include "pyroclast/mechanics/step/packs.hpp"
 
-/// Contacts that are found: rows of eight pairs of edges, from places to jumps to tractions to forces.
+/// Contacts that are found: rows of eight pairs of facets, from places to jumps to tractions to forces.
 namespace pyroclast {
 
-template <class Set>
+template <int Dim, class Set>
 struct FoundContactForces {
-  using R = Packs<2, Set>;
+  using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Truth = typename Real::Truth;
   using Vector = typename R::Vector;
+  using Row = FoundRow<Dim>;
+  using Jump = Tangential<Dim, Real>;
+
+  static constexpr int kPoints = Row::kPoints, kCorners = Row::kCorners;
 
   /// Computes the forces of rows.
-  static void update(State<2>& s, int first, int last) {
-    FoundRows& found = *s.found;
+  static void update(State<Dim>& s, int first, int last) {
+    FoundRows<Dim>& found = *s.found;
     for (int row = first; row < last; ++row)
       if (!(found.way < found.rows[row].wakes)) update_row(s, found, row);
   }
@@ -27,23 +32,23 @@ struct FoundContactForces {
   /// Adds the forces of rows on the gridpoints of a bundle.
   /// \param index  index of the bundle
   /// \param sum    sums of forces by pack from the bundle's first on, N
-  static void add_forces(const FoundRows& found, const Bundle& bundle, int index, VectorPack<2>* sum) {
+  static void add_forces(const FoundRows<Dim>& found, const Bundle& bundle, int index, VectorPack<Dim>* sum) {
     for (int i = found.loaded_of_bundle[index]; i < found.loaded_of_bundle[index + 1]; ++i) {
       const LoadedGridpoint& gridpoint = found.loaded[i];
       if (found.way < gridpoint.wakes) continue;
-      Vec<2> force{};
+      Vec<Dim> force{};
       for (int k = gridpoint.first_force; k < gridpoint.last_force; ++k)
         force += found.forces[found.acting[k]];
       auto& of_pack = sum[gridpoint.slot / kLanes - bundle.first_pack].c;
-      for (int j = 0; j < 2; ++j) of_pack[j][gridpoint.slot % kLanes] += force[j];
+      for (int j = 0; j < Dim; ++j) of_pack[j][gridpoint.slot % kLanes] += force[j];
     }
   }
 
   /// Returns the square of the longest way of a watched gridpoint since the last search, over that of the way
   /// that it may go before the next one.
   /// \param first, last  entries of FoundRows::watched
-  static double way(const State<2>& s, int first, int last) {
-    const FoundRows& found = *s.found;
+  static double way(const State<Dim>& s, int first, int last) {
+    const FoundRows<Dim>& found = *s.found;
     Real longest = 0.0;
     for (int i = first; i < last; ++i) {
       const WatchedPack& watched = found.watched[i];
@@ -55,23 +60,51 @@ struct FoundContactForces {
   }
 
  private:
-  /// Corners, pairs and conditions of a row in a step.
+  /// Conditions and gaps of a row in a step.
   struct Now {
-    Truth handed_over;             ///< pairs that are handed over, and face each other
-    std::array<Truth, 2> goes_in;  ///< ends whose gap asks the law
-    std::array<Real, 2> gap, area_before;
+    Truth handed_over;                   ///< pairs that are handed over, and face each other
+    std::array<Truth, kPoints> goes_in;  ///< points whose gap asks the law
+    std::array<Real, kPoints> gap, area_before;
   };
 
-  [[gnu::flatten]] static void update_row(const State<2>& s, FoundRows& found, int index) {
-    FoundRow& row = found.rows[index];
-    Vec<2>* const forces = &found.forces[4 * kLanes * index];
-    const auto corner = [&](int i) {
-      return R::gather(s.gathered_position, row.corners[i]) + R::gather(s.displacement, row.corners[i]);
-    };
+  /// Answer of the law at a point.
+  struct Tractions {
+    Real normal, stored;  ///< Pa; energy of the normal part, J/m²
+    Jump shear;           ///< Pa
+  };
+
+  static Jump load(const typename Row::Jump& lines) {
+    Jump jump;
+    for (int i = 0; i + 1 < Dim; ++i) jump[i] = Real::load(lines[i].number);
+    return jump;
+  }
+  static void store(const Jump& jump, typename Row::Jump& lines) {
+    for (int i = 0; i + 1 < Dim; ++i) jump[i].store(lines[i].number);
+  }
+  static Jump choose(const Truth& condition, const Jump& yes, const Jump& no) {
+    Jump jump;
+    for (int i = 0; i + 1 < Dim; ++i) jump[i] = select(condition, yes[i], no[i]);
+    return jump;
+  }
+
+  static Vector corner(const State<Dim>& s, const Row& row, int i) {
+    return R::gather(s.gathered_position, row.corners[i]) + R::gather(s.displacement, row.corners[i]);
+  }
+
+  [[gnu::flatten]] static void update_row(const State<Dim>& s, FoundRows<Dim>& found, int index) {
+    if constexpr (Dim == 2)
+      update_edges(s, found, index);
+    else
+      update_triangles(s, found, index);
+  }
+
+  static void update_edges(const State<Dim>& s, FoundRows<Dim>& found, int index) {
+    Row& row = found.rows[index];
+    Vec<Dim>* const forces = &found.forces[kCorners * kLanes * index];
     const Real zero = 0.0;
     const EdgePair<Real> p =
-        edge_pair<Real>({corner(0), corner(1)}, {corner(2), corner(3)}, Real::load(row.unloaded_a.number),
-                        Real::load(row.unloaded_b.number));
+        edge_pair<Real>({corner(s, row, 0), corner(s, row, 1)}, {corner(s, row, 2), corner(s, row, 3)},
+                        Real::load(row.unloaded_a.number), Real::load(row.unloaded_b.number));
     Now now;
     const Truth was_handed_over = Truth::from_bits(row.handed_over);
     now.handed_over = p.face & was_handed_over;
@@ -105,7 +138,11 @@ struct FoundContactForces {
                          (areas.counted > zero) &
                          (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
       if (any(acts | (now.area_before[k] > zero))) {
-        stored += press_end(s, row, k, acts, now, p.slide[k], areas.area[k], tractions);
+        Tractions t;
+        stored += press_point(s, row, k, acts, now, {{p.slide[k]}}, areas.area[k], t);
+        tractions.normal[k] = t.normal;
+        tractions.shear[k] = t.shear[0];
+        tractions.stored[k] = t.stored;
       } else {
         areas.area[k] = zero;
         forget(s, row, k, leaves);
@@ -128,55 +165,207 @@ struct FoundContactForces {
     applied.store(row.applied.number);
   }
 
-  /// Writes what follows where no pair of a row presses.
-  static void rest(FoundRow& row, Vec<2>* forces) {
+  /// Bits of lanes that are touched, and numbers of their points as the law takes them.
+  struct Touched {
+    std::uint32_t faces = 0;                          ///< lanes whose triangles face each other and overlap
+    std::array<std::uint32_t, kPoints> counts{};      ///< points that there are, and that may press
+    std::array<Line, kPoints> gap{}, area{}, way{};   ///< m, m², m
+    std::array<typename Row::Jump, kPoints> slide{};  ///< m
+  };
+
+  /// Overlaps and the law's tractions differ from lane to lane, so a row goes through the geometry pair by
+  /// pair, and through the law point by point.
+  static void update_triangles(const State<Dim>& s, FoundRows<Dim>& found, int index) {
+    Row& row = found.rows[index];
+    Vec<Dim>* const forces = &found.forces[kCorners * kLanes * index];
     const Real zero = 0.0;
-    for (int i = 0; i < 4; ++i) R::store(Vector{}, &forces[i * kLanes]);
+    std::array<Vector, kCorners> at;
+    for (int i = 0; i < kCorners; ++i) at[i] = corner(s, row, i);
+    if (row.rests && row.handed_over == 0 && !any(may_touch(at))) return;
+
+    row.rests = false;
+    alignas(64) std::array<std::array<Vec<Dim>, kLanes>, kCorners> places;
+    for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
+    std::array<TouchedPair, kLanes> pairs;
+    Touched touched;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      TriangleCorners corners;
+      for (int i = 0; i < kCorners; ++i) corners[i] = places[i][lane];
+      touch(s, found, row, lane, corners, pairs[lane], touched);
+    }
+    const Truth face = Truth::from_bits(touched.faces), was_handed_over = Truth::from_bits(row.handed_over);
+    const auto leaves = was_handed_over & !face;
+    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
+
+    Now now;
+    now.handed_over = face & was_handed_over;
+    const Real most_depth = Real::load(row.most_depth.number);
+    std::array<Tractions, kPoints> tractions;
+    std::array<Line, kPoints> area{};
+    Real stored = zero;
+    Truth loaded = zero > zero;
+    for (int k = 0; k < kPoints; ++k) {
+      now.gap[k] = Real::load(touched.gap[k].number);
+      now.area_before[k] = Real::load(row.area[k].number);
+      now.goes_in[k] =
+          face & (now.gap[k] < Real::load(row.rest[k].number)) & (zero - now.gap[k] < most_depth);
+      Real area_now = Real::load(touched.area[k].number);
+      const Truth acts = face & Truth::from_bits(touched.counts[k]) & (area_now > zero) &
+                         (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
+      if (any(acts | (now.area_before[k] > zero))) {
+        const Truth rested = !(now.area_before[k] > zero);
+        const Jump slide = choose(rested, Jump{}, load(touched.slide[k]));
+        stored += press_point(s, row, k, acts, now, slide, area_now, tractions[k]);
+      } else {
+        area_now = zero;
+        tractions[k] = {zero, zero, Jump{}};
+        forget(s, row, k, leaves);
+      }
+      if (found.is_damped) damp(s, row, k, Real::load(touched.way[k].number), area_now, tractions[k].normal);
+      area_now.store(area[k].number);
+      loaded = loaded | (area_now > zero);
+    }
+    stored.store(row.stored.number);
+    const std::uint32_t bearing = bits_of(loaded);
+    const Truth remembers = (Real::load(row.not_counted.number) > zero) | is_damped(row);
+    if (bearing == 0 && row.handed_over == 0 && !any(remembers)) {
+      row.overlap.fill({});
+      rest(row, forces);
+      return;
+    }
+    place_forces(row, bearing, pairs, area, tractions, forces);
+  }
+
+  /// Returns the pairs of which some corner of b lies below some corner of a, seen along the mean normal.
+  static Truth may_touch(const std::array<Vector, kCorners>& at) {
+    const Vector normal = cross(at[1] - at[0], at[2] - at[0]) + cross(at[4] - at[3], at[5] - at[3]);
+    Real low = dot(normal, at[3] - at[0]), high = 0.0;
+    for (int i = 1; i < 3; ++i) {
+      low = smaller(low, dot(normal, at[3 + i] - at[0]));
+      high = larger(high, dot(normal, at[i] - at[0]));
+    }
+    return low < high;
+  }
+
+  /// Takes one pair to its overlap and the areas of its points, which go on from those of the last step.
+  static void touch(const State<Dim>& s, FoundRows<Dim>& found, Row& row, int lane,
+                    const TriangleCorners& corners, TouchedPair& pair, Touched& touched) {
+    const double thickness = row.thickness.number[lane];
+    if (thickness == 0.0) return;
+    const auto bit = 1U << static_cast<unsigned>(lane);
+    if (!touch_pair(found, row, lane, corners, pair)) {
+      row.not_counted.number[lane] = 0.0;
+      return;
+    }
+    touched.faces |= bit;
+    for (int k = 0; k < pair.overlap.count; ++k) {
+      if (pair.counts[k]) touched.counts[k] |= bit;
+      touched.gap[k].number[lane] = pair.gap[k];
+      touched.area[k].number[lane] = pair.areas.area[k];
+      for (int i = 0; i + 1 < Dim; ++i) touched.slide[k][i].number[lane] = pair.slide[k][i];
+    }
+    if (!found.is_damped) return;
+    TriangleCorners velocity;
+    for (int i = 0; i < kCorners; ++i)
+      velocity[i] = vector_at<Dim>(s.velocity, row.corners[i][lane] / offset_of<Dim>(1));
+    for (int k = 0; k < pair.overlap.count; ++k)
+      touched.way[k].number[lane] = pair.opening_velocity(k, velocity) * s.time_step;
+  }
+
+  /// Writes the forces of a row, and the places from which it goes on.
+  static void place_forces(Row& row, std::uint32_t bearing, std::array<TouchedPair, kLanes>& pairs,
+                           const std::array<Line, kPoints>& area,
+                           const std::array<Tractions, kPoints>& tractions, Vec<Dim>* forces) {
+    struct Lines {
+      Line normal, stored;
+      typename Row::Jump shear;
+    };
+    std::array<Lines, kPoints> lines;
+    for (int k = 0; k < kPoints; ++k) {
+      tractions[k].normal.store(lines[k].normal.number);
+      tractions[k].stored.store(lines[k].stored.number);
+      store(tractions[k].shear, lines[k].shear);
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      TriangleCorners f{};
+      double applied = 0.0;
+      TouchedPair& pair = pairs[lane];
+      if ((bearing >> static_cast<unsigned>(lane) & 1U) != 0) {
+        PointTractions<double> t;
+        for (int k = 0; k < pair.overlap.count; ++k) {
+          pair.keep_area(k, area[k].number[lane]);
+          t.normal[k] = lines[k].normal.number[lane];
+          t.stored[k] = lines[k].stored.number[lane];
+          t.shear[k] = pair.tangents[0] * lines[k].shear[0].number[lane] +
+                       pair.tangents[1] * lines[k].shear[1].number[lane];
+        }
+        f = corner_forces(pair.overlap, pair.pair, pair.areas, t);
+        row.pressed_at[lane] = pair.corners;
+        row.overlap[lane] = pair.overlap;
+      } else if ((row.handed_over >> static_cast<unsigned>(lane) & 1U) == 0) {
+        row.overlap[lane] = {};
+      }
+      for (int i = 0; i < kCorners; ++i) {
+        applied += norm(f[i]);
+        forces[i * kLanes + lane] = f[i];
+      }
+      row.applied.number[lane] = applied;
+    }
+  }
+
+  /// Writes what follows where no pair of a row presses.
+  static void rest(Row& row, Vec<Dim>* forces) {
+    const Real zero = 0.0;
+    for (int i = 0; i < kCorners; ++i) R::store(Vector{}, &forces[i * kLanes]);
     for (Line* line : {&row.not_counted, &row.stored, &row.applied}) zero.store(line->number);
     row.rests = true;
   }
 
-  /// Takes one end of eight pairs through its law, and books its losses. Returns the energy stored, J.
-  /// \param acts  ends that may press
-  /// \param area  in and out: areas; zero where an end bears nothing, m²
-  static Real press_end(const State<2>& s, FoundRow& row, int k, const Truth& acts, const Now& now,
-                        const Real& slide, Real& area, EndTractions<Real>& tractions) {
+  /// Takes one point of eight pairs through its law, and books its losses. Returns the energy stored, J.
+  /// \param acts   points that may press
+  /// \param slide  see PairPoint::shift
+  /// \param area   in and out: areas; zero where a point bears nothing, m²
+  static Real press_point(const State<Dim>& s, Row& row, int k, const Truth& acts, const Now& now,
+                          const Jump& slide, Real& area, Tractions& tractions) {
     const Real zero = 0.0;
-    FoundRows& found = *s.found;
+    FoundRows<Dim>& found = *s.found;
     const LawOfRows& law = found.laws[row.law];
+    const int set = set_of_point<Dim>(k);
     Line* const internals = &found.internals[row.first_internal + k * law.internals];
-    const Real stiffness = Real::load(row.shear_stiffness[k].number);
+    const Real stiffness = Real::load(row.shear_stiffness[set].number);
     const Real& area_before = now.area_before[k];
     area = select(acts, area, zero);
-    Real held = Real::load(row.held[k].number), shift = Real::load(row.shift[k].number);
-    // An end that begins to press goes on from the jump at which it rested. Where the area grows the force
+    Jump held = load(row.held[k]), shift = load(row.shift[k]);
+    // A point that begins to press goes on from the jump at which it rested. Where the area grows the force
     // stays and energy is lost; where it shrinks the jump stays, and the energy of what leaves is lost.
     const Truth presses_on = acts & (area_before > zero);
     const Truth grows = presses_on & (area > area_before);
-    const Real held_on = select(grows, held * (area_before / area), held);
+    const Jump held_on = choose(grows, held * (area_before / area), held);
+    Real shrunk = 0.5 * stiffness * held[0] * held[0] * (area_before - area);
+    for (int i = 1; i + 1 < Dim; ++i) shrunk += 0.5 * stiffness * held[i] * held[i] * (area_before - area);
     const Real lost =
         select(presses_on,
                0.5 * stiffness *
-                   (held * held * area_before - held_on * held_on * select(grows, area, area_before)),
+                   (dot(held, held) * area_before - dot(held_on, held_on) * select(grows, area, area_before)),
                zero) +
-        select(presses_on & (area < area_before), 0.5 * stiffness * held * held * (area_before - area), zero);
+        select(presses_on & (area < area_before), shrunk, zero);
     (Real::load(row.lost_area.number) + lost).store(row.lost_area.number);
     const Truth rested = !(area_before > zero);
-    shift = select(rested, shift - slide, shift - select(presses_on, held - held_on, zero));
+    shift = choose(rested, shift - slide, shift - choose(presses_on, held - held_on, Jump{}));
     if (law.held_jump >= 0) {
       double* const number = internals[law.held_jump].number;
-      select(grows, abs(held_on), Real::load(number)).store(number);
+      select(grows, norm(held_on), Real::load(number)).store(number);
     }
-    std::array<Line, 2> jump;
+    std::array<Line, Dim> jump;
     select(acts, now.gap[k], Real(kOpen)).store(jump[0].number);
-    select(acts, slide + shift, zero).store(jump[1].number);
+    for (int i = 0; i + 1 < Dim; ++i) select(acts, slide[i] + shift[i], zero).store(jump[i + 1].number);
     Line losses[LawOfRows::kMost], before[LawOfRows::kMost];
     for (int i = 0; i < law.losses; ++i) zero.store(losses[i].number);
     const Truth keeps = now.handed_over & !acts;
     const bool some_keep = any(keeps);
     for (int i = 0; some_keep && i < law.internals; ++i) before[i] = internals[i];
     const LanesResponse response = s.laws[row.law].update_lanes(
-        &found.choices[row.first_choice], &found.constants[row.first_constant + k * law.constants],
+        &found.choices[row.first_choice], &found.constants[row.first_constant + set * law.constants],
         jump.data(), internals, losses);
     if (response.changed != 0) {
       const Real area_of_losses = select(acts, area, area_before);
@@ -192,35 +381,41 @@ struct FoundContactForces {
         select(acts, Real::load(internals[i].number), kept).store(internals[i].number);
       }
     const Real normal = select(acts, Real::load(response.normal_traction.number), zero);
-    const Real shear = select(acts, Real::load(response.shear_traction[0].number), zero);
-    // An end that is handed over and bears nothing rests, with its jump, until its gap falls below the
+    Jump shear;
+    for (int i = 0; i + 1 < Dim; ++i)
+      shear[i] = select(acts, Real::load(response.shear_traction[i].number), zero);
+    // A point that is handed over and bears nothing rests, with its jump, until its gap falls below the
     // present one; one that is too deep is asked again in each step.
-    const Truth pulls_or_presses = (abs(normal) > zero) | (abs(shear) > zero);
+    const Truth pulls_or_presses = (abs(normal) > zero) | (norm(shear) > zero);
     const Truth bears = acts & (pulls_or_presses | (!now.handed_over));
     const Truth begins_to_rest = now.handed_over & !bears & (acts | !rested);
     const Real rest_at = select(acts, now.gap[k], Real(kAlwaysAsked));
     select(begins_to_rest, rest_at, Real::load(row.rest[k].number)).store(row.rest[k].number);
-    const Real jump_at_rest = select(keeps & rested, Real::load(row.shift[k].number), slide + shift);
+    const Jump jump_at_rest = choose(keeps & rested, load(row.shift[k]), slide + shift);
     area = select(bears, area, zero);
-    held = select(bears, shear / stiffness, zero);
+    for (int i = 0; i + 1 < Dim; ++i) held[i] = select(bears, shear[i] / stiffness, zero);
     area.store(row.area[k].number);
-    held.store(row.held[k].number);
-    select(bears, shift, select(now.handed_over, jump_at_rest, zero)).store(row.shift[k].number);
-    tractions.normal[k] = normal;
-    tractions.shear[k] = shear;
+    store(held, row.held[k]);
+    // the slide of the next step begins at the places of this one, or where the edges began
+    const Jump shift_on = Dim == 2 ? shift : slide + shift;
+    store(choose(bears, shift_on, choose(now.handed_over, jump_at_rest, Jump{})), row.shift[k]);
+    tractions.normal = normal;
+    tractions.shear = shear;
     const Real stored = select(acts, Real::load(response.stored.number), zero);
-    tractions.stored[k] = stored - 0.5 * shear * held;
+    tractions.stored = stored;
+    for (int i = 0; i + 1 < Dim; ++i) tractions.stored = tractions.stored - 0.5 * shear[i] * held[i];
     return stored * area;
   }
 
   /// Tells where damping still acted in the last step.
-  static Truth is_damped(const FoundRow& row) {
-    return (abs(Real::load(row.damped[0].number)) > Real(0.0)) |
-           (abs(Real::load(row.damped[1].number)) > Real(0.0));
+  static Truth is_damped(const Row& row) {
+    Truth damped = abs(Real::load(row.damped[0].number)) > Real(0.0);
+    for (int k = 1; k < kPoints; ++k) damped = damped | (abs(Real::load(row.damped[k].number)) > Real(0.0));
+    return damped;
   }
 
   /// Returns how far the gap of each end has opened in the last step, m.
-  static std::array<Real, 2> gap_ways(const State<2>& s, const FoundRow& row, const EdgePair<Real>& now) {
+  static std::array<Real, 2> gap_ways(const State<Dim>& s, const Row& row, const EdgePair<Real>& now) {
     const auto before = [&](int i) {
       Line velocity[2];
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -228,18 +423,16 @@ struct FoundContactForces {
         for (int j = 0; j < 2; ++j) velocity[j].number[lane] = s.velocity[slot / kLanes].c[j][slot % kLanes];
       }
       const Vector v{{Real::load(velocity[0].number), Real::load(velocity[1].number)}};
-      return R::gather(s.gathered_position, row.corners[i]) + R::gather(s.displacement, row.corners[i]) -
-             v * Real(s.time_step);
+      return corner(s, row, i) - v * Real(s.time_step);
     };
     const auto p = edge_pair<Real>({before(0), before(1)}, {before(2), before(3)},
                                    Real::load(row.unloaded_a.number), Real::load(row.unloaded_b.number));
     return {now.gap[0] - p.gap[0], now.gap[1] - p.gap[1]};
   }
 
-  /// Damps one end of eight pairs while it is pressed, and books the work by the trapezoidal rule, as the
+  /// Damps one point of eight pairs while it is pressed, and books the work by the trapezoidal rule, as the
   /// ledger does that of forces.
-  static void damp(const State<2>& s, FoundRow& row, int k, const Real& way, const Real& area,
-                   Real& traction) {
+  static void damp(const State<Dim>& s, Row& row, int k, const Real& way, const Real& area, Real& traction) {
     const Real zero = 0.0;
     const Truth presses = (area > zero) & (traction < zero);
     const Real more = select(
@@ -254,27 +447,27 @@ struct FoundContactForces {
     force.store(row.damped[k].number);
   }
 
-  /// Makes handed-over pairs whose edges have left each other new ones, but for what they still bear.
-  static void set_apart(const State<2>& s, FoundRow& row, const Truth& leaves) {
+  /// Makes handed-over pairs whose facets have left each other new ones, but for what they still bear.
+  static void set_apart(const State<Dim>& s, Row& row, const Truth& leaves) {
     const Real zero = 0.0;
     select(leaves, Real(s.thickness), Real::load(row.thickness.number)).store(row.thickness.number);
-    for (int k = 0; k < 2; ++k)
+    for (int k = 0; k < kPoints; ++k)
       for (Line* line : {&row.offset[k], &row.rest[k]})
         select(leaves, zero, Real::load(line->number)).store(line->number);
     row.handed_over &= ~bits_of(leaves);
   }
 
-  /// Makes handed-over pairs that rest, and whose edges have left each other, new ones.
-  static void let_go(const State<2>& s, FoundRow& row, const Truth& leaves) {
+  /// Makes handed-over pairs that rest, and whose facets have left each other, new ones.
+  static void let_go(const State<Dim>& s, Row& row, const Truth& leaves) {
     set_apart(s, row, leaves);
-    for (int k = 0; k < 2; ++k) forget(s, row, k, leaves);
+    for (int k = 0; k < kPoints; ++k) forget(s, row, k, leaves);
   }
 
-  /// Takes the history of one end from pairs that rest and leave each other.
-  static void forget(const State<2>& s, FoundRow& row, int k, const Truth& leaves) {
+  /// Takes the history of one point from pairs that rest and leave each other.
+  static void forget(const State<Dim>& s, Row& row, int k, const Truth& leaves) {
     if (!any(leaves)) return;
     const LawOfRows& law = s.found->laws[row.law];
-    select(leaves, Real(0.0), Real::load(row.shift[k].number)).store(row.shift[k].number);
+    store(choose(leaves, Jump{}, load(row.shift[k])), row.shift[k]);
     Line* const internals = &s.found->internals[row.first_internal + k * law.internals];
     for (int i = 0; i < law.internals; ++i)
       select(leaves, Real(law.broken[i]), Real::load(internals[i].number)).store(internals[i].number);
@@ -289,7 +482,7 @@ struct FoundContactForces {
     return bits;
   }
 
-  static constexpr double kOpen = 1.0;  ///< opening of an end that does not press, m
+  static constexpr double kOpen = 1.0;  ///< opening of a point that does not press, m
   static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
 };
 

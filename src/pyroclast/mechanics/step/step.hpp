@@ -11,7 +11,7 @@
 /// Step of the method, on lanes:
 ///
 ///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
-///     found pairs      ^      -> places of edges -> law -> corner forces       Eqs. (10)-(15)  found.hpp
+///     found pairs      ^      -> places of facets -> law -> corner forces       Eqs. (10)-(15)  found.hpp
 ///     large blocks     |      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
 ///                      |                                          |
 ///                      |                                          v
@@ -82,14 +82,9 @@ class Step {
   }
 
   static constexpr StepPasses<Dim> passes() {
-    StepPasses<Dim> all{place_corner_forces, move_bundles, move_tied_parts, sum_stiffness,
-                        PorePressure<Dim, Set>::add};
-    if constexpr (Dim == 2) {
-      using Found = FoundContactForces<Set>;
-      all.update_found = Found::update;
-      all.way_of_found = Found::way;
-    }
-    return all;
+    using Found = FoundContactForces<Dim, Set>;
+    return {place_corner_forces,         move_bundles,  move_tied_parts, sum_stiffness,
+            PorePressure<Dim, Set>::add, Found::update, Found::way};
   }
 
   // flatten, because lanes that cross a call go through memory
@@ -101,8 +96,8 @@ class Step {
     Sums sums;
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
-    if constexpr (Dim == 2 && kKinematics == Kinematics::finite)
-      if (s.found) FoundContactForces<Set>::add_forces(*s.found, bundle, index, scratch.sum);
+    if constexpr (Dim == 3 || kKinematics == Kinematics::finite)
+      if (s.found) FoundContactForces<Dim, Set>::add_forces(*s.found, bundle, index, scratch.sum);
     if (bundle.kind == BundleKind::piece && !bundle.is_part)
       Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, index, sums);
     Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);

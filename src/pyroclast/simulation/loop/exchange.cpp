@@ -95,15 +95,22 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   return true;
 }
 
+bool Exchange::begins() const {
+  return kept_.is_handed_over && !kept_.is_cut_short && kept_.even_steps_left == 0;
+}
+
+void Exchange::read_start(const Simulation& simulation) {
+  if (!begins()) return;
+  strain_at_start_ = simulation.has_press() ? shortening(simulation) : 0.0;
+  ways_at_start_ = simulation.loads().ways();
+}
+
 bool Exchange::go_on(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
-  if (kept_.is_handed_over && !kept_.is_cut_short) {
-    const auto [strain, ways] = simulation.ranks().together([&] {
-      return std::pair(simulation.has_press() ? shortening(simulation) : 0.0, simulation.loads().ways());
-    });
-    simulation.loads().mark(ways);
-    kept_.strain_before = kept_.last_strain = strain;
+  if (begins()) {
+    simulation.loads().mark(ways_at_start_);
+    kept_.strain_before = kept_.last_strain = strain_at_start_;
   }
   kept_.is_handed_over = kept_.is_cut_short = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;

@@ -57,6 +57,9 @@ class Exchange {
   /// body at rest. Otherwise the body would have to push itself to its new size, and its inertia would press
   /// on the lower platen.
   void move_evenly_first(const Press::EvenMotion& motion);
+  /// Reads where the body stands before its first step at new temperatures, see Stage::read; comes before each
+  /// `advance`.
+  void read_start(const Simulation& simulation);
   /// Takes one batch of steps; returns true when the body rests, has failed, or has used up its cycles. A
   /// specimen that is being crushed then gets more cycles, until it stops or the platen has run away. The
   /// specimen's own ends tell this, for a platen without load may have left them. A body without load hovers
@@ -74,6 +77,8 @@ class Exchange {
   void visit_state(StateVisitor& visitor);
 
  private:
+  /// Tells whether the body has not moved at these temperatures yet, but evenly.
+  bool begins() const;
   bool go_on(Simulation& simulation, int most_steps);
   bool move_evenly(Simulation& simulation);
   void set_down(const Press& press);
@@ -103,6 +108,9 @@ class Exchange {
     /// Strains of the specimen: at the exchange, and when cycles were last added.
     double strain_before = 0.0, last_strain = 0.0;
   } kept_;
+  // What `read_start` read: each batch reads it anew.
+  double strain_at_start_ = 0.0;
+  std::vector<double> ways_at_start_;
 };
 
 }  // namespace pyroclast

@@ -1,0 +1,302 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "copy_state.hpp"
+#include "loose_blocks.hpp"
+#include "pyroclast/mechanics/found/found.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+
+/// Contacts that are found between blocks in space.
+namespace pyroclast::solids {
+namespace {
+
+using namespace bodies;
+
+constexpr double kEdge = 0.05;  // m, of the cube that moves
+
+/// Rotation about an axis by the angle that is the axis' length.
+Vec<3> turned(const Vec<3>& x, const Vec<3>& by) {
+  const double angle = norm(by);
+  if (angle == 0.0) return x;
+  const Vec<3> k = by * (1.0 / angle);
+  return x * std::cos(angle) + cross(k, x) * std::sin(angle) + k * (dot(k, x) * (1.0 - std::cos(angle)));
+}
+
+/// Adds a box around a place, cut into tetrahedra around its middle. Returns the block.
+int add_box(ModelOf<3>& model, const Vec<3>& size, const Vec<3>& place, const std::vector<Vec<3>>& turns) {
+  ModelOf<3> one = cubes(1, 1.0);
+  for (Vec<3>& x : one.position) {
+    for (int i = 0; i < 3; ++i) x[i] = (x[i] - 0.5) * size[i];
+    for (const Vec<3>& turn : turns) x = turned(x, turn);
+    x += place;
+  }
+  return model.add_block(one.position, one.zones, 0);
+}
+
+ModelOf<3> no_blocks() {
+  ModelOf<3> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  return model;
+}
+
+MechanicsParameters flying_in_space(double gravity, double safety) {
+  MechanicsParameters p;
+  p.gravity = {{0.0, 0.0, -gravity}};
+  p.safety = safety;
+  p.found.is_on = true;
+  p.zones_for_a_thread = 1;
+  return p;
+}
+
+void hold(Mechanics<3>& m, int block) {
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
+    for (int i = 0; i < 3; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+}
+
+std::vector<Vec<3>> velocities(const ModelOf<3>& model, int block, const Vec<3>& velocity) {
+  std::vector<Vec<3>> all(model.position.size());
+  std::fill(all.begin() + model.block_gridpoints[block], all.begin() + model.block_gridpoints[block + 1],
+            velocity);
+  return all;
+}
+
+Vec<3> velocity_of(const Mechanics<3>& m, int block) {
+  Vec<3> momentum{};
+  double mass = 0.0;
+  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
+    momentum += m.read().velocity(g) * m.body().mass[g];
+    mass += m.body().mass[g];
+  }
+  return momentum * (1.0 / mass);
+}
+
+/// A cube that falls on a held box.
+struct Drop {
+  const char* name;
+  std::vector<Vec<3>> turns_of_box, turns;
+  Vec<3> aside{};  // m
+};
+
+const std::vector<Drop> kDrops{
+    {"face", {}, {{{0, 0, 0.5}}}, {{0.01, 0.004, 0}}},
+    {"edge", {}, {{{std::numbers::pi / 4, 0, 0}}, {{0, 0, 0.3}}}, {{0.006, 0.003, 0}}},
+    {"corner", {}, {{{std::numbers::pi / 4, 0, 0}}, {{0, 0.6154797, 0}}}, {{0.006, 0.003, 0}}},
+    {"crossed edges",
+     {{{std::numbers::pi / 4, 0, 0}}},
+     {{{0, std::numbers::pi / 4, 0}}},
+     {{0.004, 0.003, 0}}},
+    {"skew edges",
+     {{{std::numbers::pi / 4, 0, 0}}},
+     {{{0, std::numbers::pi / 4, 0}}, {{0, 0, 0.7}}},
+     {{0.004, 0.001, 0}}},
+    {"parallel edges", {{{std::numbers::pi / 4, 0, 0}}}, {{{std::numbers::pi / 4, 0, 0}}}, {{0.004, 0, 0}}},
+    {"aligned", {}, {}, {{0, 0, 0}}},
+    {"aligned to 1e-6", {}, {{{0, 0, 1e-6}}}, {{0, 0, 0}}},
+    {"aligned to 1e-4", {}, {{{0, 0, 1e-4}}}, {{0, 0, 0}}}};
+
+// Promise: a cube that falls on a face, an edge, a corner or crossed edges gives back the energy that the
+// contact takes, also where edges are parallel.
+TEST(FoundContactsVerification, CubeInSpaceKeepsItsEnergyOnFacesEdgesAndCorners) {
+  for (const Drop& drop : kDrops) {
+    ModelOf<3> model = no_blocks();
+    const bool is_aligned = std::string(drop.name).starts_with("aligned");
+    const double size = is_aligned ? kEdge : 0.1;
+    const int box = add_box(model, {{size, size, size}}, {}, drop.turns_of_box);
+    const int cube = add_box(model, {{kEdge, kEdge, kEdge}}, drop.aside, drop.turns);
+    double low = 1.0, high = -1.0;
+    for (int g = 0; g < model.gridpoint_count(); ++g)
+      (g < model.block_gridpoints[cube] ? high : low) = g < model.block_gridpoints[cube]
+                                                            ? std::max(high, model.position[g][2])
+                                                            : std::min(low, model.position[g][2]);
+    for (int g = model.block_gridpoints[cube]; g < model.gridpoint_count(); ++g)
+      model.position[g][2] += high - low + 1e-4;
+    auto m = mechanics<3>(model, rubbing(1e9, 0.0), flying_in_space(0.0, 0.3), 30e9);
+    hold(m, box);
+    m.begin_moving(velocities(model, cube, {{0, 0, -0.1}}));
+    const double kinetic = m.totals().energy().kinetic;
+    double worst = 0.0, stored = 0.0;
+    bool has_met = false, has_left = false;
+    while (m.time() < 0.03 && !has_left) {
+      m.advance(1);
+      const EnergyLedger e = m.totals().energy();
+      worst = std::max(worst, std::abs(e.error()));
+      stored = std::max(stored, e.contacts);
+      has_left = has_met && e.contacts == 0.0;
+      has_met = e.contacts > 0.0;
+    }
+    EXPECT_GT(stored, 0.5 * kinetic) << drop.name;
+    EXPECT_LT(worst, 1e-5 * kinetic) << drop.name;
+    EXPECT_TRUE(has_left) << drop.name;
+  }
+}
+
+// Promise: a cube slides over the diagonals of a box by Coulomb's law, and what the overlap's corners carry
+// over is little beside the friction.
+TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLaw) {
+  constexpr double kFriction = 0.3, kTime = 0.12;
+  ModelOf<3> model = no_blocks();
+  const int box = add_box(model, {{0.2, 0.2, 0.2}}, {{0, 0, -0.1}}, {});
+  const int cube =
+      add_box(model, {{kEdge, kEdge, kEdge}}, {{0.01, 0.004, 0.5 * kEdge + 1e-6}}, {{{0, 0, 0.5}}});
+  auto m = mechanics<3>(model, rubbing(1e8, kFriction), flying_in_space(kGravity, 0.5), 3e8);
+  hold(m, box);
+  m.begin_moving(velocities(model, cube, {{0.8, 0.24, 0}}));
+  const double speed = std::hypot(0.8, 0.24);
+  while (m.time() < kTime) m.advance(500);
+  const Vec<3> v = velocity_of(m, cube), way{{0.8 / speed, 0.24 / speed, 0.0}};
+  const EnergyLedger e = m.totals().energy();
+  // the cube bounces a little, and friction takes its share of that momentum too
+  EXPECT_NEAR(dot(v, way) + kFriction * v[2], speed - kFriction * kGravity * m.time(), 2e-3 * speed);
+  EXPECT_GT(e.dissipated.of("friction"), 0.3 * e.kinetic);
+  EXPECT_LT(std::abs(e.dissipated.of("contact_area")), 1e-3 * e.dissipated.of("friction"));
+  // friction that comes and goes is booked to the first order of the step
+  EXPECT_LT(std::abs(e.error()), 2e-4 * e.dissipated.of("friction"));
+}
+
+/// A cube that hits a box obliquely on its edge, rubs and turns.
+Mechanics<3> oblique(const ModelOf<3>& model, const MechanicsParameters& parameters, int threads) {
+  auto m = mechanics<3>(model, rubbing(1e9, 0.4), parameters, 3e9, 0.2,
+                        std::make_shared<Team>(threads, WhenCrowded::stay));
+  hold(m, 0);
+  m.begin_moving(velocities(model, 1, {{0.3, 0.1, -0.5}}));
+  return m;
+}
+
+void expect_equal(const Mechanics<3>& m, const Mechanics<3>& expected, const std::string& what) {
+  SCOPED_TRACE(what);
+  EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
+  EXPECT_TRUE(m.read().velocities() == expected.read().velocities());
+  EXPECT_EQ(m.totals().energy().contacts, expected.totals().energy().contacts);
+  EXPECT_EQ(m.totals().energy().dissipated.energies, expected.totals().energy().dissipated.energies);
+}
+
+// Promise: in space too bits depend neither on threads and instruction sets, nor on the time and the width of
+// a search, and a state that is copied goes on with the same bits.
+TEST(FoundContacts, BitsInSpaceDependOnPairsThatPressAlone) {
+  constexpr int kSteps = 1500;
+  ModelOf<3> model = no_blocks();
+  add_box(model, {{0.2, 0.1, 0.1}}, {{0, 0, -0.05}}, {});
+  add_box(model, {{kEdge, kEdge, kEdge}}, {{-0.02, 0.01, 0.03}}, {{{0.1, 0.05, 0.5}}});
+  auto parameters = flying_in_space(0.0, 0.5);
+  parameters.found.damping = 0.05;
+  auto expected = oblique(model, parameters, 1);
+  expected.advance(kSteps);
+  const EnergyLedger e = expected.totals().energy();
+  EXPECT_GT(e.dissipated.of("friction"), 0.02 * e.kinetic);
+  for (const InstructionSet set : usable_instruction_sets()) {
+    auto other = parameters;
+    other.instructions = set;
+    auto m = oblique(model, other, 2);
+    m.advance(kSteps);
+    expect_equal(m, expected, name(set));
+  }
+  for (const double width : {0.1, 16.0}) {
+    auto other = parameters;
+    other.found.skin = other.found.reach = width;
+    auto m = oblique(model, other, 1);
+    for (int i = 0; i < kSteps; i += 50) m.advance(50);
+    expect_equal(m, expected, "lists as wide as " + std::to_string(width) + " edges");
+  }
+  auto m = oblique(model, parameters, 1);
+  for (int i = 0; i < kSteps; i += 250) {
+    auto other = oblique(model, parameters, 1);
+    copy_state(m, other);
+    other.advance(kSteps - i);
+    expect_equal(other, expected, "copied at step " + std::to_string(i));
+    m.advance(250);
+  }
+}
+
+// Promise: a broken face of a solid that is handed over presses and holds on as it did, and keeps its energy.
+TEST(FoundContacts, FaceOfASolidThatIsHandedOverPressesOn) {
+  const ModelOf<3> model = cubes(2, 0.01);
+  auto bond = mortar_contact();
+  bond.residual_cohesion = 0.0;
+  auto parameters = flying_in_space(0.0, 0.5);
+  parameters.damping_form = DampingForm::combined;
+  parameters.local_damping = 0.3;
+  auto never = parameters;
+  never.found.is_on = false;
+  for (const int steps_before : {0, 3008}) {
+    auto m = mechanics<3>(model, bond, parameters), first = mechanics<3>(model, bond, never);
+    for (Mechanics<3>* body : {&m, &first}) {
+      hold(*body, 0);
+      for (int g = model.block_gridpoints[1]; g < model.block_gridpoints[2]; ++g)
+        body->constraints().apply_force(g, {{40.0, 10.0, -300.0}});
+      if (steps_before > 0) body->advance(steps_before);
+      for (int c = 0; c < model.contact_count(); ++c) EXPECT_TRUE(body->break_contact(c));
+    }
+    const double before = m.totals().energy().contacts;
+    for (Mechanics<3>* body : {&m, &first}) body->advance(1);
+    EXPECT_TRUE(m.body().found->is_handed_over[0]);
+    EXPECT_NEAR(m.totals().energy().contacts, before, 1e-6 * before);
+    EXPECT_LT(std::abs(m.totals().energy().dissipated.of("contact_area")), 1e-5 * before + 1e-12);
+    for (Mechanics<3>* body : {&m, &first}) body->advance(4000);
+    const EnergyLedger later = m.totals().energy(), expected = first.totals().energy();
+    EXPECT_NEAR(later.contacts, expected.contacts, 1e-3 * expected.contacts);
+    EXPECT_LT(std::abs(later.error()), 1.1 * std::abs(expected.error()));
+    EXPECT_NEAR(velocity_of(m, 1)[2], 0.0, 1e-6);
+  }
+}
+
+/// A cube of blocks that two plates of prescribed gridpoints crush.
+Mechanics<3> crushed(const ModelOf<3>& model, const MechanicsParameters& parameters, double size, int steps,
+                     int threads) {
+  auto contact = mortar_contact();
+  contact.mode_1_energy = 3.0;
+  contact.mode_2_energy = 12.0;
+  contact.residual_friction_angle = 0.3;
+  auto m = mechanics<3>(model, contact, parameters, 29.4e9, 0.2,
+                        std::make_shared<Team>(threads, WhenCrowded::stay));
+  const double speed = 0.01 * size / (1000 * m.time_step());
+  for (int g = 0; g < model.gridpoint_count(); ++g) {
+    const double z = model.position[g][2];
+    for (const double end : {0.0, size})
+      if (std::abs(z - end) < 1e-9) {
+        for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+        m.constraints().prescribe_velocity(g, 2, end > 0.0 ? -speed : 0.0);
+      }
+  }
+  m.advance(steps);
+  return m;
+}
+
+// Promise: a solid that is crushed while its faces are handed over has the same bits for any number of
+// threads and width of lists, and where its state is copied. Its ledger closes but for the energy of crushed
+// points, whose closures are averaged where overlaps get other corners.
+TEST(FoundContacts, CrushedSolidKeepsItsEnergyAndItsBits) {
+  constexpr double kSize = 0.1;
+  constexpr int kSteps = 1000, kCopied = 700;
+  const ModelOf<3> model = laguerre_cells(12, kSize, 3);
+  auto parameters = quasi_static<3>(0.5);
+  parameters.time_step = 1e-6;
+  parameters.found.is_on = true;
+  parameters.zones_for_a_thread = 1;
+  const auto expected = crushed(model, parameters, kSize, kSteps, 1);
+  const auto& found = *expected.body().found;
+  int pressed = 0;
+  for (const auto& pair : found.pairs)
+    pressed +=
+        pair.slot >= 0 && found.arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes] > 0.0;
+  EXPECT_GT(std::ranges::count(found.is_handed_over, true), 10);
+  EXPECT_GT(pressed, 50);
+  const EnergyLedger e = expected.totals().energy();
+  EXPECT_LT(std::abs(e.error()), 1e-3 * turnover(e));
+  auto wide = parameters;
+  wide.found.skin = wide.found.reach = 0.5;
+  expect_equal(crushed(model, wide, kSize, kSteps, 2), expected, "2 threads, wide lists");
+  auto half = crushed(model, parameters, kSize, kCopied, 1), other = crushed(model, parameters, kSize, 1, 1);
+  copy_state(half, other);
+  other.advance(kSteps - kCopied);
+  expect_equal(other, expected, "copied");
+}
+
+}  // namespace
+}  // namespace pyroclast::solids
