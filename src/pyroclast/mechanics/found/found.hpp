@@ -12,8 +12,7 @@
 /// Contacts that are found while a body moves: its data.
 ///
 ///     facet   edge, or triangle of a zone, on the outline of a block; free where no contact joins it to
-///     another
-///             block, or where that contact is broken and handed over
+///             another block, or where that contact is broken and handed over
 ///     pair    two free facets of different blocks that may press each other (found/edge_pair.hpp,
 ///             found/triangle_pair.hpp)
 ///     point   end or corner of the overlap of a pair
