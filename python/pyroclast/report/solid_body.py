@@ -77,7 +77,7 @@ def solid_body_of(run: Results, frames: Sequence[Frame]) -> PackedBody:
         if (lost := int((beside[:, 0] < 0).sum())):
             notes.append(f"{lost} cracks whose two blocks are not found")
             kept, cells, beside = (values[beside[:, 0] >= 0] for values in (kept, cells, beside))
-        face, arrays["face_triangle"], arrays["triangle_face"] = _faces(beside, owner[inner], inner, other)
+        face, arrays["face_triangle"], arrays["triangle_face"] = _faces(count, beside, owner[inner], inner, other)
         first_of = np.unique(face, return_index=True)[1]
         arrays["face"] = packed_whole(face, 4)
         arrays["middle"] = packed_steps(cells[first_of, 2], fine, 4)
@@ -125,14 +125,13 @@ def _across(point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
     return inner, other
 
 
-def _faces(beside: np.ndarray, own: np.ndarray, inner: np.ndarray,
+def _faces(blocks: int, beside: np.ndarray, own: np.ndarray, inner: np.ndarray,
            other: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
     """Returns (K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
 
-    A face is where two blocks meet. beside: (K, 2), those of each contact. own, inner, other: blocks, numbers and blocks
-    across of the triangles between blocks.
+    A face is where two blocks meet. blocks: their number. beside: (K, 2), those of each contact. own, inner, other: blocks,
+    numbers and blocks across of the triangles between blocks.
     """
-    blocks = int(max(own.max(), beside.max())) + 1
 
     def pair(blocks_: np.ndarray) -> np.ndarray:
         return blocks_.min(axis=1) * blocks + blocks_.max(axis=1)
