@@ -424,8 +424,8 @@ def print_critical_temperatures(rows: list[dict[str, str]], common: dict) -> Non
 
 
 def retained(rows: list[dict[str, str]], name: str, kind: str, level: str, to: int, common: dict) -> np.ndarray:
-    """Strength or modulus over that of the cold specimen, which concretes of the same contacts share, seed by seed; strain at
-    the peak as it is."""
+    """Strength or modulus over that of the cold specimen, which concretes of the same contacts share, seed by seed;
+    strain at the peak as it is."""
     shared = common if common.get("concrete") == ONE_DAMAGE else common | {"concrete": "as it stands"}
     hot = [of(rows, name, test=kind, level=level, to_degC=to, seed=s, **common) for s in SEEDS]
     cold = [of(rows, name, test="cold", seed=s, **shared) for s in SEEDS]

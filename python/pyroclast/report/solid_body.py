@@ -2,7 +2,8 @@
 contacts that ever become cracks.
 
 A page cuts the polyhedra, which are convex, by a plane across x, y or z: each cut is a convex polygon. From outside it
-shows their triangles, and contacts on the sides of the two blocks that they join, and the sides that come to light where blocks leave.
+shows their triangles, contacts on the sides of the two blocks that they join, and the sides that come to light where
+blocks leave.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ def _edges(point: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 def _across(point: np.ndarray, triangle: np.ndarray, owner: np.ndarray,
             is_outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the triangles (I,) between blocks, and the blocks (I,) on their other sides; where none is found, their own.
+    """Returns the triangles (I,) between blocks, and the blocks (I,) on their other sides: their own where none is found.
     """
     inner = np.flatnonzero(~is_outer)
     centre = meeting(point[triangle[inner]].mean(axis=1), _near(point))
@@ -129,8 +130,8 @@ def _faces(blocks: int, beside: np.ndarray, own: np.ndarray, inner: np.ndarray,
            other: np.ndarray) -> tuple[np.ndarray, dict[str, Any], dict[str, Any]]:
     """Returns (K,) face of each contact; packed: (F,) triangles of such faces, on both blocks, and their faces.
 
-    A face is where two blocks meet. blocks: their number. beside: (K, 2), those of each contact. own, inner, other: blocks,
-    numbers and blocks across of the triangles between blocks.
+    A face is where two blocks meet. blocks: their number. beside: (K, 2), those of each contact. own, inner, other:
+    blocks, numbers and blocks across of the triangles between blocks.
     """
 
     def pair(blocks_: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
-// A solid from outside, in parallel projection: triangles of its outline, of faces that cracked, and of those that blocks
-// bared as they left. A graphics card finds the nearest triangle of each pixel by WebGL. Without one the painter of plane
-// bodies paints them from the farthest to the nearest: it is faster than WebGL by the processor.
+// A solid from outside, in parallel projection: triangles of its outline, of faces that cracked, and of those that
+// blocks bared as they left. A graphics card finds the nearest triangle of each pixel by WebGL. Without one the painter
+// of plane bodies paints them from the farthest to the nearest: it is faster than WebGL by the processor.
 
 import {SolidBody} from "./solid.js";
 
