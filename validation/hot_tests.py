@@ -130,12 +130,10 @@ def _changed_deck(name: str, text: str) -> pathlib.Path:
 
 def with_one_damage(deck: pathlib.Path) -> pathlib.Path:
     """A hot solid with the contacts of cases/starter_3d.toml, which lose strength and energies as its own do."""
-    def contacts(text: str) -> str:
-        return text[text.index("[contacts]"):text.index("[contacts.aggregate_mortar]")]
-
-    own, cold_ = contacts(deck.read_text()), contacts((ROOT / "cases/starter_3d.toml").read_text())
+    own, fitted = (runs.part_of(path.read_text(), "[contacts]", "[contacts.aggregate_mortar]")
+                   for path in (deck, ROOT / "cases/starter_3d.toml"))
     fades = re.search(r"^temperature_ratio = .*$", own, re.MULTILINE)
-    hot, count = re.subn(r'^(G_f[12]) = ("[^"]*")', r'\1 = { value = \2, times = "glasgow_fracture_energy" }', cold_,
+    hot, count = re.subn(r'^(G_f[12]) = ("[^"]*")', r'\1 = { value = \2, times = "glasgow_fracture_energy" }', fitted,
                          flags=re.MULTILINE)
     if fades is None or count != 2:
         raise ValueError(f"{deck} and starter_3d.toml do not state their contacts as they did")

@@ -114,6 +114,11 @@ def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
     return _same_run(folder, command) and not _has_ended(folder) and any(folder.glob("checkpoints/*.state"))
 
 
+def part_of(text: str, begin: str, end: str) -> str:
+    """The part of a deck from one line's beginning to another's. ValueError where it lacks one of them."""
+    return text[text.index(begin):text.index(end)]
+
+
 def deck_hash(deck: pathlib.Path, changes: Sequence[str] = ()) -> str:
     """Of the keys and values of a deck, and of changes to it: comments and blanks do not count."""
     meaning = "\n".join([json.dumps(tomllib.loads(deck.read_text()), sort_keys=True), *changes])

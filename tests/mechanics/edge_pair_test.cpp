@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient.hpp"
 #include "pyroclast/base/random.hpp"
 
 namespace pyroclast {
@@ -56,25 +57,7 @@ EndTractions<double> tractions_of(const EdgePair<double>& p, bool shear) {
   return t;
 }
 
-/// Largest difference between forces and minus the gradient of an energy by central differences.
-double gradient_error(const Corners& x, const CornerForces<double>& forces,
-                      const std::function<double(const Corners&)>& energy) {
-  constexpr double kStep = 3e-5;
-  double worst = 0.0;
-  for (int corner = 0; corner < 4; ++corner)
-    for (int i = 0; i < 2; ++i) {
-      const auto moved = [&](double by) {
-        Corners y = x;
-        y[corner][i] += by;
-        return energy(y);
-      };
-      // of fourth order
-      const double gradient =
-          (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2 * kStep) - moved(-2 * kStep))) / (12.0 * kStep);
-      worst = std::max(worst, std::abs(forces[corner][i] + gradient));
-    }
-  return worst;
-}
+constexpr double kGradientStep = 3e-5;  // m
 
 /// Calls `f(corners, pair)` for random pairs that face each other and stand at no kink of the energy.
 template <class F>
@@ -110,7 +93,7 @@ TEST(EdgePairVerification, ForcesAreTheGradientOfTheirEnergy) {
     const auto areas = areas_of(p);
     for (const bool shear : {false, true}) {
       const auto forces = corner_forces(p, areas, tractions_of(p, shear));
-      const double error = gradient_error(x, forces, [&](const Corners& y) {
+      const double error = gradient_error(kGradientStep, x, forces, [&](const Corners& y) {
         return shear ? shear_energy(y, areas.area) : normal_energy(y);
       });
       (shear ? worst_shear : worst_normal) = std::max(shear ? worst_shear : worst_normal, error);
@@ -159,7 +142,8 @@ TEST(EdgePairVerification, EveryPartOfTheForcesIsNeeded) {
       auto areas = areas_of(p);
       const auto tractions = tractions_of(p, false);
       fault.leave_out(p, areas);
-      worst = std::max(worst, gradient_error(x, corner_forces(p, areas, tractions), normal_energy));
+      worst = std::max(worst,
+                       gradient_error(kGradientStep, x, corner_forces(p, areas, tractions), normal_energy));
     });
     EXPECT_GT(worst, 1e-3) << fault.what;
   }

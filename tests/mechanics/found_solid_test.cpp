@@ -55,26 +55,11 @@ MechanicsParameters flying_in_space(double gravity, double safety) {
   return p;
 }
 
-void hold(Mechanics<3>& m, int block) {
-  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
-    for (int i = 0; i < 3; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
-}
-
 std::vector<Vec<3>> velocities(const ModelOf<3>& model, int block, const Vec<3>& velocity) {
   std::vector<Vec<3>> all(model.position.size());
   std::fill(all.begin() + model.block_gridpoints[block], all.begin() + model.block_gridpoints[block + 1],
             velocity);
   return all;
-}
-
-Vec<3> velocity_of(const Mechanics<3>& m, int block) {
-  Vec<3> momentum{};
-  double mass = 0.0;
-  for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
-    momentum += m.read().velocity(g) * m.body().mass[g];
-    mass += m.body().mass[g];
-  }
-  return momentum * (1.0 / mass);
 }
 
 /// A cube that falls on a held box.
@@ -150,7 +135,7 @@ TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLaw) {
   m.begin_moving(velocities(model, cube, {{0.8, 0.24, 0}}));
   const double speed = std::hypot(0.8, 0.24);
   while (m.time() < kTime) m.advance(500);
-  const Vec<3> v = velocity_of(m, cube), way{{0.8 / speed, 0.24 / speed, 0.0}};
+  const Vec<3> v = velocity_of_block(m, cube), way{{0.8 / speed, 0.24 / speed, 0.0}};
   const EnergyLedger e = m.totals().energy();
   // the cube bounces a little, and friction takes its share of that momentum too
   EXPECT_NEAR(dot(v, way) + kFriction * v[2], speed - kFriction * kGravity * m.time(), 2e-3 * speed);
@@ -242,7 +227,7 @@ TEST(FoundContacts, FaceOfASolidThatIsHandedOverPressesOn) {
     const EnergyLedger later = m.totals().energy(), expected = first.totals().energy();
     EXPECT_NEAR(later.contacts, expected.contacts, 1e-3 * expected.contacts);
     EXPECT_LT(std::abs(later.error()), 1.1 * std::abs(expected.error()));
-    EXPECT_NEAR(velocity_of(m, 1)[2], 0.0, 1e-6);
+    EXPECT_NEAR(velocity_of_block(m, 1)[2], 0.0, 1e-6);
   }
 }
 

@@ -44,13 +44,15 @@ inline Frictional::Properties<double> rubbing(double stiffness, double friction)
   return {stiffness, 0.4 * stiffness, friction};
 }
 
-inline void hold(Mechanics<2>& m, int block) {
+template <int Dim>
+void hold(Mechanics<Dim>& m, int block) {
   for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g)
-    for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
+    for (int i = 0; i < Dim; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
 }
 
-inline Vec<2> velocity_of_block(const Mechanics<2>& m, int block) {
-  Vec<2> momentum{};
+template <int Dim>
+Vec<Dim> velocity_of_block(const Mechanics<Dim>& m, int block) {
+  Vec<Dim> momentum{};
   double mass = 0.0;
   for (int g = m.model().block_gridpoints[block]; g < m.model().block_gridpoints[block + 1]; ++g) {
     momentum += m.read().velocity(g) * m.body().mass[g];

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient.hpp"
 #include "pyroclast/base/random.hpp"
 
 namespace pyroclast::triangles {
@@ -79,26 +80,7 @@ double out_of_balance(const Corners& x, const Corners& forces) {
   return std::max(norm(sum), norm(moment)) / largest;
 }
 
-/// Largest difference between the forces on some corners and minus the gradient of an energy, by central
-/// differences of fourth order.
-double gradient_error(const Corners& x, const Corners& forces,
-                      const std::function<double(const Corners&)>& energy,
-                      const std::vector<int>& corners = {0, 1, 2, 3, 4, 5}) {
-  constexpr double kStep = 5e-5;
-  double worst = 0.0;
-  for (const int corner : corners)
-    for (int i = 0; i < 3; ++i) {
-      const auto moved = [&](double by) {
-        Corners y = x;
-        y[corner][i] += by;
-        return energy(y);
-      };
-      const double gradient =
-          (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2 * kStep) - moved(-2 * kStep))) / (12.0 * kStep);
-      worst = std::max(worst, std::abs(forces[corner][i] + gradient));
-    }
-  return worst;
-}
+constexpr double kGradientStep = 5e-5;  // m
 
 Vec<3> within(Random& random, double x, double y, double z) {
   return {{random.uniform(-x, x), random.uniform(-y, y), random.uniform(-z, z)}};
@@ -162,8 +144,9 @@ TEST(TrianglePairVerification, ForcesAreTheGradientOfTheirEnergy) {
     const Corners forces = forces_of(p, s);
     const std::vector<int> corners{pairs % 3, 3 + pairs % 3};  // all of them take too long
     ++pairs;
-    worst = std::max(worst, gradient_error(
-                                x, forces, [&](const Corners& y) { return energy(y, s); }, corners));
+    worst = std::max(worst,
+                     gradient_error(
+                         kGradientStep, x, forces, [&](const Corners& y) { return energy(y, s); }, corners));
     balance = std::max(balance, out_of_balance(x, forces));
     auto tractions = tractions_of(p, s);
     for (int k = 0; k < p.overlap.count; ++k) {
@@ -189,7 +172,7 @@ TEST(TrianglePairVerification, ShearWorksAlongTheSlide) {
     for (int k = 0; k < p.overlap.count; ++k)
       t.shear[k] = traction - p.pair.normal * dot(traction, p.pair.normal);
     const Corners forces = corner_forces(p.overlap, p.pair, p.areas, t);
-    worst = std::max(worst, gradient_error(x, forces, [&](const Corners& y) {
+    worst = std::max(worst, gradient_error(kGradientStep, x, forces, [&](const Corners& y) {
                        const auto now = triangle_pair<double>(p.overlap, first_of(y), second_of(y));
                        double work = 0.0;
                        for (int k = 0; k < p.overlap.count; ++k) {
@@ -235,7 +218,8 @@ TEST(TrianglePairVerification, EveryPartOfTheForcesIsNeeded) {
     for_random_pairs(200, [&](const Corners& x, Pressed p, const Springs& s) {
       fault.leave_out(p);
       const Corners forces = corner_forces(p.overlap, p.pair, p.areas, tractions_of(p, s));
-      worst = std::max(worst, gradient_error(x, forces, [&](const Corners& y) { return energy(y, s); }));
+      worst = std::max(
+          worst, gradient_error(kGradientStep, x, forces, [&](const Corners& y) { return energy(y, s); }));
     });
     EXPECT_GT(worst, 1e-3) << fault.what;
   }
