@@ -74,8 +74,8 @@ template <int Dim>
     NativeStep<Dim>::take_displacements(s, bundle, scratch);
     for (int i = 0; i < bundle.packs; ++i) scratch.sum[i] = s.force[bundle.first_pack + i];
     typename NativeStep<Dim>::Sums sums;
-    NativeStep<Dim>::M::template move_packs<Pass::move>(s, b, scratch, sums);
-    NativeStep<Dim>::M::template keep<Pass::move>(s, b, sums);
+    NativeStep<Dim>::M::template move_packs<false>(s, b, true, scratch, sums);
+    NativeStep<Dim>::M::template keep<false>(s, b, true, sums);
   }
 }
 

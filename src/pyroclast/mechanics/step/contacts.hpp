@@ -167,12 +167,11 @@ struct Contacts {
     with_kinematics(s, [&](auto kinematics) {
       const auto packs = measure ? update_packs<kinematics(), true> : update_packs<kinematics(), false>;
       if (s.left_out.empty()) return packs(s, first, last);
-      const auto others = measure ? update_others<kinematics(), true> : update_others<kinematics(), false>;
       for (int pack = first; pack < last;) {
         const bool lacks_some = s.left_out[pack] != 0;
         int end = pack + 1;
         while (end < last && (s.left_out[end] != 0) == lacks_some) ++end;
-        (lacks_some ? others : packs)(s, pack, end);
+        (lacks_some ? update_others<kinematics()> : packs)(s, pack, end);
         pack = end;
       }
     });
@@ -192,8 +191,9 @@ struct Contacts {
     }
   }
 
-  /// Updates packs of which some faces are left out: these keep their history, and bear nothing.
-  template <Kinematics kKinematics, bool kMeasure>
+  /// Updates packs of which some faces are left out: these keep their history, and bear nothing. They are few, so
+  /// their sums are always taken: a function that takes none would be as long to compile.
+  template <Kinematics kKinematics>
   [[gnu::flatten, gnu::noinline]] static void update_others(State<Dim>& __restrict s, int first_pack,
                                                             int last_pack) {
     for (int pack = first_pack; pack < last_pack; ++pack) {
@@ -201,14 +201,14 @@ struct Contacts {
       const OtherFaces faces{Real::Truth::from_bits(s.left_out[pack])};
       const int first = s.layout.first_point_of(pack);
       if (any(faces.area(s.layout.points[first]) > 0.0)) {
-        update_pack<kKinematics, kMeasure>(s, pack, faces);
+        update_pack<kKinematics, true>(s, pack, faces);
         continue;
       }
       for (int at = first; at < s.layout.first_point_of(pack + 1); ++at) {
         R::store(Vector{}, &s.contact_force[slot_of(at, 0)]);
         if constexpr (kKinematics == Kinematics::finite) R::store(Vector{}, &s.turning_force[slot_of(at, 0)]);
       }
-      if constexpr (kMeasure) s.face_sums[pack] = {};
+      s.face_sums[pack] = {};
     }
   }
 

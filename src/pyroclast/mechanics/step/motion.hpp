@@ -47,37 +47,39 @@ struct GridpointMotion {
   }
 
   /// Moves the gridpoints of a bundle.
-  template <Pass kPass>
-  static void move_packs(State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+  /// \param moves  false where a pass takes sums alone
+  template <bool kMeasure>
+  static void move_packs(State<Dim>& s, int index, bool moves, const Scratch& scratch, Sums& sums) {
     const Bundle& bundle = s.layout.bundles[index];
     const Parameters parameters(s);
     if (const int c = s.constraints_of_bundle[index]; c >= 0) {
       const ConstraintPack<Dim>* const packs = &s.constraint_packs[s.constraints[c].first_pack];
       for (int i = 0; i < bundle.packs; ++i)
-        move_pack<kPass, true>(s, parameters, bundle, i, &packs[i], scratch, sums);
+        move_pack<kMeasure, true>(s, parameters, bundle, i, &packs[i], moves, scratch, sums);
     } else {
       for (int i = 0; i < bundle.packs; ++i)
-        move_pack<kPass, false>(s, parameters, bundle, i, nullptr, scratch, sums);
+        move_pack<kMeasure, false>(s, parameters, bundle, i, nullptr, moves, scratch, sums);
     }
   }
 
   /// Books the sums of a bundle.
-  template <Pass kPass>
-  static void keep(State<Dim>& s, int index, const Sums& sums) {
+  /// \param moves  as of move_packs
+  template <bool kMeasure>
+  static void keep(State<Dim>& s, int index, bool moves, const Sums& sums) {
     BundleSums& kept = s.bundle_sums[index];
-    if constexpr (kPass != Pass::measure) {
+    if (!kMeasure || moves) {
       kept.damping_work += sum(sums.damping) * (0.5 * s.time_step);
       if (s.viscous_damping != 0.0) kept.viscous_work += sum(sums.viscous);
       if (const int c = s.constraints_of_bundle[index]; c >= 0)
         s.constraints[c].loading_work += sum(sums.loading);
     }
-    if constexpr (kPass == Pass::move_and_measure) {
-      kept.begun_damping = sum(sums.begun_damping);
-      kept.begun_viscous = sum(sums.begun_viscous);
-      kept.begun_loading = sum(sums.begun_loading);
-      kept.kinetic = sum(sums.kinetic);
-    }
-    if constexpr (kPass != Pass::move) {
+    if constexpr (kMeasure) {
+      if (moves) {
+        kept.begun_damping = sum(sums.begun_damping);
+        kept.begun_viscous = sum(sums.begun_viscous);
+        kept.begun_loading = sum(sums.begun_loading);
+        kept.kinetic = sum(sums.kinetic);
+      }
       const bool begun = s.layout.bundles[index].is_part;
       kept.stored = (begun ? kept.stored : 0.0) + sum(sums.stored);
       kept.applied = (begun ? kept.applied : 0.0) + sum(sums.applied);
@@ -110,10 +112,10 @@ struct GridpointMotion {
   };
 
   /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
-  template <Pass kPass, bool kConstrained>
+  template <bool kMeasure, bool kConstrained>
   static void move_pack(State<Dim>& s, const Parameters& m, const Bundle& bundle, int i,
-                        const ConstraintPack<Dim>* constraints, const Scratch& scratch, Sums& sums) {
-    constexpr bool kMeasure = kPass != Pass::move;
+                        const ConstraintPack<Dim>* constraints, bool moves, const Scratch& scratch,
+                        Sums& sums) {
     const int pack = bundle.first_pack + i;
     const Vector force = R::load(scratch.sum[i].c);
     if constexpr (kMeasure) {
@@ -123,10 +125,7 @@ struct GridpointMotion {
           free[j] = select(Real::Truth::from_bits(constraints->prescribed[j]), Real(0.0), free[j]);
       sums.unbalanced += norm(free);
     }
-    if constexpr (kPass == Pass::measure) {
-      R::store(force, s.force[pack].c);
-      return;
-    }
+    if (kMeasure && !moves) return R::store(force, s.force[pack].c);
     R::fetch_ahead(s.velocity, pack);
     R::fetch_ahead(s.step_over_mass, pack);
     const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(pack, 0)]);

@@ -19,17 +19,11 @@ void with_creep(const State<Dim>& s, F f) {
   f(std::true_type());
 }
 
-/// Calls `f` with the work of a pass as a constant.
+/// Calls `f` with a constant that tells whether a pass takes sums.
 template <class F>
-void with_pass(Pass pass, F f) {
-  switch (pass) {
-    case Pass::move:
-      return f(std::integral_constant<Pass, Pass::move>());
-    case Pass::move_and_measure:
-      return f(std::integral_constant<Pass, Pass::move_and_measure>());
-    case Pass::measure:
-      return f(std::integral_constant<Pass, Pass::measure>());
-  }
+void with_measuring(Pass pass, F f) {
+  if (pass == Pass::move) return f(std::false_type());
+  f(std::true_type());
 }
 
 /// \tparam Set  an instruction set of base/lanes.hpp

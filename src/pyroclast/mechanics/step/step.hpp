@@ -41,8 +41,9 @@ class Step {
   static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_kinematics(s, [&](auto kinematics) {
       with_creep(s, [&](auto creeps) {
-        with_pass(pass, [&](auto kind) {
-          for (int b = first; b < last; ++b) bundle<kinematics(), kind(), creeps()>(s, b, memory);
+        with_measuring(pass, [&](auto measures) {
+          for (int b = first; b < last; ++b)
+            bundle<kinematics(), measures(), creeps()>(s, b, pass != Pass::measure, memory);
         });
       });
     });
@@ -52,9 +53,9 @@ class Step {
   static void place_corner_forces(State<Dim>& s, int first, int last, Pass pass) {
     with_kinematics(s, [&](auto kinematics) {
       with_creep(s, [&](auto creeps) {
-        with_pass(pass, [&](auto kind) {
+        with_measuring(pass, [&](auto measures) {
           for (int i = first; i < last; ++i)
-            corner_forces<kinematics(), kind(), creeps()>(s, s.layout.parts[i]);
+            corner_forces<kinematics(), measures(), creeps()>(s, s.layout.parts[i]);
         });
       });
     });
@@ -62,11 +63,11 @@ class Step {
 
   /// Ends the step of parts whose gridpoints are tied to others.
   static void move_tied_parts(State<Dim>& s, int first, int last, Pass pass, double* memory) {
-    with_pass(pass, [&](auto kind) {
+    with_measuring(pass, [&](auto measures) {
       for (int i = first; i < last; ++i) {
         const int index = s.layout.parts[i];
         if (const int c = s.constraints_of_bundle[index]; c >= 0 && s.constraints[c].ties())
-          tied_part<kind()>(s, index, s.constraints[c], memory);
+          tied_part<measures()>(s, index, s.constraints[c], pass != Pass::measure, memory);
       }
     });
   }
@@ -78,7 +79,7 @@ class Step {
         [&](const PackFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
     for (int b = 0; b < static_cast<int>(s.layout.bundles.size()); ++b)
       if (s.layout.bundles[b].kind == BundleKind::piece) Z::place_corner_stiffness(s, b);
-    with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
+    stiffness(s, memory);
   }
 
   static constexpr StepPasses<Dim> passes() {
@@ -88,11 +89,11 @@ class Step {
   }
 
   // flatten, because lanes that cross a call go through memory
-  template <Kinematics kKinematics, Pass kPass, bool kCreeps>
-  [[gnu::flatten]] static void bundle(State<Dim>& s, int index, double* memory) {
+  /// \param moves  false where a pass takes sums alone
+  template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
+  [[gnu::flatten]] static void bundle(State<Dim>& s, int index, bool moves, double* memory) {
     const Bundle& bundle = s.layout.bundles[index];
     const Scratch scratch = R::scratch_of(bundle, memory);
-    constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
@@ -107,13 +108,12 @@ class Step {
       if (bundle.is_part && constraints.ties()) return put_aside<kMeasure>(s, index, scratch, sums);
       M::share_out(s, bundle, constraints, scratch.sum, scratch);
     }
-    M::template move_packs<kPass>(s, index, scratch, sums);
-    M::template keep<kPass>(s, index, sums);
+    M::template move_packs<kMeasure>(s, index, moves, scratch, sums);
+    M::template keep<kMeasure>(s, index, moves, sums);
   }
 
-  template <Kinematics kKinematics, Pass kPass, bool kCreeps>
+  template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   [[gnu::flatten]] static void corner_forces(State<Dim>& s, int part) {
-    constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
     Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, part, sums);
     if constexpr (kMeasure) M::keep_of_zones(s, part, sums);
@@ -127,9 +127,9 @@ class Step {
     if constexpr (kMeasure) s.bundle_sums[part].applied += sum(sums.applied);
   }
 
-  template <Pass kPass>
+  template <bool kMeasure>
   [[gnu::flatten]] static void tied_part(State<Dim>& s, int part, const BundleConstraints& constraints,
-                                         double* memory) {
+                                         bool moves, double* memory) {
     const Bundle& bundle = s.layout.bundles[part];
     const Scratch scratch = R::scratch_of(bundle, memory);
     const VectorPack<Dim>* const forces = &s.part_force[bundle.first_gathering_pack];
@@ -137,8 +137,8 @@ class Step {
     take_displacements(s, bundle, scratch);
     std::copy_n(forces, bundle.packs, scratch.sum);
     M::share_out(s, bundle, constraints, forces, scratch);
-    M::template move_packs<kPass>(s, part, scratch, sums);
-    M::template keep<kPass>(s, part, sums);
+    M::template move_packs<kMeasure>(s, part, moves, scratch, sums);
+    M::template keep<kMeasure>(s, part, moves, sums);
   }
 
   // Parts of a bundle's step, public so that each can be timed alone.
@@ -168,13 +168,12 @@ class Step {
   }
 
  private:
-  template <Kinematics kKinematics>
   [[gnu::flatten]] static void stiffness(State<Dim>& s, double* memory) {
     for (int index = 0; index < static_cast<int>(s.layout.bundles.size()); ++index) {
       const Bundle& bundle = s.layout.bundles[index];
       const Scratch scratch = R::scratch_of(bundle, memory);
       for (int i = 0; i < bundle.packs; ++i)
-        R::store(C::template add_forces<kKinematics, false>(s, bundle.first_pack + i, Vector{}),
+        R::store(C::template add_forces<Kinematics::small, false>(s, bundle.first_pack + i, Vector{}),
                  scratch.sum[i].c);
       Z::add_stiffness(s, index, scratch);
       for (int i = 0; i < bundle.packs; ++i) {
