@@ -165,13 +165,12 @@ struct Contacts {
   /// Implements PackFunctions::update.
   static void update(State<Dim>& s, int first, int last, bool measure) {
     with_kinematics(s, [&](auto kinematics) {
-      const auto packs = measure ? update_packs<kinematics(), true> : update_packs<kinematics(), false>;
-      if (s.left_out.empty()) return packs(s, first, last);
+      if (s.left_out.empty()) return update_packs<kinematics()>(s, first, last, measure);
       for (int pack = first; pack < last;) {
         const bool lacks_some = s.left_out[pack] != 0;
         int end = pack + 1;
         while (end < last && (s.left_out[end] != 0) == lacks_some) ++end;
-        (lacks_some ? update_others<kinematics()> : packs)(s, pack, end);
+        (lacks_some ? update_others<kinematics()> : update_packs<kinematics()>)(s, pack, end, measure);
         pack = end;
       }
     });
@@ -183,32 +182,32 @@ struct Contacts {
   }
 
   // flatten, because lanes that cross a call go through memory
-  template <Kinematics kKinematics, bool kMeasure>
-  [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
+  template <Kinematics kKinematics>
+  [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last,
+                                                           bool measure) {
     for (int pack = first; pack < last; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
-      update_pack<kKinematics, kMeasure>(s, pack, EveryFace());
+      update_pack<kKinematics>(s, pack, measure, EveryFace());
     }
   }
 
-  /// Updates packs of which some faces are left out: these keep their history, and bear nothing. They are few, so
-  /// their sums are always taken: a function that takes none would be as long to compile.
+  /// Updates packs of which some faces are left out: these keep their history, and bear nothing.
   template <Kinematics kKinematics>
   [[gnu::flatten, gnu::noinline]] static void update_others(State<Dim>& __restrict s, int first_pack,
-                                                            int last_pack) {
+                                                            int last_pack, bool measure) {
     for (int pack = first_pack; pack < last_pack; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
       const OtherFaces faces{Real::Truth::from_bits(s.left_out[pack])};
       const int first = s.layout.first_point_of(pack);
       if (any(faces.area(s.layout.points[first]) > 0.0)) {
-        update_pack<kKinematics, true>(s, pack, faces);
+        update_pack<kKinematics>(s, pack, measure, faces);
         continue;
       }
       for (int at = first; at < s.layout.first_point_of(pack + 1); ++at) {
         R::store(Vector{}, &s.contact_force[slot_of(at, 0)]);
         if constexpr (kKinematics == Kinematics::finite) R::store(Vector{}, &s.turning_force[slot_of(at, 0)]);
       }
-      s.face_sums[pack] = {};
+      if (measure) s.face_sums[pack] = {};
     }
   }
 
@@ -261,17 +260,19 @@ struct Contacts {
   }
 
   /// \param faces  the faces that go through the law: EveryFace or OtherFaces
-  template <Kinematics kKinematics, bool kMeasure, class Faces>
-  static void update_pack(State<Dim>& s, int pack, const Faces& faces) {
+  template <Kinematics kKinematics, class Faces>
+  static void update_pack(State<Dim>& s, int pack, bool measure, const Faces& faces) {
     if (s.one_set[pack]) {
       const OneForAll& constants = constants_of_set(s, pack);
-      respond_to_jumps<kKinematics, kMeasure>(
-          s, pack, faces, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+      respond_to_jumps<kKinematics>(
+          s, pack, measure, faces,
+          [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
             return update_point(s, pack, point, constants, opening, tangential, faces);
           });
     } else {
-      respond_to_jumps<kKinematics, kMeasure>(
-          s, pack, faces, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+      respond_to_jumps<kKinematics>(
+          s, pack, measure, faces,
+          [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
             return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential, faces);
           });
     }
@@ -279,8 +280,8 @@ struct Contacts {
 
   /// \param faces    as of update_pack
   /// \param respond  function from (point, opening, tangential jump) to a ContactResponse
-  template <Kinematics kKinematics, bool kMeasure, class Faces, class Respond>
-  static void respond_to_jumps(State<Dim>& s, int pack, const Faces& faces, Respond respond) {
+  template <Kinematics kKinematics, class Faces, class Respond>
+  static void respond_to_jumps(State<Dim>& s, int pack, bool measure, const Faces& faces, Respond respond) {
     const auto frame = Frames::template of<kKinematics>(s, pack);
     const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
     WorkOfTurn<Dim, Real> work;
@@ -300,7 +301,7 @@ struct Contacts {
         work.add(response.normal_traction, response.shear_traction, opening, tangential);
       if constexpr (kKinematics == Kinematics::finite && Dim == 3)
         work.add(response.normal_traction * area, response.shear_traction * area, opening, tangential);
-      if constexpr (kMeasure) {
+      if (measure) {
         stored += response.stored * area;
         applied += 2.0 * norm(force);  // counts both sides
         widest = larger(widest, norm(jump));
@@ -310,7 +311,7 @@ struct Contacts {
       if constexpr (Dim == 2) work.tilt *= faces.area(s.layout.points[first]);  // both points share one
       Frames::turn(s, pack, frame, work, [](const Vector& force, Vec<Dim>* to) { R::store(force, to); });
     }
-    if constexpr (kMeasure) {
+    if (measure) {
       FaceSums& sums = s.face_sums[pack];
       sums.stored = sum(stored);
       sums.applied = sum(applied);
