@@ -13,7 +13,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from in_a_folder import InAFolder  # noqa: E402
 from sanitized import needs_studies  # noqa: E402
-from test_user import CARELESS_LAW, deck_of_careless_law  # noqa: E402
+from test_user import CARELESS_LAW, deck_of_careless_law, preprocessor  # noqa: E402
 
 MARK = """#include <cstdio>
 [[gnu::constructor]] static void mark() {
@@ -143,10 +143,7 @@ class CodeOfADeck(CodeTest):
 
     def test_a_header_that_includes_files_by_odd_words(self):
         """A byte-order mark, or a backslash and a blank, hides no include from the hash. Nothing is compiled of it."""
-        compiler = self.folder / "compiler"
-        compiler.write_text('#!/bin/sh\ncase "$*" in *-shared*) exit 1;; esac\nexec c++ "$@"\n')
-        compiler.chmod(0o755)
-        self.env["CXX"] = str(compiler)
+        self.env["CXX"] = preprocessor(self.folder)
         allowed = {"runs": False, "codes": (1,), "says": "does not compile as the contact law"}
         for name in ("x.hpp", "y.hpp"):
             (self.folder / name).write_text("// one\n")
