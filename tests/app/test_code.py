@@ -13,7 +13,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from in_a_folder import InAFolder  # noqa: E402
 from sanitized import needs_studies  # noqa: E402
-from test_user import CARELESS_LAW, deck_of_careless_law  # noqa: E402
+from test_user import CARELESS_LAW, deck_of_careless_law, preprocessor  # noqa: E402
 
 MARK = """#include <cstdio>
 [[gnu::constructor]] static void mark() {
@@ -35,19 +35,21 @@ pathlib.Path("{mark}").touch()
 def model(seed):
     return {{"y": 1.0}}
 """
+COMMON = tempfile.TemporaryDirectory()  # of all tests: what was compiled for one is there for others
 
 
 class CodeTest(InAFolder):
-    @classmethod
-    def setUpClass(cls):
-        cls.common = pathlib.Path(tempfile.mkdtemp())
-        cls.addClassCleanup(shutil.rmtree, cls.common)
+    common = pathlib.Path(COMMON.name)
 
     def setUp(self):
         super().setUp()
         self.mark = self.common / "mark"
+        compiler = self.common / "compiler"  # does not optimize: what runs counts here, and not how fast
+        compiler.write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >> {self.common / "words"}\nexec c++ "$@" -O0\n')
+        compiler.chmod(0o755)
         self.env = os.environ | {"PYROCLAST_CACHE": str(self.common / "cache"), "HOME": str(self.folder / "home"),
-                                 "XDG_CONFIG_HOME": str(self.folder / "home"), "PYROCLAST_CODE": "ask"}
+                                 "XDG_CONFIG_HOME": str(self.folder / "home"), "PYROCLAST_CODE": "ask",
+                                 "CXX": str(compiler)}
         (self.folder / "law.hpp").write_text(MARK.replace("MARK", str(self.mark)) + CARELESS_LAW)
         deck = deck_of_careless_law(1.0).replace('stop_strain = 2e-4', 'stop_strain = 2e-5').replace("count = 100", "count = 40")
         (self.folder / "header.toml").write_text(deck.replace("careless.hpp", "law.hpp"))
@@ -66,9 +68,11 @@ class CodeTest(InAFolder):
         self.assertIn(says, done.stdout + done.stderr)
         return done
 
-    def assert_done(self, *words: str, runs: bool, codes: tuple = (0, 2), **env: str) -> subprocess.CompletedProcess:
+    def assert_done(self, *words: str, runs: bool, codes: tuple = (0, 2), says: str = "",
+                    **env: str) -> subprocess.CompletedProcess:
         done, ran = self.run_it(*words, **env)
         self.assertIn(done.returncode, codes, (words, done.stdout, done.stderr))
+        self.assertIn(says, done.stdout + done.stderr)
         self.assertEqual(ran, runs, words)
         return done
 
@@ -117,13 +121,12 @@ class CodeOfADeck(CodeTest):
         self.assert_refused("check", deck, PYROCLAST_CODE="never", says="never")
         self.assert_done("resume", "out", "--from-stage", "0", "--out", "fork", "--no-figures", runs=True)
         self.assert_done("watch", "out", "--once", runs=False)
-        self.assert_done("figures", "run", "out", runs=False)
         # of somebody else: the same folders, another home
         shutil.rmtree(self.folder / "home")
         self.assert_refused("resume", "out", "--from-stage", "0", "--out", "other", "--no-figures")
         self.assert_refused("run", "out/deck.toml", "--out", "other", "--no-figures")
         self.assertFalse((self.folder / "other").exists())
-        self.assert_done("figures", "run", "out", runs=False)
+        self.assert_done("figures", "run", "out", "--only", "cracks", runs=False)
         self.assert_done("run", "out/deck.toml", "--out", "other", "--no-figures", runs=True, PYROCLAST_CODE="always")
 
     def test_a_header(self):
@@ -139,33 +142,32 @@ class CodeOfADeck(CodeTest):
         self.try_law("object.toml")
 
     def test_a_header_that_includes_files_by_odd_words(self):
-        """A byte-order mark, or a backslash and a blank, hides no include from the hash."""
-        self.env["PYROCLAST_CACHE"] = str(self.folder / "cache")
+        """A byte-order mark, or a backslash and a blank, hides no include from the hash. Nothing is compiled of it."""
+        self.env["CXX"] = preprocessor(self.folder)
+        allowed = {"runs": False, "codes": (1,), "says": "does not compile as the contact law"}
         for name in ("x.hpp", "y.hpp"):
             (self.folder / name).write_text("// one\n")
         (self.folder / "law.hpp").write_text('\ufeff#include "x.hpp"\n#inc\\ \nlude "y.hpp"\n' + CARELESS_LAW)
-        self.assert_done("check", "header.toml", "--allow-code", runs=False)
-        self.assert_done("check", "header.toml", runs=False)
+        self.assert_done("check", "header.toml", "--allow-code", **allowed)
+        self.assert_done("check", "header.toml", **allowed)
         for name in ("x.hpp", "y.hpp"):
             (self.folder / name).write_text(MARK.replace("MARK", str(self.mark)))
             self.assert_refused("check", "header.toml")
             (self.folder / name).write_text("// one\n")
-        self.assert_done("check", "header.toml", runs=False)
+        self.assert_done("check", "header.toml", **allowed)
 
     def test_no_precompiled_header_is_taken(self):
         """A law.hpp.gch of other code beside law.hpp does not run, and does not get into the cache."""
-        log = self.folder / "words"
-        compiler = self.folder / "compiler"
-        compiler.write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >> {log}\nexec c++ "$@"\n')
-        compiler.chmod(0o755)
+        log = self.common / "words"
+        log.unlink(missing_ok=True)
         law = self.folder / "law.hpp"
         law.write_text(CARELESS_LAW + "// of the test of precompiled headers\n")
-        self.assert_refused("check", "header.toml", CXX=str(compiler))
+        self.assert_refused("check", "header.toml")
         words = log.read_text().splitlines()
         flags = words[words.index("-std=c++20"):words.index("-E")]
         other = self.folder / "other.hpp"
         other.write_text(CARELESS_LAW + MARK.replace("MARK", str(self.mark)))
-        subprocess.run(["c++", *flags, "-x", "c++-header", other, "-o", f"{law}.gch"], check=True)
+        subprocess.run(["c++", *flags, "-O0", "-x", "c++-header", other, "-o", f"{law}.gch"], check=True)
         self.assert_done("check", "header.toml", "--allow-code", runs=False, PYROCLAST_CACHE=str(self.folder / "cache"))
 
     def test_what_the_command_line_names_needs_no_word(self):
@@ -199,7 +201,8 @@ class CodeOfADeck(CodeTest):
 
 @needs_studies
 class CodeOfAStudy(CodeTest):
-    def try_study(self, runner: str, change) -> None:
+    def try_study(self, runner: str, change, then: tuple = ()) -> None:
+        """`then` are commands that run no code after the user's word either."""
         (self.folder / "study.toml").write_text(STUDY.format(runner=runner))
         self.assert_refused("study", "run", "study.toml")
         self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
@@ -207,7 +210,7 @@ class CodeOfAStudy(CodeTest):
             done, ran = self.run_it("study", command, "study.toml")
             self.assertFalse(ran, (command, done.stderr))
         self.assert_done("study", "run", "study.toml", "--allow-code", runs=True)
-        for command in ("status", "table", "report"):
+        for command in then:
             self.assert_done("study", command, "study.toml", runs=False)
         change()
         self.assert_refused("study", "run", "study.toml")
@@ -220,7 +223,7 @@ class CodeOfAStudy(CodeTest):
         def change():
             (self.folder / "helper.py").write_text("# another\n")
 
-        self.try_study('runner = "function"\nfunction = "model.py:model"', change)
+        self.try_study('runner = "function"\nfunction = "model.py:model"', change, ("status", "table", "report"))
 
     def test_a_command(self):
         self.write_script("model.sh")
@@ -408,10 +411,10 @@ class HashOfAStudy(CodeTest):
             with self.subTest(command=command):
                 shutil.rmtree(self.folder / "study-study", ignore_errors=True)
                 self.write_command(command)
-                self.assert_refused("study", "run", "study.toml", says=why)
                 self.run_it("study", "run", "study.toml", "--allow-code")
-                self.assert_refused("study", "run", "study.toml", says="each time")
-                self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
+                said = self.assert_refused("study", "run", "study.toml", says=why).stderr
+                self.assertIn("It needs your word each time, because ", said)
+        self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
 
     def test_code_that_changes_while_a_study_runs_ends_it(self):
         self.write_script("w.sh")
