@@ -635,8 +635,8 @@ class WidthOfThePage(FolderTest):
                         self.assert_legends_cover_nothing(figure)
 
     def assert_legends_cover_nothing(self, figure) -> None:
+        """Of a figure as `assert_apart` leaves it."""
         renderer = FigureCanvasAgg(figure).get_renderer()
-        figure.draw_without_rendering()
         for axes in figure.axes:
             legend = axes.get_legend()
             if legend is None or not hasattr(legend, "on_top"):

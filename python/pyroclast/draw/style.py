@@ -276,14 +276,13 @@ def settle(figure: Figure) -> Figure:
     of_page = getattr(figure, "of_page", Page())
     _choose_panels(figure, of_page)
     if not of_page.is_column:
-        if (engine := _layout_of(figure)) is not None:
-            engine.execute(figure)  # panels of one scale on both axes shrink, and the next finds room for the rest
+        _lay_out(figure)  # panels of one scale on both axes shrink, and the next finds room for the rest
         return figure
     renderer = FigureCanvasAgg(figure).get_renderer()
     for _ in range(4):
-        figure.draw_without_rendering()
+        _lay_out(figure)
         _break_labels(figure, renderer)
-        figure.draw_without_rendering()
+        _lay_out(figure)
         for axes in _with_legend_on_top(figure):
             _draw_on_top(axes, *axes.get_legend().on_top, axes.bbox.width / figure.dpi)
         if not _share_height(figure, of_page.highest, renderer):
@@ -293,7 +292,7 @@ def settle(figure: Figure) -> Figure:
         for one in figure.axes:
             if one.bbox.bounds == axes.bbox.bounds:
                 _lift(one, share)
-    figure.draw_without_rendering()
+    _lay_out(figure)
     _break_labels(figure, renderer)  # axes may have become narrower
     return figure
 
@@ -521,6 +520,12 @@ def thin(figure: Figure) -> Figure:
 
 def _layout_of(figure: Figure):
     return figure.get_layout_engine() if hasattr(figure, "get_layout_engine") else None  # since Matplotlib 3.6
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lays a figure out without drawing it, which takes as long again."""
+    if (engine := _layout_of(figure)) is not None:
+        engine.execute(figure)
 
 
 @contextmanager

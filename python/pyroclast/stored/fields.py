@@ -82,7 +82,7 @@ def _labels(length: int, dimension: int) -> tuple[str, list[str]]:
     return name, labels[:dimension] if name == "component" else labels
 
 
-class _OfFrames(BackendArray):
+class _OfFrames(BackendArray):  # type: ignore[misc]
     """An array (frames, ...) of which a frame is read when values of it are asked for, and nothing is kept."""
 
     def __init__(self, read: Callable[[int], Array], frames: list[int], shape: tuple[int, ...], dtype: np.dtype[Any]):
@@ -211,7 +211,7 @@ def _variable(frames: list[Frame], field: _Field, sizes: Mapping[str, int], read
               dtype: np.dtype[Any]) -> Variable:
     """Makes a variable of a field. sizes: of a frame, by dimensions."""
     of_frames = _OfFrames(read, [frame.number for frame in frames], tuple(sizes.values()), dtype)
-    values = indexing.LazilyIndexedArray(of_frames)  # type: ignore[no-untyped-call]
+    values = indexing.LazilyIndexedArray(of_frames)
     return ("frame", *sizes), values, {"units": field.unit}
 
 
