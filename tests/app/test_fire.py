@@ -76,7 +76,7 @@ class Foretold(InTheFire):
 
     def test_blocks_that_scatter_critical_temperatures_are_told_with_the_number_that_does_not(self):
         words = ("concrete", *CONCRETE[:CONCRETE.index("--blocks")], "--aggregate", "granite", "--fire", "iso834",
-                 "--minutes", "10")
+                 "--minutes", "1")
         self.pyroclast(*words, "-o", "mine.toml")
         self.assertNotIn("blocks.count", self.pyroclast("check", "mine-fire.toml").stdout)
         count = tomllib.loads((self.folder / "mine.toml").read_text())["blocks"]["count"]

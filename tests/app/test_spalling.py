@@ -40,10 +40,12 @@ class Slab(InAFolder):
 
 class PiecesLeave(Slab):
     def test_they_are_told_and_what_they_take_along_is_booked(self):
+        """... and a run that is killed while they leave goes on to the same bytes."""
         heights = range(5, 100, 10)
         watched = [f'[[probes]]\nname = "at_{y}"\nx = "1 mm"\ny = "{y} mm"\n' for y in heights]
         watched += ['[[record]]\nname = "way"\nkind = "displacement"\nset = "left"\ndirection = "x"\n', "[spalling] "]
         summary = self.slab(("[spalling] ", "\n".join(watched)))
+        self.assert_same_bytes_when_killed("out")
         self.assertEqual(summary["stages"][2]["outcome_id"], "completed")
         told, pieces, blocks = summary["spalling"], self.table("out/spalls.csv"), self.table("out/spalled_blocks.csv")
         history = self.table("out/history.csv")
@@ -75,19 +77,18 @@ class PiecesLeave(Slab):
     def test_none_leaves_where_the_pressure_acts_on_nothing(self):
         self.assertEqual(self.slab(("biot = 1.0 ", 'acts = "no" '))["spalling"]["pieces"], 0)
 
-    def test_a_run_that_is_killed_goes_on_to_the_same_bytes(self):
-        self.slab(out="whole")
-        self.deck(("[output]", '[output]\ncheckpoint = "0 s"'))
-        run = subprocess.Popen([PROGRAM, *self.small("killed")], cwd=self.folder, stdout=subprocess.DEVNULL)
+    def assert_same_bytes_when_killed(self, whole: str) -> None:
+        """Of the deck at hand, whose whole run is there."""
+        run = subprocess.Popen([PROGRAM, *self.small("killed"), "--checkpoint", "0 s"], cwd=self.folder, stdout=subprocess.DEVNULL)
         spalls = self.folder / "killed/spalls.csv"
         while run.poll() is None and not (spalls.exists() and spalls.read_bytes().count(b"\n") > 3):
             time.sleep(0.01)
         self.assertIsNone(run.poll(), "the run was over before it could be killed")
         run.kill()
         run.wait()
-        self.pyroclast("resume", "killed", "--quiet", "--no-figures")
+        self.pyroclast("resume", "killed", "--quiet", "--no-figures", "--checkpoint", "1 h")
         for name in ("history.csv", "spalls.csv", "spalled_blocks.csv", "temperature_profile.csv"):
-            self.assertEqual((self.folder / "whole" / name).read_bytes(), (self.folder / "killed" / name).read_bytes())
+            self.assertEqual((self.folder / whole / name).read_bytes(), (self.folder / "killed" / name).read_bytes())
 
 
 class Refused(Slab):

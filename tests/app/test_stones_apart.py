@@ -278,7 +278,7 @@ class EmptyCells(ProgramTest):
                             ((FACES[0], EMPTY, FACES[1]), f"1 {one} 2 (from 1)")):
             self.deck(*faces)
             self.assertIn(told, self.pyroclast("check", "deck.toml").stdout)
-        done = self.pyroclast("run", "deck.toml", "--out", "out")
+        done = self.pyroclast("run", "deck.toml", "--out", "out", "--no-figures")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(told, done.stdout)
         warnings = json.loads((self.folder / "out/summary.json").read_text())["warnings"]
