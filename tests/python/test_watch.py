@@ -505,6 +505,8 @@ class Long(WatchTest):
                 self.assertLess(seconds, 4.0 + 20.0 * million)  # without the compiled part
                 self.assertLess(megabytes, 300.0 + 700.0 * million)
 
+
+class Thinned(unittest.TestCase):
     def test_what_is_left_of_a_line_has_its_extremes_and_gaps(self):
         random = np.random.default_rng(1)
         x = np.arange(300_000.0)

@@ -80,9 +80,6 @@ class ReportTest(StudyTest):
     def setUp(self) -> None:
         super().setUp()
         self.model.write_text(MODEL)
-        dots = mock.patch("pyroclast.draw.style.DPI", 40)  # quicker
-        dots.start()
-        self.addCleanup(dots.stop)
 
     def of(self, method: str, parameters: str = "", rest: str = "", seeds: int = 3) -> Study:
         return self.study(f'''
