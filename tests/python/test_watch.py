@@ -393,13 +393,13 @@ class Command(WatchTest):
 class Readers(WatchTest):
     """Several at once, and those who may not write."""
 
-    def test_five_at_once(self):
+    def test_three_at_once(self):
         self.begin(rows=100)
         with self.writer():
             all_of_them = [subprocess.Popen([sys.executable, "-m", "pyroclast.watch", str(self.folder), "--once"],
                                             env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                             text=True)
-                           for _ in range(5)]
+                           for _ in range(3)]
             for process in all_of_them:
                 said, wrong = process.communicate(timeout=300)
                 self.assertEqual((process.returncode, wrong), (0, ""))
@@ -505,6 +505,8 @@ class Long(WatchTest):
                 self.assertLess(seconds, 4.0 + 20.0 * million)  # without the compiled part
                 self.assertLess(megabytes, 300.0 + 700.0 * million)
 
+
+class Thinned(unittest.TestCase):
     def test_what_is_left_of_a_line_has_its_extremes_and_gaps(self):
         random = np.random.default_rng(1)
         x = np.arange(300_000.0)

@@ -19,7 +19,7 @@ from pyroclast.stored.mesh import specimen_box
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 DIAMETER, HEIGHT = 0.1, 0.2
-CHANGES = ("blocks.count=300", "blocks.shortest_edge=0", "aggregates.fraction=0.2", "aggregates.d_min=20 mm",
+CHANGES = ("blocks.count=150", "blocks.shortest_edge=0", "aggregates.fraction=0.2", "aggregates.d_min=20 mm",
            "aggregates.sieves=[]", "stages[1].stop_strain=1.2e-3",
            "stages[1].ramp_time=2 ms", "stages[1].velocity=4 mm/s", "output.history_strain=2e-5",
            "output.frame_strain=6e-4")

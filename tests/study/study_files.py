@@ -6,6 +6,7 @@ import sys
 import tempfile
 import textwrap
 import unittest
+from unittest import mock
 
 from pyroclast.study.study import Study
 
@@ -58,6 +59,9 @@ class StudyTest(unittest.TestCase):
     def setUp(self) -> None:
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
+        dots = mock.patch("pyroclast.draw.style.DPI", 40)  # quicker
+        dots.start()
+        self.addCleanup(dots.stop)
         self.folder = pathlib.Path(scratch.name)
         self.model = self.folder / "model.py"
         self.model.write_text(MODEL)
@@ -89,7 +93,7 @@ z = "z"
         return f'''
 [study]
 runner = "command"
-command = "{sys.executable} {self.model} {{x}} {{seed}} {{folder}} {mode}"
+command = "{sys.executable} -S {self.model} {{x}} {{seed}} {{folder}} {mode}"
 {study}
 [method]
 {method}

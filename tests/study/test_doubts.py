@@ -25,7 +25,7 @@ results |= {"f_c_doubtful_because": "WHY" if str(seed) in doubted else None}
 (folder / "run.json").write_text(json.dumps(
     {"results": [{"name": "f_c_doubtful_because", "of": "doubt", "about": "f_c_MPa"}]}))
 '''.replace("WHY", WHY)
-SECANT, CALIBRATE = 'kind = "secant"', 'kind = "calibrate"\ngenerations = 3\npopulation = 4'
+SECANT, CALIBRATE = 'kind = "secant"', 'kind = "calibrate"\ngenerations = 2\npopulation = 4'
 
 
 class Doubts(StudyTest):
@@ -35,7 +35,7 @@ class Doubts(StudyTest):
         self.text = self.file(f'''
 [study]
 runner = "command"
-command = "{sys.executable} {self.model} {{x}} {{seed}} {{folder}} {doubted}"
+command = "{sys.executable} -S {self.model} {{x}} {{seed}} {{folder}} {doubted}"
 seeds = 3
 [method]
 {method}

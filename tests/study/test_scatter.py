@@ -62,11 +62,10 @@ class Seeds(StudyTest):
         self.assertEqual((deck["blocks"]["count"], deck["specimen"]["seed"]), (60, median[1]))
 
         # the band again, for a journal
-        for width, points in (("90mm", 255), ("140mm", 396)):
-            drawn = subprocess.run([PROGRAM, "figures", "run", out, "--format", "pdf", "--width", width, "--out", out / width],
-                                   capture_output=True, text=True, check=True)
-            self.assertEqual(drawn.stdout, f"{out / width / 'seeds.pdf'}\n")
-            self.assertIn(f"/MediaBox [ 0 0 {points}", (out / width / "seeds.pdf").read_bytes().decode("latin-1"))
+        drawn = subprocess.run([PROGRAM, "figures", "run", out, "--format", "pdf", "--width", "140mm", "--out", out / "140"],
+                               capture_output=True, text=True, check=True)
+        self.assertEqual(drawn.stdout, f"{out / '140' / 'seeds.pdf'}\n")
+        self.assertIn("/MediaBox [ 0 0 396", (out / "140/seeds.pdf").read_bytes().decode("latin-1"))
 
         # a second time nothing is run again, and one more specimen is added
         before = {file: file.stat().st_mtime_ns for file in out.glob("runs/*/summary.json")}
