@@ -270,8 +270,9 @@ class Ranks(InAFolder):
             for place in (self.folder, self.folder / "elsewhere"):
                 self.assertEqual(list((place / out).rglob(f"*{name}*")), [])
 
-        trials = itertools.product((("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")),
-                                   (("mesh.h5",), (".state", "--set", "output.fields=false")))
+        trials = itertools.product(
+            (("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")),
+            (("mesh.h5",), (".state", "--set", "output.fields=false")))
         with concurrent.futures.ThreadPoolExecutor() as pool:  # mpirun mostly waits
             for trial in [pool.submit(try_it, *how, *what) for how, what in trials]:
                 trial.result()
