@@ -214,7 +214,8 @@ class Concrete(InAFolder):
         self.assertRegex(seen, r"time +\d.* a run, \d.* of one core to begin with; \d.* at most, for 30 runs")
 
     def test_a_cylinder_whose_blocks_resolve_no_stone_is_refused_with_the_number_that_do(self):
-        words = ("--cylinder", *LIMESTONE, "--fraction", "0.4", "--d_max", "16 mm", "--width", "50 mm", "--height", "100 mm")
+        words = ("--cylinder", *LIMESTONE, "--fraction", "0.4", "--d_max", "16 mm", "--width", "50 mm",
+                 "--height", "100 mm")
         told = self.concrete(*words, "--blocks", "500", code=1).stderr
         self.assertIn("the largest stone has 16 mm, and 500 blocks are 7.3 mm wide", told)
         self.assertEqual(list(self.folder.iterdir()), [])

@@ -255,7 +255,8 @@ class CurrentFolder(FolderTest):
         for name in ("figures", "properties"):
             shutil.rmtree(self.folder / "out" / name, ignore_errors=True)
         deck = str(self.folder / "out/deck.toml")
-        for words in (("figures", "run", str(self.out), "--only", "stress_strain"), ("watch", str(self.out), "--once"), ("report", str(self.out)),
+        for words in (("figures", "run", str(self.out), "--only", "stress_strain"),
+                      ("watch", str(self.out), "--once"), ("report", str(self.out)),
                       ("plot-properties", deck, "--out", str(self.out / "properties"))):
             self.assertEqual(self.in_folder(folder, *words, **env).stderr, "")
         return {str(file.relative_to(self.out)): file.read_bytes() for file in self.out.rglob("*")
@@ -326,7 +327,8 @@ class Texts(FolderTest):
         odd = "a\x1b[31mb\x07\u202e\x9bc"
         self.out.rename(self.folder / f"{odd}\nd")
         for words in (("report", f"{odd}\nd"), ("figures", "run", f"{odd}\nd", "--only", "cracks"),
-                      ("watch", f"{odd}\nd", "--once"), ("report", odd), ("figures", "run", odd), ("watch", odd, "--once"), ("resume", odd)):
+                      ("watch", f"{odd}\nd", "--once"), ("report", odd), ("figures", "run", odd),
+                      ("watch", odd, "--once"), ("resume", odd)):
             done = self.pyroclast(*words)
             said = done.stdout + done.stderr
             self.assertIn(r"a\x1b[31mb\x07\u202e\x9bc" + (r"\nd" if "\n" in "".join(words) else ""), said, words)

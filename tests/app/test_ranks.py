@@ -231,18 +231,19 @@ class Ranks(InAFolder):
                                      "--no-figures", "--checkpoint", "0s"], cwd=self.folder, env={**os.environ, **MPI},
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
-        def wait_for(rows: int) -> None:
+        def wait_for(rows: int, mpirun: subprocess.Popen) -> None:
             history = self.folder / "broken/history.csv"
             while not (history.exists() and len(history.read_text().splitlines()) > rows):
+                self.assertIsNone(mpirun.poll(), "the run ended too early")
                 time.sleep(0.02)
 
         self.pyroclast("run", CASE, *SMALL, *PRESS, "-t", "1", "--out", "whole",
                        env={**os.environ, "PYROCLAST_CHUNK_BLOCKS": "16"})
         with start(2, "run", CASE, *SMALL, *PRESS, "--out", "broken") as mpirun:
-            wait_for(4)
+            wait_for(4, mpirun)
             subprocess.run(["pkill", "-KILL", "--parent", str(mpirun.pid)], check=True)
         with start(3, "resume", "broken") as mpirun:
-            wait_for(10)
+            wait_for(10, mpirun)
             mpirun.send_signal(signal.SIGUSR1)
         self.assertEqual(mpirun.returncode, 130)
         with start(2, "resume", "broken") as mpirun:
@@ -270,8 +271,9 @@ class Ranks(InAFolder):
             for place in (self.folder, self.folder / "elsewhere"):
                 self.assertEqual(list((place / out).rglob(f"*{name}*")), [])
 
-        trials = itertools.product((("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")),
-                                   (("mesh.h5",), (".state", "--set", "output.fields=false")))
+        trials = itertools.product(
+            (("cd elsewhere", "all ranks need one file system"), ("ulimit -f 8", "cannot be written")),
+            (("mesh.h5",), (".state", "--set", "output.fields=false")))
         with concurrent.futures.ThreadPoolExecutor() as pool:  # mpirun mostly waits
             for trial in [pool.submit(try_it, *how, *what) for how, what in trials]:
                 trial.result()

@@ -79,7 +79,8 @@ class PiecesLeave(Slab):
 
     def assert_same_bytes_when_killed(self, whole: str) -> None:
         """Of the deck at hand, whose whole run is there."""
-        run = subprocess.Popen([PROGRAM, *self.small("killed"), "--checkpoint", "0 s"], cwd=self.folder, stdout=subprocess.DEVNULL)
+        run = subprocess.Popen([PROGRAM, *self.small("killed"), "--checkpoint", "0 s"], cwd=self.folder,
+                               stdout=subprocess.DEVNULL)
         spalls = self.folder / "killed/spalls.csv"
         while run.poll() is None and not (spalls.exists() and spalls.read_bytes().count(b"\n") > 3):
             time.sleep(0.01)

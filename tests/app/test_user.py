@@ -735,8 +735,9 @@ class Heating(UserTest):
         said = self.pyroclast("figures", "run", name, "--only", "none", code=1).stderr
         names = re.search(r"has no figure none; its figures are (.*)", said)[1].split(", ")
         (self.folder / name / "figures").mkdir()
-        for file in (*(f"{figure}.png" for figure in names), *(f"{figure}.csv" for figure in names if "fracture" in figure)):
-            (self.folder / name / "figures" / file).touch()
+        for figure in names:
+            for ending in ("png", "csv") if "fracture" in figure else ("png",):
+                (self.folder / name / "figures" / f"{figure}.{ending}").touch()
         return set(names)
 
     def test_a_loaded_specimen_is_heated_and_its_exchanges_are_recorded(self):

@@ -85,7 +85,8 @@ class Watched(unittest.TestCase):
         self.assertEqual((self.folder / "watched" / PICTURE).read_bytes()[-8:-4], b"IEND")
         self.assertIn("Axial stress, compression positive [MPa]", done.stdout)
         self.assertLess(done.stdout.index("run ended:"), done.stdout.index("\nended "))
-        again = self.pyroclast(*SMALL, "--set", "stages[1].velocity=2 mm/s", "--out", "watched", "--watch", "--quiet", "--overwrite")
+        again = self.pyroclast(*SMALL, "--set", "stages[1].velocity=2 mm/s", "--out", "watched", "--watch", "--quiet",
+                               "--overwrite")
         self.assertEqual((again.returncode, again.stdout, again.stderr), (0, "", ""))
         self.assertTrue((self.folder / "watched" / PICTURE).exists())
 

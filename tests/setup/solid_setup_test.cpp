@@ -60,9 +60,9 @@ TEST(SolidDeck, BlocksFollowStonesOfAShape) {
     std::string deck = shaped(shipped_case("starter_3d"), shape);
     const auto begin = deck.find("rule = \"each\"");
     deck.replace(begin, std::string("rule = \"each\"").size(), "rule = \"follow\"");
-    const auto simulation = make_simulation(read(with(deck, "count = 3000", "count = 2000")));
+    const auto simulation = make_simulation(read(with(deck, "count = 3000", "count = 1000")));
     const auto& made = std::get<specimen::Specimen<3>>(*simulation->specimen());
-    EXPECT_EQ(made.cells.cells.size(), 2000U) << shape;
+    EXPECT_EQ(made.cells.cells.size(), 1000U) << shape;
     EXPECT_NEAR(made.fraction_of_stones, made.fraction_placed, 0.03 * made.fraction_placed) << shape;
     EXPECT_TRUE(std::ranges::all_of(made.stones, [](const auto& stone) { return stone.shape != nullptr; }));
     for (const auto& fit : specimen::fits_of(made)) EXPECT_GE(fit.blocks, 1) << shape;

@@ -118,9 +118,8 @@ TEST(FinerBlocksOfSolids, StandNearTheOutsideOfACylinderItsEndALineAndAPoint) {
       {{.pieces = {{middle}}}, [&](const Vec<3>& p) { return norm(p - middle); }}};
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Bands bands;
-    for (std::uint64_t seed = 1; seed <= 2; ++seed)
-      add_to_bands(made_in(finer_near(cases[i].part, body, seed, 0.35), body), bands,
-                   [&](const Vec<3>& place) { return cases[i].distance(place) < kReachInSpace ? 0 : 1; });
+    add_to_bands(made_in(finer_near(cases[i].part, body, 1, 0.35), body), bands,
+                 [&](const Vec<3>& place) { return cases[i].distance(place) < kReachInSpace ? 0 : 1; });
     EXPECT_NEAR(size_in(bands, 0), kFineInSpace, 0.1 * kFineInSpace) << i;
     EXPECT_GT(size_in(bands, 1), 1.25 * kFineInSpace) << i;
   }
