@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     import pandas
 
 _WHOLE = ("block_a", "block_b", "face")
-_NUMBERS = ("opening [m]", "tangential_jump [m]", "normal_traction [Pa]", "shear_traction [Pa]", "length [m]")
+_NUMBERS = ("opening [m]", "tangential_jump [m]", "normal_traction [Pa]", "shear_traction [Pa]", "area [m2]")
 
 
 def found_contacts(results: Results, frame: Frame) -> pandas.DataFrame:
-    """Returns the contacts that are found and press in a frame, as `Run.found_contacts` does: a row for each end of a
-    pair of edges. Raises Error where the run keeps none (docs/understand/found.md).
+    """Returns the contacts that are found and press in a frame, as `Run.found_contacts` does: a row for each
+    contact point of a pair of facets. Raises Error where the run keeps none (docs/understand/found.md).
     """
     path = results.folder / "fields" / f"found_{frame.number:04d}.hdf"
     with open_hdf(path) as file:
@@ -35,9 +35,10 @@ def found_contacts(results: Results, frame: Frame) -> pandas.DataFrame:
         names = [name.decode() for name in array("FieldData/interface_names")]
         columns: dict[str, Any] = {"interface": [names[i] for i in array("CellData/interface")]}
         columns |= {name: array(f"CellData/{name}") for name in _WHOLE}
-        columns |= {f"{axis}_m": array("Points")[::2, i] for i, axis in enumerate("xy")}
-        columns |= {f"normal_{axis}": array("CellData/normal [1]")[:, i] for i, axis in enumerate("xy")}
-        columns |= {f"force_{axis}_N": array("CellData/force [N]")[:, i] for i, axis in enumerate("xy")}
+        axes = "xyz"[:results.mesh.blocks.dimension]
+        columns |= {f"{axis}_m": array("Points")[::2, i] for i, axis in enumerate(axes)}
+        columns |= {f"normal_{axis}": array("CellData/normal [1]")[:, i] for i, axis in enumerate(axes)}
+        columns |= {f"force_{axis}_N": array("CellData/force [N]")[:, i] for i, axis in enumerate(axes)}
         for name in _NUMBERS:
             columns[name[:-1].replace(" [", "_")] = array(f"CellData/{name}").astype(np.float64)
     table: pandas.DataFrame = library("pandas", "found_contacts").DataFrame(columns)

@@ -110,7 +110,7 @@ class Motion {
   /// Returns the names of the energies that the laws, and creep, dissipate.
   virtual const std::vector<std::string_view>& dissipations() const = 0;
   virtual std::vector<CrackKind> crack_kinds() const = 0;
-  virtual std::vector<FoundPoint> found_points() const = 0;  ///< See found_points; none in a solid.
+  virtual std::vector<FoundPoint> found_points() const = 0;  ///< See found_points.hpp.
   /// Returns an array of the state: "displacement" by slot, "velocity" and "force" by pack, "internals" by
   /// line. Throws Error for another name.
   virtual ArrayInMemory array_of(std::string_view name) const = 0;
@@ -161,10 +161,7 @@ class MotionOf final : public Motion {
   }
   std::vector<CrackKind> crack_kinds() const override { return pyroclast::crack_kinds(mechanics_.body()); }
   std::vector<FoundPoint> found_points() const override {
-    if constexpr (Dim == 2)
-      return pyroclast::found_points(mechanics_.body());
-    else
-      return {};
+    return pyroclast::found_points(mechanics_.body());
   }
   ArrayInMemory array_of(std::string_view name) const override;
   std::span<const int> gridpoint_slots() const override {

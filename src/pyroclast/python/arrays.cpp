@@ -166,12 +166,13 @@ py::dict found_points(const Simulation& simulation) {
   add_whole("block_a", [](const FoundPoint& p) { return p.blocks[0]; });
   add_whole("block_b", [](const FoundPoint& p) { return p.blocks[1]; });
   add_whole("face", [](const FoundPoint& p) { return p.face; });
-  for (int axis = 0; axis < 2; ++axis)
-    add(fmt::format("{}_m", "xy"[axis]), [&](const FoundPoint& p) { return p.position[axis]; });
-  for (int axis = 0; axis < 2; ++axis)
-    add(fmt::format("normal_{}", "xy"[axis]), [&](const FoundPoint& p) { return p.normal[axis]; });
-  for (int axis = 0; axis < 2; ++axis)
-    add(fmt::format("force_{}_N", "xy"[axis]), [&](const FoundPoint& p) { return p.force[axis]; });
+  const int dimension = simulation.model().dimension();
+  for (int axis = 0; axis < dimension; ++axis)
+    add(fmt::format("{}_m", "xyz"[axis]), [&](const FoundPoint& p) { return p.position[axis]; });
+  for (int axis = 0; axis < dimension; ++axis)
+    add(fmt::format("normal_{}", "xyz"[axis]), [&](const FoundPoint& p) { return p.normal[axis]; });
+  for (int axis = 0; axis < dimension; ++axis)
+    add(fmt::format("force_{}_N", "xyz"[axis]), [&](const FoundPoint& p) { return p.force[axis]; });
   for (const FoundField& field : found_fields())
     if (field.kind == ValueKind::number)
       add(name_with_unit(field), [&](const FoundPoint& p) {

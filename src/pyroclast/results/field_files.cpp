@@ -59,14 +59,14 @@ void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer
   }
 }
 
-/// Writes the ends of pairs that press as lines to the middle of their overlap, with their fields.
+/// Writes the points of pairs that press as lines to the middle of their overlap, with their fields.
 void write_found(Hdf5File& file, const Simulation& simulation) {
   const std::vector<FoundPoint> points = simulation.motion().found_points();
   std::vector<Vec<3>> ends;
   std::vector<std::int32_t> block_a, block_b, face;
   std::vector<std::uint8_t> interface;
   for (const FoundPoint& point : points) {
-    for (const Vec<2>& end : {point.position, point.middle}) ends.push_back({{end[0], end[1], 0.0}});
+    ends.insert(ends.end(), {point.position, point.middle});
     block_a.push_back(point.blocks[0]);
     block_b.push_back(point.blocks[1]);
     face.push_back(point.face);
@@ -76,9 +76,9 @@ void write_found(Hdf5File& file, const Simulation& simulation) {
   for (const FoundField& field : found_fields()) {
     if (!field.in_files) continue;
     const auto values = values_of(field, points);
-    const int components = components_of(field.kind, 2), padding = components == 2 ? 1 : 0;
-    file.dataset(path_of(field), columns_of<float>(values, components, 0, components, padding),
-                 components == 1 ? 0 : components + padding);
+    const int components = components_of(field.kind, 3);
+    file.dataset(path_of(field), columns_of<float>(values, components, 0, components, 0),
+                 components == 1 ? 0 : components);
   }
   file.dataset("/VTKHDF/CellData/block_a", block_a);
   file.dataset("/VTKHDF/CellData/block_b", block_b);

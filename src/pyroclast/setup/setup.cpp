@@ -77,12 +77,11 @@ MechanicsParameters read_mechanics(const Section& s, const DeckSpace& space) {
       {"small", Kinematics::small, "zones and contact frames keep their orientation"},
       {"finite", Kinematics::finite, "they turn with the body; strains stay small"}};
   constexpr Meaning kKinematics = "whether the body may turn";
-  m.kinematics = m.found.is_on
-                     ? s.choice<Kinematics>("kinematics", kinematics, kKinematics)
-                     : s.choice<Kinematics>("kinematics", kinematics, Kinematics::small, kKinematics);
-  if (m.found.is_on && space.is_solid())
-    s.error("contacts", "contacts of a solid are not found yet: contacts = \"first\"");
-  else if (m.found.is_on && m.kinematics == Kinematics::small && s.ok())
+  // in the plane pairs turn with their edges, in space they take directions from places
+  const bool must_turn = m.found.is_on && !space.is_solid();
+  m.kinematics = must_turn ? s.choice<Kinematics>("kinematics", kinematics, kKinematics)
+                           : s.choice<Kinematics>("kinematics", kinematics, Kinematics::small, kKinematics);
+  if (must_turn && m.kinematics == Kinematics::small && s.ok())
     s.error("contacts", "blocks that meet others turn: kinematics = \"finite\" is needed");
   m.safety =
       s.number("safety", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.3, 0.95),

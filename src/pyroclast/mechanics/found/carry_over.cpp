@@ -71,10 +71,13 @@ class LanePoints {
   double held_energy(const PointNumbers& p) const {
     return 0.5 * row_.shear_stiffness[0].number[lane_] * dot(p.held, p.held) * p.area;
   }
-  /// Returns the mean of points by weights, with the sum of their forces of damping.
+  /// Returns the mean of points by weights, with the sum of their areas and forces of damping.
   PointNumbers mean(const std::vector<std::pair<PointNumbers, double>>& points) const {
-    double all = 0.0;
-    for (const auto& [point, weight] : points) all += weight;
+    double all = 0.0, area = 0.0;
+    for (const auto& [point, weight] : points) {
+      all += weight;
+      area += point.area;
+    }
     PointNumbers p;
     for (const auto& [point, weight] : points) {
       const double share = weight / all;
@@ -86,6 +89,7 @@ class LanePoints {
       for (int i = 0; i < law_.internals; ++i) p.internals[i] += point.internals[i] * share;
     }
     if (law_.held_jump >= 0) p.internals[law_.held_jump] = norm(p.held);
+    p.area = area;
     return p;
   }
 
@@ -121,14 +125,16 @@ int nearest(const Vec<3>& to, const std::array<Vec<3>, Overlap::kMost>& places, 
   return best;
 }
 
-/// Gives the points of an overlap what those of an earlier one remember: each earlier point goes to the
+using NumbersOfPoints = std::array<PointNumbers, Overlap::kMost>;
+
+/// Returns what the points of an overlap take from those of an earlier one: each earlier point goes to the
 /// nearest new one, which takes the mean by area; a new point to which none goes is like the nearest earlier
-/// one.
-void carry_over(LanePoints& points, const Overlap& earlier, const TrianglePair<double>& pair_then,
-                const TouchedPair& now) {
+/// one. A point whose area is 0 follows points that rested.
+NumbersOfPoints carried_over(const LanePoints& points, const Overlap& earlier,
+                             const TrianglePair<double>& pair_then, const TouchedPair& now) {
   const int count_then = earlier.count, count = now.overlap.count;
   std::array<Vec<3>, Overlap::kMost> then{}, places{};
-  std::array<PointNumbers, Overlap::kMost> numbers{};
+  NumbersOfPoints numbers{}, carried{};
   double whole = 0.0;
   for (int k = 0; k < count_then; ++k) {
     then[k] = TrianglePair<double>::mixed(now.pair.a, pair_then.at_a[k]);  // it moves with a
@@ -143,15 +149,15 @@ void carry_over(LanePoints& points, const Overlap& earlier, const TrianglePair<d
   }
   for (int k = 0; k < Overlap::kMost; ++k) {
     if (k >= count) {
-      points.put(k, points.fresh());
+      carried[k] = points.fresh();
     } else if (!come[k].empty()) {
-      points.put(k, points.mean(come[k]));
+      carried[k] = points.mean(come[k]);
     } else {
-      PointNumbers copy = numbers[nearest(places[k], then, count_then)];
-      copy.damped = copy.area = 0.0;
-      points.put(k, copy);
+      carried[k] = numbers[nearest(places[k], then, count_then)];
+      carried[k].damped = 0.0;
     }
   }
+  return carried;
 }
 
 }  // namespace
@@ -183,12 +189,17 @@ bool touch_pair(const FoundRows<3>& found, FoundRow<3>& row, int lane, const Tri
   const Overlap& earlier = row.overlap[lane];
   const bool changes = earlier.count > 0 && !have_same_corners(earlier, p.overlap);
   double held_then = 0.0;
+  bool bore = false;
+  NumbersOfPoints carried;
   if (earlier.count > 0) {
     const Triangle a_then = first_of(row.pressed_at[lane]), b_then = second_of(row.pressed_at[lane]);
     const auto pair_then = triangle_pair<double>(earlier, a_then, b_then);
     if (changes) {
-      for (int k = 0; k < earlier.count; ++k) held_then += points.held_energy(points.take(k));
-      carry_over(points, earlier, pair_then, p);
+      for (int k = 0; k < earlier.count; ++k) {
+        held_then += points.held_energy(points.take(k));
+        bore = bore || row.area[k].number[lane] > 0.0;
+      }
+      carried = carried_over(points, earlier, pair_then, p);
     }
     const auto tangents_then = tangents_of(pair_then);
     for (int k = 0; k < count; ++k) {
@@ -203,9 +214,12 @@ bool touch_pair(const FoundRows<3>& found, FoundRow<3>& row, int lane, const Tri
   const double most_depth = row.most_depth.number[lane];
   bool touches = false;
   for (int k = 0; k < count; ++k) {
-    p.gap[k] = p.pair.gap[k] + row.offset[k].number[lane];
-    touches = touches || (p.gap[k] < row.rest[k].number[lane] && -p.gap[k] < most_depth);
+    p.gap[k] = p.pair.gap[k] + (changes ? carried[k].offset : row.offset[k].number[lane]);
+    const double rest = changes ? carried[k].rest : row.rest[k].number[lane];
+    touches = touches || (p.gap[k] < rest && -p.gap[k] < most_depth);
   }
+  // points that rest stay those of the last overlap that pressed, whatever overlaps come between
+  if (changes && !touches && !bore) return true;
   double& not_counted = row.not_counted.number[lane];
   not_counted = touches ? std::min(not_counted, p.pair.overlap) : 0.0;
   if (p.pair.overlap > not_counted) {
@@ -217,13 +231,16 @@ bool touch_pair(const FoundRows<3>& found, FoundRow<3>& row, int lane, const Tri
   if (changes) {
     // the shear holds on to the areas of the new points, and the rest of its energy is lost
     double held = 0.0;
-    for (int k = 0; k < count; ++k) {
-      const bool is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
-      if (!p.counts[k] && !is_handed_over) points.put(k, points.fresh());
-      row.area[k].number[lane] = p.counts[k] ? p.areas.area[k] : 0.0;
-      held += points.held_energy(points.take(k));
+    const bool is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
+    for (int k = 0; k < Overlap::kMost; ++k) {
+      PointNumbers& point = carried[k];
+      if (!p.counts[k] && !is_handed_over) point = points.fresh();
+      point.area = p.counts[k] && point.area > 0.0 ? p.areas.area[k] : 0.0;
+      points.put(k, point);
+      held += points.held_energy(point);
     }
     row.lost_area.number[lane] += held_then - held;
+    p.is_carried_over = true;
   }
   return true;
 }

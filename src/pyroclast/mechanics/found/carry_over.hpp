@@ -18,6 +18,7 @@ struct TouchedPair {
   std::array<double, Overlap::kMost> gap{};    ///< gap from which depths and openings are taken, m
   std::array<Vec<2>, Overlap::kMost> slide{};  ///< way along the tangents since the last step that pressed, m
   std::array<bool, Overlap::kMost> counts{};   ///< true for points that may press
+  bool is_carried_over = false;  ///< true where the points are no longer those of the row's overlap
 
   /// Lets a point count with an area, m²; with none its area does not change the energy either.
   void keep_area(int point, double area) {

@@ -1,62 +1,152 @@
 #include "pyroclast/mechanics/found/found_points.hpp"
 
+#include <algorithm>
+#include <optional>
+
+#include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/found_contacts.hpp"
 #include "pyroclast/mechanics/reader.hpp"
 
 namespace pyroclast {
 
-std::vector<FoundPoint> found_points(const Body<2>& body) {
+namespace {
+
+Vec<3> in_space(const Vec<2>& v) {
+  return {{v[0], v[1], 0.0}};
+}
+
+/// Two edges that press, at the displacements of the last forces.
+class PressedEdges {
+ public:
+  PressedEdges(const Body<2>& body, const FoundPair<2>& pair)
+      : a_(edge(body, pair.facets[0])), b_(edge(body, pair.facets[1])) {
+    std::swap(b_[0], b_[1]);
+    const auto& facets = body.found->facets;
+    pair_ = edge_pair<double>(a_, b_, facets[pair.facets[0]].length, facets[pair.facets[1]].length);
+  }
+
+  Vec<3> place(int k) const {
+    return in_space((a_[0] + pair_.edge_a * pair_.at_a[k] + b_[0] + pair_.edge_b * pair_.at_b[k]) * 0.5);
+  }
+  Vec<3> middle() const { return (place(0) + place(1)) * 0.5; }
+  Vec<3> normal() const { return in_space(pair_.normal); }
+  double gap(int k) const { return pair_.gap[k]; }
+  Tangential<2> jump(int k, const PairPoint<2>& point) const { return {pair_.slide[k] + point.shift[0]}; }
+
+  /// Sets what follows from the tractions. A corner presses across the edge that it meets.
+  void put(int k, const Tangential<2>& jump, const PointResponse& response, FoundPoint& point) const {
+    point.tangent = in_space(pair_.tangent);
+    point.slip = jump[0];
+    point.shear_traction = response.shear_traction[0];
+    const double along =
+        point.shear_traction * pair_.slide_factor[k] - point.normal_traction * pair_.gap_slope[k];
+    point.force =
+        in_space(pair_.normal * (point.normal_traction * point.area) + pair_.tangent * (along * point.area));
+  }
+
+ private:
+  static std::array<Vec<2>, 2> edge(const Body<2>& body, int facet) {
+    const auto& g = body.found->facets[facet].gridpoints;
+    const auto at = [&](int i) {
+      return body.model.position[g[i]] + Reader<2>(body).displacement_of_force(g[i]);
+    };
+    return {at(0), at(1)};
+  }
+
+  std::array<Vec<2>, 2> a_, b_;
+  EdgePair<double> pair_;
+};
+
+/// Two triangles that press, at the displacements of the last forces.
+class PressedTriangles {
+ public:
+  PressedTriangles(const Body<3>&, const FoundPair<3>& pair) {
+    Triangle a, b;
+    for (int i = 0; i < 3; ++i) {
+      a[i] = pair.pressed_at[i];
+      b[i] = pair.pressed_at[3 + i];
+    }
+    overlap_ = overlap_of(a, b);
+    pair_ = triangle_pair<double>(overlap_, a, b);
+    tangents_ = tangents_of(pair_);
+  }
+
+  Vec<3> place(int k) const { return (pair_.on_a(k) + pair_.on_b(k)) * 0.5; }
+  Vec<3> middle() const {
+    Vec<3> moment{};
+    for (int k = 0; k < overlap_.count; ++k) moment += place(k) * pair_.part[k];
+    return moment * (1.0 / pair_.overlap);
+  }
+  Vec<3> normal() const { return pair_.normal; }
+  double gap(int k) const { return pair_.gap[k]; }
+  Tangential<3> jump(int, const PairPoint<3>& point) const { return point.shift; }
+
+  void put(int k, const Tangential<3>& jump, const PointResponse& response, FoundPoint& point) const {
+    const Vec<3> shear =
+        tangents_[0] * response.shear_traction[0] + tangents_[1] * response.shear_traction[1];
+    point.slip = norm(jump);
+    point.shear_traction = norm(shear);
+    if (point.shear_traction > 0.0) point.tangent = shear * (1.0 / point.shear_traction);
+    point.force = pair_.gap_slope[k] * (point.normal_traction * point.area) + shear * point.area;
+  }
+
+ private:
+  Overlap overlap_;
+  TrianglePair<double> pair_;
+  std::array<Vec<3>, 2> tangents_{};
+};
+
+/// Returns the answer of the law to the jump of a point: taken to it once more, the law gives the same.
+template <int Dim>
+PointResponse response_of(const Body<Dim>& body, const FoundPair<Dim>& pair, int k, double opening,
+                          const Tangential<Dim>& along) {
+  const int set = pair.sets[set_of_point<Dim>(k)];
+  const LawTable& law = body.properties.contacts.law(set);
+  const auto count = static_cast<std::ptrdiff_t>(law.internals(Dim).size());
+  std::vector<double> internals(pair.internals.begin() + k * count, pair.internals.begin() + (k + 1) * count);
+  std::vector<double> losses(law.losses.size());
+  std::array<double, Dim> jump{opening};
+  std::copy_n(along.c.begin(), Dim - 1, jump.begin() + 1);
+  return law.update(Dim)(body.properties.contacts[set].constants().data(), jump.data(), internals.data(),
+                         losses.data());
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<FoundPoint> found_points(const Body<Dim>& body) {
   std::vector<FoundPoint> points;
   if (!body.found) return points;
-  const FoundData<2>& found = *body.found;
-  const Reader<2> read(body);
-  for (FoundPair<2> pair : found.pairs) {
+  const FoundData<Dim>& found = *body.found;
+  for (FoundPair<Dim> pair : found.pairs) {
     take_from_row(found, pair);
     if (!pair.bears()) continue;
-    const BlockFacet<2>&first = found.facets[pair.facets[0]], &second = found.facets[pair.facets[1]];
-    const auto at = [&](int g) { return body.model.position[g] + read.displacement_of_force(g); };
-    const std::array<Vec<2>, 2> a{at(first.gridpoints[0]), at(first.gridpoints[1])};
-    const std::array<Vec<2>, 2> b{at(second.gridpoints[1]), at(second.gridpoints[0])};
-    const auto p = edge_pair<double>(a, b, first.length, second.length);
-    const auto place = [&](int k) {
-      return (a[0] + p.edge_a * p.at_a[k] + b[0] + p.edge_b * p.at_b[k]) * 0.5;
-    };
-    const Vec<2> middle = (place(0) + place(1)) * 0.5;
-    const LawTable& law = body.properties.contacts.law(pair.sets[0]);
-    const std::size_t count = law.internals(2).size();
-    for (int k = 0; k < 2; ++k) {
-      const PairPoint<2>& end = pair.points[k];
-      if (!(end.area > 0.0)) continue;
+    const std::conditional_t<Dim == 2, PressedEdges, PressedTriangles> pressed(body, pair);
+    const BlockFacet<Dim>&first = found.facets[pair.facets[0]], &second = found.facets[pair.facets[1]];
+    for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
+      const PairPoint<Dim>& of_pair = pair.points[k];
+      if (!(of_pair.area > 0.0)) continue;
       FoundPoint& point = points.emplace_back();
       point.blocks = {first.block, second.block};
       point.face = pair.is_handed_over ? first.face : -1;
       point.interface = pair.interface;
-      point.position = place(k);
-      point.middle = middle;
-      point.normal = p.normal;
-      point.area = end.area;
-      point.length = end.area / body.model.thickness;
-      point.opening = p.gap[k] + end.offset;
-      point.slip = p.slide[k] + end.shift[0];
-      // the law, taken to the same jump once more, gives the same tractions
-      const double jump[2] = {point.opening, point.slip};
-      std::vector<double> internals(pair.internals.begin() + static_cast<std::ptrdiff_t>(k * count),
-                                    pair.internals.begin() + static_cast<std::ptrdiff_t>((k + 1) * count));
-      std::vector<double> losses(law.losses.size());
-      const PointResponse response = law.update(2)(body.properties.contacts[pair.sets[k]].constants().data(),
-                                                   jump, internals.data(), losses.data());
-      point.normal_traction = response.normal_traction + end.damped / end.area;
-      point.shear_traction = response.shear_traction[0];
+      point.position = pressed.place(k);
+      point.middle = pressed.middle();
+      point.normal = pressed.normal();
+      point.area = of_pair.area;
+      point.opening = pressed.gap(k) + of_pair.offset;
+      const auto along = pressed.jump(k, of_pair);
+      const PointResponse response = response_of(body, pair, k, point.opening, along);
+      point.normal_traction = response.normal_traction + of_pair.damped / of_pair.area;
       point.stored = response.stored;
-      // a corner presses across the edge that it meets
-      point.force =
-          p.normal * (point.normal_traction * end.area) +
-          p.tangent * ((point.shear_traction * p.slide_factor[k] - point.normal_traction * p.gap_slope[k]) *
-                       end.area);
+      pressed.put(k, along, response, point);
     }
   }
   return points;
 }
+
+template std::vector<FoundPoint> found_points(const Body<2>&);
+template std::vector<FoundPoint> found_points(const Body<3>&);
 
 }  // namespace pyroclast

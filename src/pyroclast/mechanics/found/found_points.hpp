@@ -7,23 +7,30 @@
 
 namespace pyroclast {
 
-/// End of a pair of edges that presses: a contact point that was found, at the displacements of the last
-/// forces.
+/// Point of a pair of facets that presses: a contact point that was found, at the displacements of the last
+/// forces. Places and directions of the plane have no third component.
 struct FoundPoint {
   std::array<int, 2> blocks{};
   int face = -1;  ///< face of the model that was handed over and whose sides press each other; else -1
   int interface = 0;
-  Vec<2> position{};                 ///< of the end, midway between both edges, m
-  Vec<2> middle{};                   ///< likewise, of the overlap of both edges, m
-  Vec<2> normal{};                   ///< unit normal, from the first block to the second
-  double area = 0.0, length = 0.0;   ///< m², and that over the thickness, m
-  double opening = 0.0, slip = 0.0;  ///< jumps across and along the edges, m
-  Vec<2> force{};                ///< force on the first block, but for what the change of the area adds, N
+  Vec<3> position{};  ///< of the point, midway between both facets, m
+  Vec<3> middle{};    ///< likewise, of the overlap of both facets, m
+  Vec<3> normal{};    ///< unit normal, from the first block to the second
+  Vec<3> tangent{};   ///< unit vector along the shear; in the plane along the edges; zero where there is none
+  double area = 0.0;  ///< m²
+  double opening = 0.0;          ///< jump across the facets, m
+  double slip = 0.0;             ///< jump along the facets, m; in space its size
+  Vec<3> force{};                ///< force on the first block, but for what the change of the area adds, N
   double normal_traction = 0.0;  ///< Pa, tension positive, with the damping of the last step
-  double shear_traction = 0.0, stored = 0.0;  ///< Pa, J/m²
+  double shear_traction = 0.0;   ///< along the tangent, Pa
+  double stored = 0.0;           ///< J/m²
 };
 
-/// Returns the ends that press, in the order of the pairs' keys; none where nothing is found.
-std::vector<FoundPoint> found_points(const Body<2>& body);
+/// Returns the points that press, in the order of the pairs' keys; none where nothing is found.
+template <int Dim>
+std::vector<FoundPoint> found_points(const Body<Dim>& body);
+
+extern template std::vector<FoundPoint> found_points(const Body<2>&);
+extern template std::vector<FoundPoint> found_points(const Body<3>&);
 
 }  // namespace pyroclast

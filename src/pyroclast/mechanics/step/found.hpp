@@ -290,7 +290,8 @@ struct FoundContactForces {
       TriangleCorners f{};
       double applied = 0.0;
       TouchedPair& pair = pairs[lane];
-      if ((bearing >> static_cast<unsigned>(lane) & 1U) != 0) {
+      const bool bears = (bearing >> static_cast<unsigned>(lane) & 1U) != 0;
+      if (bears) {
         PointTractions<double> t;
         for (int k = 0; k < pair.overlap.count; ++k) {
           pair.keep_area(k, area[k].number[lane]);
@@ -300,6 +301,8 @@ struct FoundContactForces {
                        pair.tangents[1] * lines[k].shear[1].number[lane];
         }
         f = corner_forces(pair.overlap, pair.pair, pair.areas, t);
+      }
+      if (bears || pair.is_carried_over) {
         row.pressed_at[lane] = pair.corners;
         row.overlap[lane] = pair.overlap;
       } else if ((row.handed_over >> static_cast<unsigned>(lane) & 1U) == 0) {

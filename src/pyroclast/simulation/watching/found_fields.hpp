@@ -10,7 +10,7 @@ namespace pyroclast {
 
 /// Field of the contacts that are found: one value of each end of a pair that presses.
 struct FoundField : FieldInfo {
-  /// Function that writes the components of one end.
+  /// Function that writes the components of one point, those of vectors in space.
   void (*read)(const FoundPoint&, double* to);
 };
 
@@ -18,7 +18,7 @@ struct FoundField : FieldInfo {
 /// follow.
 const std::vector<FoundField>& found_fields();
 
-/// Returns the values of a field, end by end and component by component.
+/// Returns the values of a field, point by point and component by component; vectors have three.
 std::vector<double> values_of(const FoundField& field, const std::vector<FoundPoint>& points);
 
 }  // namespace pyroclast
