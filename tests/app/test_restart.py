@@ -29,9 +29,10 @@ class RestartTest(InAFolder):
         return self.pyroclast("run", CASES / f"{case}.toml", *changes(*small), *more, "--out", out, "--no-figures",
                               **options)
 
-    def broken_off(self, out: str, by: signal.Signals, rows: int = 60, *more: str) -> None:
+    def broken_off(self, out: str, by: signal.Signals, rows: int = 60, *more: str, case: str = "starter",
+                   small: tuple = SMALL) -> None:
         """A run that is ended once it has so many rows; it keeps its state after every batch."""
-        words = [PROGRAM, "run", CASES / "starter.toml", *changes(*SMALL), *more, "--out", out, "--no-figures",
+        words = [PROGRAM, "run", CASES / f"{case}.toml", *changes(*small), *more, "--out", out, "--no-figures",
                  "--checkpoint", "0 s"]
         with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             self.wait_for(out, rows)
@@ -105,6 +106,19 @@ class Resuming(RestartTest):
         self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 1e-3)
         self.broken_off("out", signal.SIGKILL, 900, *found)
         self.pyroclast("resume", "out", "--threads", "2", "--no-figures")
+        self.assert_same("whole", "out")
+
+    def test_contacts_that_were_found_in_a_solid_go_on(self):
+        solid = {"case": "starter_3d", "small": ("blocks.count=14", "aggregates.fraction=0.0", "specimen.height=100 mm",
+                                                 "stages[1].velocity=80 mm/s", "stages[1].stop_strain=8e-3",
+                                                 "stages[1].stop_fraction_of_peak=0.01", "output.history_strain=2e-5")}
+        found = changes('mechanics.kinematics="finite"', 'mechanics.contacts="found"')
+        self.run_case("whole", *found, "--threads", "1", **solid)
+        summary = json.loads((self.folder / "whole/summary.json").read_text())
+        self.assertNotEqual(summary["energy_J"]["dissipated_contact_area"], 0.0)  # faces were handed over and slid
+        self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 1.5e-3)  # first contacts: 1.4e-3
+        self.broken_off("out", signal.SIGKILL, 300, *found, **solid)
+        self.pyroclast("resume", "out", "--threads", "2", "--instructions", "portable", "--no-figures")
         self.assert_same("whole", "out")
 
     def test_a_frame_that_is_lost_is_named(self):

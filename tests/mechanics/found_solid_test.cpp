@@ -254,8 +254,8 @@ Mechanics<3> crushed(const ModelOf<3>& model, const MechanicsParameters& paramet
 }
 
 // Promise: a solid that is crushed while its faces are handed over has the same bits for any number of
-// threads and width of lists, and where its state is copied. Its ledger closes but for the energy of crushed
-// points, whose closures are averaged where overlaps get other corners.
+// threads and width of lists, and where its state is copied. Its ledger closes, though edges cross steeply and
+// overlaps of faces that rest change.
 TEST(FoundContacts, CrushedSolidKeepsItsEnergyAndItsBits) {
   constexpr double kSize = 0.1;
   constexpr int kSteps = 1000, kCopied = 700;
@@ -273,7 +273,7 @@ TEST(FoundContacts, CrushedSolidKeepsItsEnergyAndItsBits) {
   EXPECT_GT(std::ranges::count(found.is_handed_over, true), 10);
   EXPECT_GT(pressed, 50);
   const EnergyLedger e = expected.totals().energy();
-  EXPECT_LT(std::abs(e.error()), 1e-3 * turnover(e));
+  EXPECT_LT(std::abs(e.error()), 1e-4 * turnover(e));
   auto wide = parameters;
   wide.found.skin = wide.found.reach = 0.5;
   expect_equal(crushed(model, wide, kSize, kSteps, 2), expected, "2 threads, wide lists");

@@ -84,6 +84,19 @@ void print_with_size(const Setup& setup) {
     }
 }
 
+/// Tells what small kinematics make of blocks of a solid that meet others.
+/// \param young  Pa
+void print_found(const Setup& setup, const Model& model, double young) {
+  constexpr double kTurn = 0.04;
+  const MechanicsParameters& mechanics = setup.moving->mechanics;
+  if (!mechanics.found.is_on || model.dimension() == 2 || mechanics.kinematics == Kinematics::finite) return;
+  fmt::print(
+      "contacts        are found, but blocks may not tumble: their zones do not turn, and a turn of {} rad "
+      "alone "
+      "stresses them\n                by some {:.0f} MPa; mechanics.kinematics = \"finite\" turns them\n",
+      kTurn, 1e-6 * 0.5 * young * kTurn * kTurn);
+}
+
 /// Warns of loads that are shares of a strength which mortar like the deck's does not give.
 void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   if (!setup.moving) return;
@@ -183,6 +196,7 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
     fmt::print("                of blocks of the mean size; between others t_b goes with their size\n");
   print_stated_stiffness(setup);
   print_with_size(setup);
+  print_found(setup, model, estimate_modulus(model, simulation.materials()));
   const auto& whole = simulation.materials().composition;
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole, model.dimension());
 }

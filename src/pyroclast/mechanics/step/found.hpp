@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <limits>
+#include <optional>
 
 #include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
@@ -181,18 +183,22 @@ struct FoundContactForces {
     const Real zero = 0.0;
     std::array<Vector, kCorners> at;
     for (int i = 0; i < kCorners; ++i) at[i] = corner(s, row, i);
-    if (row.rests && row.handed_over == 0 && !any(may_touch(at))) return;
+    const Truth beside = lie_beside(at);
+    if (row.rests && row.handed_over == 0 && !any(may_touch(at) & !beside)) return;
 
-    row.rests = false;
     alignas(64) std::array<std::array<Vec<Dim>, kLanes>, kCorners> places;
     for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
-    std::array<TouchedPair, kLanes> pairs;
+    std::array<std::optional<TouchedPair>, kLanes> pairs;
     Touched touched;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (std::uint32_t over = ~bits_of(beside) & kEveryLane; over != 0; over &= over - 1) {
+      const int lane = std::countr_zero(over);
       TriangleCorners corners;
       for (int i = 0; i < kCorners; ++i) corners[i] = places[i][lane];
-      touch(s, found, row, lane, corners, pairs[lane], touched);
+      touch(s, found, row, lane, corners, pairs[lane].emplace(), touched);
     }
+    if (row.rests && row.handed_over == 0 && touched.faces == 0) return;
+    row.rests = false;
+    select(beside, zero, Real::load(row.not_counted.number)).store(row.not_counted.number);
     const Truth face = Truth::from_bits(touched.faces), was_handed_over = Truth::from_bits(row.handed_over);
     const auto leaves = was_handed_over & !face;
     if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
@@ -247,6 +253,22 @@ struct FoundContactForces {
     return low < high;
   }
 
+  /// Returns the pairs of which one triangle lies beyond an edge of the other, seen along the mean normal.
+  static Truth lie_beside(const std::array<Vector, kCorners>& at) {
+    const Vector normal = cross(at[1] - at[0], at[2] - at[0]) + cross(at[4] - at[3], at[5] - at[3]);
+    Truth beside = Truth::from_bits(0);
+    for (int i = 0; i < kCorners; ++i) {
+      const int own = i < 3 ? 0 : 3, other = 3 - own;
+      const Vector &from = at[i], &to = at[own + (i + 1) % 3];
+      const Vector inwards = cross(normal, to - from);
+      Real most = dot(inwards, at[other] - from);
+      for (int k = 1; k < 3; ++k) most = larger(most, dot(inwards, at[other + k] - from));
+      // what rounding may decide is left to overlap_of
+      beside = beside | (most < dot(inwards, at[own + (i + 2) % 3] - from) * Real(-kSurelyBeside));
+    }
+    return beside;
+  }
+
   /// Takes one pair to its overlap and the areas of its points, which go on from those of the last step.
   static void touch(const State<Dim>& s, FoundRows<Dim>& found, Row& row, int lane,
                     const TriangleCorners& corners, TouchedPair& pair, Touched& touched) {
@@ -273,7 +295,8 @@ struct FoundContactForces {
   }
 
   /// Writes the forces of a row, and the places from which it goes on.
-  static void place_forces(Row& row, std::uint32_t bearing, std::array<TouchedPair, kLanes>& pairs,
+  static void place_forces(Row& row, std::uint32_t bearing,
+                           std::array<std::optional<TouchedPair>, kLanes>& pairs,
                            const std::array<Line, kPoints>& area,
                            const std::array<Tractions, kPoints>& tractions, Vec<Dim>* forces) {
     struct Lines {
@@ -289,9 +312,9 @@ struct FoundContactForces {
     for (int lane = 0; lane < kLanes; ++lane) {
       TriangleCorners f{};
       double applied = 0.0;
-      TouchedPair& pair = pairs[lane];
       const bool bears = (bearing >> static_cast<unsigned>(lane) & 1U) != 0;
       if (bears) {
+        TouchedPair& pair = *pairs[lane];
         PointTractions<double> t;
         for (int k = 0; k < pair.overlap.count; ++k) {
           pair.keep_area(k, area[k].number[lane]);
@@ -302,9 +325,9 @@ struct FoundContactForces {
         }
         f = corner_forces(pair.overlap, pair.pair, pair.areas, t);
       }
-      if (bears || pair.is_carried_over) {
-        row.pressed_at[lane] = pair.corners;
-        row.overlap[lane] = pair.overlap;
+      if (bears || (pairs[lane] && pairs[lane]->is_carried_over)) {
+        row.pressed_at[lane] = pairs[lane]->corners;
+        row.overlap[lane] = pairs[lane]->overlap;
       } else if ((row.handed_over >> static_cast<unsigned>(lane) & 1U) == 0) {
         row.overlap[lane] = {};
       }
@@ -485,6 +508,9 @@ struct FoundContactForces {
     return bits;
   }
 
+  static constexpr std::uint32_t kEveryLane = (1U << kLanes) - 1;
+  /// Distance beyond an edge, over the height of the triangle, from which on no rounding makes an overlap.
+  static constexpr double kSurelyBeside = 1e-9;
   static constexpr double kOpen = 1.0;  ///< opening of a point that does not press, m
   static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
 };
