@@ -183,23 +183,33 @@ struct FoundContactForces {
     const Real zero = 0.0;
     std::array<Vector, kCorners> at;
     for (int i = 0; i < kCorners; ++i) at[i] = corner(s, row, i);
-    const Truth beside = lie_beside(at);
-    if (row.rests && row.handed_over == 0 && !any(may_touch(at) & !beside)) return;
+    const Lie lie = lie_of(at);
+    const Truth was_handed_over = Truth::from_bits(row.handed_over);
+    Truth bore = zero > zero;
+    Real rest_below = 0.0;
+    for (int k = 0; k < kPoints; ++k) {
+      bore = bore | (Real::load(row.area[k].number) > zero);
+      rest_below = larger(rest_below, Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
+    }
+    // most pairs stand apart, lie beside each other, or rest; overlaps of the others are taken one by one
+    const Truth rests_on = was_handed_over & (!bore) & lie.over & (lie.gap > rest_below + Real(kRounding));
+    const Truth is_asked =
+        (!lie.beside) & (!rests_on) & (was_handed_over | bore | (lie.gap < Real(kRounding)));
+    if (row.rests && !any(is_asked | (was_handed_over & lie.beside))) return;
 
     alignas(64) std::array<std::array<Vec<Dim>, kLanes>, kCorners> places;
     for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
     std::array<std::optional<TouchedPair>, kLanes> pairs;
-    Touched touched;
-    for (std::uint32_t over = ~bits_of(beside) & kEveryLane; over != 0; over &= over - 1) {
-      const int lane = std::countr_zero(over);
+    Touched touched{.faces = bits_of(rests_on)};
+    for (std::uint32_t asked = bits_of(is_asked); asked != 0; asked &= asked - 1) {
+      const int lane = std::countr_zero(asked);
       TriangleCorners corners;
       for (int i = 0; i < kCorners; ++i) corners[i] = places[i][lane];
       touch(s, found, row, lane, corners, pairs[lane].emplace(), touched);
     }
-    if (row.rests && row.handed_over == 0 && touched.faces == 0) return;
     row.rests = false;
-    select(beside, zero, Real::load(row.not_counted.number)).store(row.not_counted.number);
-    const Truth face = Truth::from_bits(touched.faces), was_handed_over = Truth::from_bits(row.handed_over);
+    select(is_asked, Real::load(row.not_counted.number), zero).store(row.not_counted.number);
+    const Truth face = Truth::from_bits(touched.faces);
     const auto leaves = was_handed_over & !face;
     if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
 
@@ -234,39 +244,51 @@ struct FoundContactForces {
     stored.store(row.stored.number);
     const std::uint32_t bearing = bits_of(loaded);
     const Truth remembers = (Real::load(row.not_counted.number) > zero) | is_damped(row);
-    if (bearing == 0 && row.handed_over == 0 && !any(remembers)) {
+    const bool presses = bearing != 0 || any(remembers);
+    if (!presses && row.handed_over == 0) {
       row.overlap.fill({});
       rest(row, forces);
       return;
     }
     place_forces(row, bearing, pairs, area, tractions, forces);
+    row.rests = !presses;
   }
 
-  /// Returns the pairs of which some corner of b lies below some corner of a, seen along the mean normal.
-  static Truth may_touch(const std::array<Vector, kCorners>& at) {
-    const Vector normal = cross(at[1] - at[0], at[2] - at[0]) + cross(at[4] - at[3], at[5] - at[3]);
-    Real low = dot(normal, at[3] - at[0]), high = 0.0;
+  /// How eight pairs of triangles lie, seen along the mean normal.
+  struct Lie {
+    Truth beside;  ///< one triangle lies beyond an edge of the other
+    Truth over;    ///< they face each other, and the middle of one lies over the other
+    Real gap;      ///< bound below which no gap of them lies, m
+  };
+
+  static Lie lie_of(const std::array<Vector, kCorners>& at) {
+    const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
+    const Vector normal = area_a + area_b;
+    const Truth none = Truth::from_bits(0);
+    Lie lie{none, none, 0.0};
+    for (int own : {0, 3}) {
+      const int other = 3 - own;
+      const Vector middle = (at[other] + at[other + 1] + at[other + 2]) * Real(1.0 / 3.0);
+      Truth is_within = dot(area_a, area_b) > Real(0.0);
+      for (int i = 0; i < 3; ++i) {
+        const Vector& from = at[own + i];
+        const Vector inwards = cross(normal, at[own + (i + 1) % 3] - from);
+        const Real surely = dot(inwards, at[own + (i + 2) % 3] - from) * Real(kSurely);
+        Real most = dot(inwards, at[other] - from);
+        for (int k = 1; k < 3; ++k) most = larger(most, dot(inwards, at[other + k] - from));
+        lie.beside = lie.beside | (most < -surely);
+        is_within = is_within & (dot(inwards, middle - from) > surely);
+      }
+      lie.over = lie.over | is_within;
+    }
+    // no corner of b lies less above the plane of a, and none of a less below that of b
+    Real above = dot(area_a, at[3] - at[0]), below = dot(area_b, at[3] - at[0]);
     for (int i = 1; i < 3; ++i) {
-      low = smaller(low, dot(normal, at[3 + i] - at[0]));
-      high = larger(high, dot(normal, at[i] - at[0]));
+      above = smaller(above, dot(area_a, at[3 + i] - at[0]));
+      below = smaller(below, dot(area_b, at[3] - at[i]));
     }
-    return low < high;
-  }
-
-  /// Returns the pairs of which one triangle lies beyond an edge of the other, seen along the mean normal.
-  static Truth lie_beside(const std::array<Vector, kCorners>& at) {
-    const Vector normal = cross(at[1] - at[0], at[2] - at[0]) + cross(at[4] - at[3], at[5] - at[3]);
-    Truth beside = Truth::from_bits(0);
-    for (int i = 0; i < kCorners; ++i) {
-      const int own = i < 3 ? 0 : 3, other = 3 - own;
-      const Vector &from = at[i], &to = at[own + (i + 1) % 3];
-      const Vector inwards = cross(normal, to - from);
-      Real most = dot(inwards, at[other] - from);
-      for (int k = 1; k < 3; ++k) most = larger(most, dot(inwards, at[other + k] - from));
-      // what rounding may decide is left to overlap_of
-      beside = beside | (most < dot(inwards, at[own + (i + 2) % 3] - from) * Real(-kSurelyBeside));
-    }
-    return beside;
+    lie.gap = larger(above / dot(area_a, normal), below / dot(area_b, normal)) * norm(normal);
+    return lie;
   }
 
   /// Takes one pair to its overlap and the areas of its points, which go on from those of the last step.
@@ -508,10 +530,10 @@ struct FoundContactForces {
     return bits;
   }
 
-  static constexpr std::uint32_t kEveryLane = (1U << kLanes) - 1;
-  /// Distance beyond an edge, over the height of the triangle, from which on no rounding makes an overlap.
-  static constexpr double kSurelyBeside = 1e-9;
-  static constexpr double kOpen = 1.0;  ///< opening of a point that does not press, m
+  /// Distance from an edge, over the height of the triangle, from which on no rounding decides on an overlap.
+  static constexpr double kSurely = 1e-9;
+  static constexpr double kRounding = 1e-14;  ///< more than rounding may change a gap, m
+  static constexpr double kOpen = 1.0;        ///< opening of a point that does not press, m
   static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
 };
 
