@@ -354,7 +354,7 @@ struct FoundContactForces {
         row.overlap[lane] = {};
       }
       for (int i = 0; i < kCorners; ++i) {
-        applied += norm(f[i]);
+        if (bears) applied += norm(f[i]);
         forces[i * kLanes + lane] = f[i];
       }
       row.applied.number[lane] = applied;
