@@ -149,8 +149,6 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
        {"aggregates.outlines", "a solid takes surfaces"}},
       {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
        {"aggregates.grain_shape.flatness", "stones of a solid"}},
-      {with(solid(), "safety = 0.9", "safety = 0.9\ncontacts = \"found\""),
-       {"mechanics.contacts", "contacts = \"first\""}},
       {with_more(solid(),
                  "[[inclusions]]\nshape = \"fibre\"\nphase = \"mortar\"\ncount = 3\n"
                  "length = \"30 mm\"\nminimum_gap = \"1 mm\"\n"),
