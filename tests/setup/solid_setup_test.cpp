@@ -47,6 +47,20 @@ std::string with_more(const std::string& deck, const std::string& tables) {
   return deck + "\n" + tables;
 }
 
+/// Corners of a body, each three digits in m.
+std::string corners(const std::string& digits) {
+  std::string list;
+  for (std::size_t i = 0; i + 2 < digits.size(); i += 4)
+    list += fmt::format("[\"{} m\", \"{} m\", \"{} m\"], ", digits[i], digits[i + 1], digits[i + 2]);
+  return "corners = [" + list + "]";
+}
+
+/// The solid with a body of its own.
+std::string with_body(const std::string& shape) {
+  return with_more(with(solid(), "safety = 0.9", "safety = 0.9\ncontacts = \"found\""),
+                   "[[bodies]]\nname = \"body\"\nfriction = 0.3\n" + shape + "\n");
+}
+
 /// A deck whose stones have a shape.
 std::string shaped(const std::string& deck, const std::string& shape) {
   return with(deck, "[blocks]", "[aggregates.grain_shape]\n" + shape + "\n\n[blocks]");
@@ -149,6 +163,13 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
        {"aggregates.outlines", "a solid takes surfaces"}},
       {shaped(plane(), "kind = \"ellipse\"\nelongation = [1, 2]\nflatness = [1, 2]"),
        {"aggregates.grain_shape.flatness", "stones of a solid"}},
+      {with_body(corners("000 100 010")),
+       {"bodies[0].corners", "a list of 4 or more places, [[\"150 mm\", \"150 mm\", \"150 mm\"], ...]"}},
+      {with_body(corners("000 100 010 110")), {"bodies[0].corners", "must not all lie in one plane"}},
+      {with_body(corners("000 900 090 221 009")),
+       {"bodies[0].corners", "number 4 (from 1), (2, 2, 1) m, lies in the hull of the others"}},
+      {with_body("centre = [\"0 m\", \"0 m\"]\ndiameter = \"1 m\""),
+       {"bodies[0].centre", "\"0.075 m\"]"}},
       {with_more(solid(),
                  "[[inclusions]]\nshape = \"fibre\"\nphase = \"mortar\"\ncount = 3\n"
                  "length = \"30 mm\"\nminimum_gap = \"1 mm\"\n"),

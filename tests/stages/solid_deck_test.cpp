@@ -660,5 +660,53 @@ ramp_time = "20 ms"
   EXPECT_GT(solid.last("across_MPa"), 0.5 * 2.0 * 1e4 / (std::numbers::pi * 0.08 * 0.04) / 1e6);
 }
 
+// Promise: a body of its own falls on a solid, presses it along what they meet, jumps back and closes the
+// ledger.
+TEST(SolidDeck, ABoxFallsOnACylinderAndJumpsBack) {
+  std::string text = with(kCuboid, "width = \"60 mm\"", "shape = \"cylinder\"\ndiameter = \"60 mm\"") +
+                     kMortar + moving() +
+                     R"([materials.platen]
+E = "30 GPa"
+nu = 0.2
+density = "2200 kg/m3"
+[[bodies]]
+name = "box"
+corners = [["-10 mm", "90.1 mm", "-10 mm"], ["10 mm", "90.1 mm", "-10 mm"], ["10 mm", "90.1 mm", "10 mm"],
+           ["-10 mm", "90.1 mm", "10 mm"], ["-10 mm", "110.1 mm", "-10 mm"], ["10 mm", "110.1 mm", "-10 mm"],
+           ["10 mm", "110.1 mm", "10 mm"], ["-10 mm", "110.1 mm", "10 mm"]]
+edge = "10 mm"
+friction = 0.3
+[[velocities]]
+set = "box"
+velocity = ["0 m/s", "-2 m/s", "0 m/s"]
+[[stages]]
+kind = "drive"
+duration = "0.4 ms"
+[[stages.drives]]
+set = "bottom"
+hold = ["x", "y", "z"]
+)";
+  text = with(text, "depth = \"40 mm\"\n", "");
+  text = with(text, "local_damping = 0.8", "local_damping = 0.0");
+  text = with(text, "mass = \"scaled\"\ntime_step = \"10 us\"",
+              "mass = \"real\"\ncontacts = \"found\"\nkinematics = \"finite\"");
+  const DoneDeck fall(text);
+  const auto& motion = fall.simulation->motion();
+  const auto& box = fall.model().set("box");
+  Vec<3> velocity{};
+  for (const int g : box) {
+    velocity += motion.read().velocity(g) * (1.0 / static_cast<double>(box.size()));
+    EXPECT_GT(fall.model().place(g)[1] + motion.read().displacement(g)[1], 0.0901);
+  }
+  // less than it came with: the cylinder goes on ringing
+  EXPECT_GT(velocity[1], 1.0);
+  EXPECT_LT(velocity[1], 2.0);
+  EXPECT_LT(std::hypot(velocity[0], velocity[2]), 0.05);
+  const EnergyLedger ledger = motion.totals().energy();
+  const double at_start = 0.5 * 2200.0 * 8e-6 * 4.0;  // J
+  EXPECT_NEAR(ledger.loading, at_start, 1e-9 * at_start);
+  EXPECT_NEAR(ledger.error(), 0.0, 1e-3 * at_start);
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/deck.hpp"
@@ -194,19 +195,19 @@ std::vector<Point> read_points(const Entry& entry, const Unit& x_unit, const Uni
   return complete ? points : std::vector<Point>{};
 }
 
-std::string list_of_places(std::size_t least, const Unit& unit) {
-  return fmt::format("a list of {} or more places, [[\"{}\", \"{}\"], ...],", least, unit.example,
-                     unit.example);
+std::string list_of_places(std::size_t least, const Unit& unit, int coordinates = 2) {
+  const std::vector<std::string> numbers(coordinates, fmt::format("\"{}\"", unit.example));
+  return fmt::format("a list of {} or more places, [[{}], ...],", least, fmt::join(numbers, ", "));
 }
 
 /// Reads a list of at least `least` places; returns none after an error.
+/// \param needed    words for such a list
 /// \param read_one  function that reads a place of the list
 template <class ReadOne>
-auto read_places(const Entry& entry, const Unit& unit, std::size_t least, ReadOne read_one) {
+auto read_places(const Entry& entry, const std::string& needed, std::size_t least, ReadOne read_one) {
   std::vector<typename std::invoke_result_t<ReadOne, Entry>::value_type> places;
   const toml::array* list = entry.node.as_array();
   if (!list || list->size() < least) {
-    const std::string needed = list_of_places(least, unit);
     list ? entry.error(needed + " is needed") : wrong_type(entry, needed);
     return places;
   }
@@ -527,9 +528,10 @@ std::vector<std::pair<double, double>> Section::places(std::string_view key, con
                                                        std::size_t least, Meaning meaning) const {
   note(places_key(key, ValueForm::place, true, unit), meaning);
   if (deck_->survey()) return {};
-  const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
+  const std::string needed = list_of_places(least, unit);
+  const auto entry = require(*deck_, table_, key, needed + " is needed");
   if (!entry) return {};
-  return read_places(*entry, unit, least, [&](const Entry& one) { return read_point(one, unit, unit); });
+  return read_places(*entry, needed, least, [&](const Entry& one) { return read_point(one, unit, unit); });
 }
 
 std::optional<StatedPlace> Section::place(std::string_view key, const Unit& unit,
@@ -545,9 +547,10 @@ std::vector<StatedPlace> Section::places(std::string_view key, const Unit& unit,
                                          const Coordinates& coordinates, Meaning meaning) const {
   note(places_key(key, ValueForm::place_in_space, true, unit), meaning);
   if (deck_->survey()) return {};
-  const auto entry = require(*deck_, table_, key, list_of_places(least, unit) + " is needed");
+  const std::string needed = list_of_places(least, unit, coordinates.pair_is_along_z ? 2 : coordinates.count);
+  const auto entry = require(*deck_, table_, key, needed + " is needed");
   if (!entry) return {};
-  return read_places(*entry, unit, least,
+  return read_places(*entry, needed, least,
                      [&](const Entry& one) { return read_stated_place(one, key, unit, coordinates); });
 }
 

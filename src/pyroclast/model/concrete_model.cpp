@@ -14,6 +14,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/model/solid_zones.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 
 namespace pyroclast {
@@ -209,25 +210,6 @@ BearingBlock<2> block_over(const Specimen<2>& specimen, const std::vector<Facet<
   block.rows = rows;
   block.pivot = pivot;
   return block;
-}
-
-/// Adds three tetrahedra of the prism over a triangle between two rows. Its side faces are cut by the
-/// diagonals from the lower column at the inner row to the higher one at the outer row, so that neighbours
-/// cut them alike.
-void add_prism(const std::array<int, 3>& columns, int inner, int outer, const std::vector<Vec<3>>& gridpoints,
-               std::vector<std::array<int, 4>>& zones) {
-  auto [a, b, c] = columns;
-  if (a > b) std::swap(a, b);
-  if (b > c) std::swap(b, c);
-  if (a > b) std::swap(a, b);
-  for (std::array<int, 4> zone : {std::array{inner + a, inner + b, inner + c, outer + c},
-                                  std::array{inner + a, inner + b, outer + b, outer + c},
-                                  std::array{inner + a, outer + a, outer + b, outer + c}}) {
-    const Vec<3>& x = gridpoints[zone[0]];
-    if (dot(cross(gridpoints[zone[1]] - x, gridpoints[zone[2]] - x), gridpoints[zone[3]] - x) < 0.0)
-      std::swap(zone[1], zone[2]);
-    zones.push_back(zone);
-  }
 }
 
 /// Least area vector of a side on which a bearing lies, over its area: a seat on a rim is bent by little.

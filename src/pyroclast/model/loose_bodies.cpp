@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/place_in.hpp"
+#include "pyroclast/base/place_text.hpp"
+#include "pyroclast/model/loose_zones.hpp"
+#include "pyroclast/model/zone_shape.hpp"
 
 namespace pyroclast {
 
@@ -18,140 +22,104 @@ namespace {
 
 /// Depth over the edge of a body within which it only touches another block.
 constexpr double kOnlyTouching = 1e-6;
-/// Radius of the innermost ring of zones over that of the outline.
-constexpr double kInnermostRing = 0.25;
 
-double area_of_triangle(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
-  const Vec<2> u = b - a, v = c - a;
-  return 0.5 * (u[0] * v[1] - u[1] * v[0]);
-}
+/// Half of all space that holds a convex body.
+template <int Dim>
+struct HalfSpace {
+  Vec<Dim> from{};    ///< place on its bound, m
+  Vec<Dim> inward{};  ///< unit normal
 
-/// Returns the corners counter-clockwise.
-std::vector<Vec<2>> counter_clockwise(std::vector<Vec<2>> corners) {
-  double area = 0.0;
-  for (std::size_t i = 2; i < corners.size(); ++i)
-    area += area_of_triangle(corners[0], corners[i - 1], corners[i]);
-  if (area < 0.0) std::ranges::reverse(corners);
-  return corners;
-}
-
-/// Zones of a body, and its outline.
-struct ZonedBody {
-  std::vector<Vec<2>> gridpoints;
-  std::vector<std::array<int, 3>> zones;
-  std::vector<int> outline;  ///< gridpoints, counter-clockwise
+  double depth(const Vec<Dim>& place) const { return dot(inward, place - from); }
 };
 
-int edges_along(double length, double edge) {
-  return std::max(1, static_cast<int>(std::lround(length / edge)));
-}
-
-/// Returns a grid of zones over four corners, counter-clockwise.
-ZonedBody grid_of(const std::vector<Vec<2>>& c, double edge) {
-  const int columns = edges_along(std::max(norm(c[1] - c[0]), norm(c[2] - c[3])), edge),
-            rows = edges_along(std::max(norm(c[2] - c[1]), norm(c[3] - c[0])), edge);
-  ZonedBody body;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      const double x = static_cast<double>(i) / columns, y = static_cast<double>(j) / rows;
-      body.gridpoints.push_back((1.0 - y) * ((1.0 - x) * c[0] + x * c[1]) +
-                                y * ((1.0 - x) * c[3] + x * c[2]));
-    }
-  const auto at = [&](int i, int j) { return j * (columns + 1) + i; };
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const int p = at(i, j), q = at(i + 1, j), s = at(i, j + 1), t = at(i + 1, j + 1);
-      // diagonals alternate, so that the body has no preferred direction
-      if ((i + j) % 2 == 0)
-        body.zones.insert(body.zones.end(), {{p, q, t}, {p, t, s}});
-      else
-        body.zones.insert(body.zones.end(), {{p, q, s}, {q, t, s}});
-    }
-  for (int i = 0; i < columns; ++i) body.outline.push_back(at(i, 0));
-  for (int j = 0; j < rows; ++j) body.outline.push_back(at(columns, j));
-  for (int i = columns; i > 0; --i) body.outline.push_back(at(i, rows));
-  for (int j = rows; j > 0; --j) body.outline.push_back(at(0, j));
-  return body;
-}
-
-/// Returns rings of zones around the centroid of corners, counter-clockwise. Each ring is about as high as
-/// its zones are wide.
-ZonedBody rings_of(const std::vector<Vec<2>>& corners, double edge) {
-  std::vector<Vec<2>> outline;
+std::vector<HalfSpace<2>> half_spaces(const LooseBody& body, const ModelOf<2>& /*model*/) {
+  std::vector<HalfSpace<2>> result;
+  const auto corners = corners_around(body);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec<2>&from = corners[i], &to = corners[(i + 1) % corners.size()];
-    const int edges = edges_along(norm(to - from), edge);
-    for (int k = 0; k < edges; ++k) outline.push_back(from + (static_cast<double>(k) / edges) * (to - from));
+    const Vec<2> along = corners[(i + 1) % corners.size()] - corners[i];
+    result.push_back({corners[i], Vec<2>{{-along[1], along[0]}} * (1.0 / norm(along))});
   }
-  Vec<2> moment{};
-  double area = 0.0;
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const double of_triangle = area_of_triangle(corners[0], corners[i - 1], corners[i]);
-    moment += (corners[0] + corners[i - 1] + corners[i]) * (of_triangle / 3.0);
-    area += of_triangle;
-  }
-  const Vec<2> middle = moment * (1.0 / area);
-  const int around = static_cast<int>(outline.size());
-  const double shrink = 1.0 - 2.0 * std::numbers::pi / std::max(around, 8);
-  ZonedBody body;
-  int rings = 0;
-  for (double scale = 1.0; scale == 1.0 || scale > kInnermostRing; scale *= shrink, ++rings)
-    for (const Vec<2>& p : outline) body.gridpoints.push_back(middle + scale * (p - middle));
-  const int centre = static_cast<int>(body.gridpoints.size());
-  body.gridpoints.push_back(middle);
-  for (int ring = 0; ring < rings; ++ring)
-    for (int i = 0; i < around; ++i) {
-      const int p = ring * around + i, q = ring * around + (i + 1) % around;
-      if (ring + 1 == rings) {
-        body.zones.push_back({p, q, centre});
-        continue;
-      }
-      const int s = p + around, t = q + around;
-      if ((ring + i) % 2 == 0)
-        body.zones.insert(body.zones.end(), {{p, q, t}, {p, t, s}});
-      else
-        body.zones.insert(body.zones.end(), {{p, q, s}, {q, t, s}});
-    }
-  body.outline.resize(static_cast<std::size_t>(around));
-  std::iota(body.outline.begin(), body.outline.end(), 0);
-  return body;
+  return result;
 }
 
-/// Returns the depth of a point in a convex area whose corners go counter-clockwise, m; negative outside.
-double depth_in(const std::vector<Vec<2>>& corners, const Vec<2>& point) {
-  double depth = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec<2>&from = corners[i], &to = corners[(i + 1) % corners.size()];
-    depth = std::min(depth, 2.0 * area_of_triangle(from, to, point) / norm(to - from));
+std::vector<HalfSpace<3>> half_spaces(const LooseBody& body, const ModelOf<3>& /*model*/) {
+  std::vector<HalfSpace<3>> result;
+  for (const auto& face : body.faces) {
+    const Vec<3>& from = body.corners[face[0]];
+    Vec<3> outward{};
+    for (std::size_t i = 2; i < face.size(); ++i)
+      outward += cross(body.corners[face[i - 1]] - from, body.corners[face[i]] - from);
+    result.push_back({from, outward * (-1.0 / norm(outward))});
   }
-  return depth;
+  return result;
 }
 
-/// Returns a place of the model that lies in the body, or of the body that lies in a block; none where they
-/// at most touch.
-const Vec<2>* common_place(const ModelOf<2>& model, const ZonedBody& body, const std::vector<Vec<2>>& corners,
-                           double touching) {
-  for (const Vec<2>& place : model.position)
-    if (depth_in(corners, place) > touching) return &place;
-  Vec<2> low = corners.front(), high = corners.front();
-  for (const Vec<2>& p : corners)
-    for (int i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
+/// Returns the half spaces of a zone.
+template <int Dim>
+std::array<HalfSpace<Dim>, Dim + 1> half_spaces(const std::array<Vec<Dim>, Dim + 1>& zone) {
+  std::array<Vec<Dim>, Dim> gradient;
+  shape_gradients<Dim, double>(zone, gradient);
+  std::array<HalfSpace<Dim>, Dim + 1> result;
+  Vec<Dim> last{};
+  for (int n = 0; n < Dim; ++n) {
+    result[n] = {zone[Dim], gradient[n] * (1.0 / norm(gradient[n]))};
+    last -= gradient[n];
+  }
+  result[Dim] = {zone[0], last * (1.0 / norm(last))};
+  return result;
+}
+
+/// Cuts off the part of a convex polygon, in the plane of an edge, that does not lie deeper than `depth` in a
+/// half space (Sutherland and Hodgman).
+template <int Dim>
+void cut(std::vector<Vec<Dim>>& polygon, const HalfSpace<Dim>& half, double depth) {
+  std::vector<Vec<Dim>> rest;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec<Dim>&from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double before = half.depth(from) - depth, after = half.depth(to) - depth;
+    if (before > 0.0) rest.push_back(from);
+    if ((before > 0.0) != (after > 0.0)) rest.push_back(from + (before / (before - after)) * (to - from));
+  }
+  polygon = std::move(rest);
+}
+
+/// Returns a place where a body lies in a block of the model; none where they at most touch. Where a convex
+/// body and a zone have a part in common, a face of the zone reaches into the body, or all of the body lies
+/// in the zone.
+template <int Dim>
+std::optional<Vec<Dim>> common_place(const ModelOf<Dim>& model, const LooseBody& body) {
+  const double touching = kOnlyTouching * body.edge;
+  const auto halves = half_spaces(body, model);
+  std::array<std::pair<double, double>, Dim> box;
+  for (int i = 0; i < Dim; ++i) {
+    const auto [low, high] = std::ranges::minmax(body.corners, {}, [i](const Vec<3>& p) { return p[i]; });
+    box[i] = {low[i], high[i]};
+  }
   for (const auto& zone : model.zones) {
-    const std::vector<Vec<2>> triangle{model.position[zone[0]], model.position[zone[1]],
-                                       model.position[zone[2]]};
-    bool meets = true;
-    for (int i = 0; i < 2; ++i) {
-      const auto [least, most] = std::minmax({triangle[0][i], triangle[1][i], triangle[2][i]});
-      meets = meets && most >= low[i] && least <= high[i];
+    std::array<Vec<Dim>, Dim + 1> x;
+    for (int n = 0; n <= Dim; ++n) x[n] = model.position[zone[n]];
+    bool is_near = true;
+    for (int i = 0; i < Dim; ++i) {
+      const auto [low, high] = std::ranges::minmax(x, {}, [i](const Vec<Dim>& p) { return p[i]; });
+      is_near = is_near && high[i] >= box[i].first && low[i] <= box[i].second;
     }
-    if (!meets) continue;
-    for (const int g : body.outline)
-      if (depth_in(triangle, body.gridpoints[g]) > touching) return &body.gridpoints[g];
+    if (!is_near) continue;
+    for (int opposite = 0; opposite <= Dim; ++opposite) {
+      std::vector<Vec<Dim>> face;
+      for (int n = 0; n <= Dim; ++n)
+        if (n != opposite) face.push_back(x[n]);
+      for (const auto& half : halves) cut(face, half, touching);
+      if (face.empty()) continue;
+      Vec<Dim> middle{};
+      for (const Vec<Dim>& p : face) middle += p * (1.0 / static_cast<double>(face.size()));
+      return middle;
+    }
+    const Vec<Dim> corner = resized<Dim>(body.corners.front());
+    if (std::ranges::all_of(half_spaces<Dim>(x),
+                            [&](const auto& half) { return half.depth(corner) > touching; }))
+      return corner;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 void add_name(std::vector<std::string>& names, const std::string& name, int& count) {
@@ -162,21 +130,22 @@ void add_name(std::vector<std::string>& names, const std::string& name, int& cou
 
 }  // namespace
 
-bool is_convex(const std::vector<Vec<2>>& corners) {
-  const auto round = counter_clockwise(corners);
+bool goes_round_convex_area(const LooseBody& body) {
+  const auto round = corners_around(body);
   const std::size_t n = round.size();
   for (std::size_t i = 0; i < n; ++i)
-    if (!(area_of_triangle(round[i], round[(i + 1) % n], round[(i + 2) % n]) > 0.0)) return false;
+    if (!(cross(round[(i + 1) % n] - round[i], round[(i + 2) % n] - round[i]) > 0.0)) return false;
   // corners that go round twice turn the same way at each of them too
   double turn = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<2> u = round[(i + 1) % n] - round[i], v = round[(i + 2) % n] - round[(i + 1) % n];
-    turn += std::atan2(u[0] * v[1] - u[1] * v[0], dot(u, v));
+    turn += std::atan2(cross(u, v), dot(u, v));
   }
   return n > 2 && turn < 3.0 * std::numbers::pi;
 }
 
-void add_loose_bodies(ModelOf<2>& model, const std::vector<LooseBody>& bodies) {
+template <int Dim>
+void add_loose_bodies(ModelOf<Dim>& model, const std::vector<LooseBody>& bodies) {
   for (const LooseBody& body : bodies) {
     const auto fail = [&](const std::string& why) {
       throw Error(fmt::format("{}: body \"{}\" {}", body.deck_place, body.name, why));
@@ -184,13 +153,12 @@ void add_loose_bodies(ModelOf<2>& model, const std::vector<LooseBody>& bodies) {
     const std::string outline = body.name + "_outline";
     for (const std::string& set : {body.name, outline})
       if (model.sets.contains(set)) fail(fmt::format("needs a set \"{}\", but there is one already", set));
-    const auto corners = counter_clockwise(body.corners);
-    const ZonedBody zoned = corners.size() == 4 ? grid_of(corners, body.edge) : rings_of(corners, body.edge);
-    if (const Vec<2>* place = common_place(model, zoned, corners, kOnlyTouching * body.edge))
-      fail(fmt::format("lies in another block, at [{:.6g} m, {:.6g} m]", (*place)[0], (*place)[1]));
+    if (const auto place = common_place(model, body))
+      fail(fmt::format("lies in another block, at {} m", place_text(resized<3>(*place), Dim, "{:.6g}")));
     add_name(model.material_names, body.material, model.bearing_materials);
     add_name(model.interface_names, body.name, model.bearing_interfaces);
     const int first = model.gridpoint_count();
+    const auto zoned = zones_of<Dim>(body);
     model.add_block(zoned.gridpoints, zoned.zones, place_in(model.material_names, body.material));
     auto& all = model.sets[body.name];
     all.resize(zoned.gridpoints.size());
@@ -198,6 +166,9 @@ void add_loose_bodies(ModelOf<2>& model, const std::vector<LooseBody>& bodies) {
     for (const int g : zoned.outline) model.sets[outline].push_back(first + g);
   }
 }
+
+template void add_loose_bodies(ModelOf<2>&, const std::vector<LooseBody>&);
+template void add_loose_bodies(ModelOf<3>&, const std::vector<LooseBody>&);
 
 std::vector<int> interfaces_of_loose_bodies(const Model& model) {
   std::vector<bool> joins(model.interface_names.size());

@@ -23,7 +23,7 @@ struct StartVelocity {
 /// Parameters of a simulation that moves the body, beside those of every simulation.
 struct MovingBody {
   std::vector<Bearing> bearings;
-  std::vector<LooseBody> bodies;  ///< bodies beside the specimen; 2D only
+  std::vector<LooseBody> bodies;  ///< bodies beside the specimen
   std::vector<StartVelocity> velocities;
   ContactParameters contacts;
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it

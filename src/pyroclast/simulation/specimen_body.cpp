@@ -100,8 +100,7 @@ std::unique_ptr<Model> make_model(const MadeSpecimen& specimen, double thickness
       [&](const auto& s) -> std::unique_ptr<Model> {
         auto made = moving ? make_model(s, thickness, moving->contacts.interfaces, moving->bearings)
                            : make_model(s, thickness);
-        if constexpr (std::is_same_v<decltype(made), ModelOf<2>>)
-          if (moving) add_loose_bodies(made, moving->bodies);
+        if (moving) add_loose_bodies(made, moving->bodies);
         return std::make_unique<decltype(made)>(std::move(made));
       },
       specimen);

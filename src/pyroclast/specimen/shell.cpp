@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/convex_hull.hpp"
 #include "pyroclast/specimen/outline.hpp"
 
 namespace pyroclast::specimen {
@@ -603,37 +604,16 @@ struct Triangulated {
   }
 };
 
-/// Returns the convex hull of points of which no four lie in a plane, by trying all triples.
-Triangulated convex_hull(const std::vector<Vec<3>>& points) {
-  Triangulated hull{points, {}};
-  const int count = static_cast<int>(points.size());
-  for (int a = 0; a < count; ++a)
-    for (int b = a + 1; b < count; ++b)
-      for (int c = b + 1; c < count; ++c) {
-        const Vec<3> normal = cross(points[b] - points[a], points[c] - points[a]);
-        int above = 0, below = 0;
-        for (int other = 0; other < count && (above == 0 || below == 0); ++other)
-          if (other != a && other != b && other != c)
-            ++(dot(normal, points[other] - points[a]) > 0.0 ? above : below);
-        if (above == 0) hull.triangles.push_back({a, b, c});
-        if (below == 0) hull.triangles.push_back({a, c, b});
-      }
-  return hull;
+/// Returns the surface of a convex polyhedron whose faces are triangles.
+Triangulated triangulated(const ConvexPolyhedron& solid) {
+  Triangulated surface{solid.corners, {}};
+  for (const auto& face : solid.faces) surface.triangles.push_back({face[0], face[1], face[2]});
+  return surface;
 }
 
 /// Returns a ball of radius 1 of triangles that are nearly alike.
 Triangulated ball_of_triangles() {
-  // the poles and two rows of five corners of an icosahedron
-  Triangulated ball;
-  ball.vertices.push_back({{0.0, 0.0, 1.0}});
-  for (int row = 0; row < 2; ++row)
-    for (int i = 0; i < 5; ++i) {
-      const double angle = 0.4 * std::numbers::pi * (i + 0.5 * row),
-                   z = row == 0 ? std::sqrt(0.2) : -std::sqrt(0.2);
-      ball.vertices.push_back({{std::sqrt(0.8) * std::cos(angle), std::sqrt(0.8) * std::sin(angle), z}});
-    }
-  ball.vertices.push_back({{0.0, 0.0, -1.0}});
-  ball = convex_hull(ball.vertices);
+  Triangulated ball = triangulated(icosahedron());
   for (int i = 0; i < kHalvingsOfBall; ++i) {
     ball.halve();
     for (Vec<3>& v : ball.vertices) v = unit_of(v);
@@ -721,7 +701,7 @@ std::shared_ptr<const Shell> draw_shell(const ShapeParameters& p, Random& random
       const double way = off * random.uniform();
       corner = unit_of(corner + way * direction(random));
     }
-    drawn = convex_hull(corners);
+    drawn = triangulated({corners, convex_hull(corners)});
   } else {
     drawn = ball_of_triangles();
     if (p.kind == StoneShape::harmonics)
