@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).parents[2]
 SMALL = tomllib.loads((ROOT / "validation" / "reference.toml").read_text())["small"]
 # Cases whose keys and words stand in others too.
 ALIKE = {"anderberg_thelandersson", "biaxial_3d", "brazilian", "compression", "compression_3d", "cube_3d", "disc_3d",
-         "fire_long", "fire_one_side", "fire_one_side_3d", "hot_compression", "hot_strength", "hot_strength_3d",
+         "fire_long", "fire_one_side", "hot_compression", "hot_strength", "hot_strength_3d",
          "residual_capacity", "spalling_slab_3d", "starter", "thermal_wall", "transient_heating_3d"}
 _NAMES = {"title", "name", "set", "other", "faces", "side", "near", "record", "direction", "hold", "symmetry",
           "contacts", "within"}  # what these say is of one deck

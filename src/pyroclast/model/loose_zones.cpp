@@ -131,7 +131,7 @@ LooseZones<3> grid_of_box(const std::vector<Vec<3>>& c, double edge) {
       if ((i & step) == 0) longest = std::max(longest, norm(c[i + step] - c[i]));
     cells[axis] = edges_along(longest, edge);
   }
-  const auto [nx, ny, nz] = cells;
+  const int nx = cells[0], ny = cells[1], nz = cells[2];
   LooseZones<3> body;
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)

@@ -19,6 +19,10 @@ struct LooseZones {
 /// a grid of zones; another one has rings or shells around its centroid.
 template <int Dim>
 LooseZones<Dim> zones_of(const LooseBody& body);
+template <>
+LooseZones<2> zones_of(const LooseBody& body);
+template <>
+LooseZones<3> zones_of(const LooseBody& body);
 
 /// Returns the corners of a body in the plane, counter-clockwise.
 std::vector<Vec<2>> corners_around(const LooseBody& body);
