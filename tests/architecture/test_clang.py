@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 BUILD = pathlib.Path(os.environ["PYROCLAST_BUILD"])
-OF_GCC_ALONE = {"-Wno-subobject-linkage"}  # the build asks GCC for it, for its units of many files
+OF_GCC_ALONE = {"-Wno-subobject-linkage", "--param=ggc-min-heapsize=500000"}  # for units of many files
 
 
 def units() -> list[list[str]]:
