@@ -746,9 +746,10 @@ class Run:
 
     def found_contacts(self) -> pandas.DataFrame:
         """Returns the contacts that are found and press now (docs/understand/found.md), a row for each contact point
-        of a pair of facets: `interface` (name), `block_a` and `block_b`, the number of the `face` whose sides press each other after
-        it broke, else -1, its place `x_m` to `z_m`, `normal_x` to `normal_z` from a to b, `force_x_N` to
-        `force_z_N` on a, and their fields that are numbers (docs/lookup/fields.md): `area_m2`, `opening_m`, ...
+        of a pair of facets: `interface` (name), `block_a` and `block_b`, the number of the `face` whose sides press
+        each other after it broke, else -1, its place `x_m` to `z_m`, `normal_x` to `normal_z` from a to b,
+        `force_x_N` to `force_z_N` on a, and their fields that are numbers (docs/lookup/fields.md): `area_m2`,
+        `opening_m`, ...
         """
         table: pandas.DataFrame = library("pandas", "found_contacts").DataFrame(self._core.found_points())
         return table

@@ -92,8 +92,8 @@ void print_found(const Setup& setup, const Model& model, double young) {
   if (!mechanics.found.is_on || model.dimension() == 2 || mechanics.kinematics == Kinematics::finite) return;
   fmt::print(
       "contacts        are found, but blocks may not tumble: their zones do not turn, and a turn of {} rad "
-      "alone "
-      "stresses them\n                by some {:.0f} MPa; mechanics.kinematics = \"finite\" turns them\n",
+      "alone stresses them\n                by some {:.0f} MPa; mechanics.kinematics = \"finite\" turns "
+      "them\n",
       kTurn, 1e-6 * 0.5 * young * kTurn * kTurn);
 }
 
@@ -189,14 +189,14 @@ void print_mechanics(const Setup& setup, const Simulation& simulation) {
   fmt::print("                with real mass {:.3g} s, set by gridpoint {} of block {} ({})", limit.step, g,
              block, model.material_names[model.block_material[block]]);
   fmt::print(" at {} mm\n", place_text(1e3 * model.place(g), model.dimension(), "{:.2f}"));
+  const double young = estimate_modulus(model, simulation.materials());
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
-             estimate_modulus(model, simulation.materials()) * 1e-9,
-             1e3 * simulation.materials().fracture_zone);
+             young * 1e-9, 1e3 * simulation.materials().fracture_zone);
   if (setup.moving->contacts.fracture_zone_size && !setup.specimen.blocks.finer.empty())
     fmt::print("                of blocks of the mean size; between others t_b goes with their size\n");
   print_stated_stiffness(setup);
   print_with_size(setup);
-  print_found(setup, model, estimate_modulus(model, simulation.materials()));
+  print_found(setup, model, young);
   const auto& whole = simulation.materials().composition;
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole, model.dimension());
 }

@@ -1,7 +1,8 @@
 #include "pyroclast/mechanics/found/found_points.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
@@ -11,10 +12,6 @@
 namespace pyroclast {
 
 namespace {
-
-Vec<3> in_space(const Vec<2>& v) {
-  return {{v[0], v[1], 0.0}};
-}
 
 /// Two edges that press, at the displacements of the last forces.
 class PressedEdges {
@@ -27,22 +24,22 @@ class PressedEdges {
   }
 
   Vec<3> place(int k) const {
-    return in_space((a_[0] + pair_.edge_a * pair_.at_a[k] + b_[0] + pair_.edge_b * pair_.at_b[k]) * 0.5);
+    return resized<3>((a_[0] + pair_.edge_a * pair_.at_a[k] + b_[0] + pair_.edge_b * pair_.at_b[k]) * 0.5);
   }
   Vec<3> middle() const { return (place(0) + place(1)) * 0.5; }
-  Vec<3> normal() const { return in_space(pair_.normal); }
+  Vec<3> normal() const { return resized<3>(pair_.normal); }
   double gap(int k) const { return pair_.gap[k]; }
   Tangential<2> jump(int k, const PairPoint<2>& point) const { return {pair_.slide[k] + point.shift[0]}; }
 
   /// Sets what follows from the tractions. A corner presses across the edge that it meets.
   void put(int k, const Tangential<2>& jump, const PointResponse& response, FoundPoint& point) const {
-    point.tangent = in_space(pair_.tangent);
+    point.tangent = resized<3>(pair_.tangent);
     point.slip = jump[0];
     point.shear_traction = response.shear_traction[0];
     const double along =
         point.shear_traction * pair_.slide_factor[k] - point.normal_traction * pair_.gap_slope[k];
-    point.force =
-        in_space(pair_.normal * (point.normal_traction * point.area) + pair_.tangent * (along * point.area));
+    point.force = resized<3>(pair_.normal * (point.normal_traction * point.area) +
+                             pair_.tangent * (along * point.area));
   }
 
  private:

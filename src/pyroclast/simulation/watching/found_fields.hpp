@@ -8,7 +8,7 @@
 
 namespace pyroclast {
 
-/// Field of the contacts that are found: one value of each end of a pair that presses.
+/// Field of the contacts that are found: one value of each point of a pair that presses.
 struct FoundField : FieldInfo {
   /// Function that writes the components of one point, those of vectors in space.
   void (*read)(const FoundPoint&, double* to);
