@@ -4,6 +4,7 @@ import argparse
 import dataclasses
 import functools
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,20 @@ from typing import Any
 import numpy as np
 
 import runs
+
+
+CONTACTS_OF_TWO_DAMAGES = """[contacts.mortar_mortar]
+f_t = "2.5 MPa"
+G_f1 = "60 N/m"
+f_cm = "100 MPa"
+beta = 0.05
+c_o = "6 MPa"
+c_res = "0.06 MPa"
+phi = "8 deg"
+phi_res = "8 deg"
+G_f2 = "380 N/m"
+"""
+"""The paper's law, recalibrated in space: all cases in space had it before one damage."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +44,13 @@ class Body:
 def with_properties(**values: str) -> list[str]:
     """Changes of the mortar's contacts."""
     return [f"contacts.mortar_mortar.{key}={value}" for key, value in values.items()]
+
+
+def of_two_damages(case: str, contacts: str = CONTACTS_OF_TWO_DAMAGES + "\n") -> str:
+    """The text of a case of space with the paper's law in the place of one damage."""
+    text = re.sub(r"^mode_2_energy.*\n", "", case, flags=re.MULTILINE)
+    return re.sub(r"^\[contacts\.mortar_mortar\].*?(?=^\[contacts\.)", lambda _: contacts, text,
+                  flags=re.MULTILINE | re.DOTALL)
 
 
 @dataclasses.dataclass(frozen=True)

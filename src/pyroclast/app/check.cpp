@@ -106,16 +106,15 @@ void warn_of_strengths(const Setup& setup, const Simulation& simulation) {
   const auto mortar = std::ranges::find(materials.block_materials, matrix, &BlockMaterial::name);
   if (joint == materials.interfaces.end() || mortar == materials.block_materials.end()) return;
   const ContactMaterial& contact = materials.contacts[joint - materials.interfaces.begin()];
-  const auto concretes = known_concretes(simulation.model().dimension());
-  const auto known =
-      std::ranges::find_if(concretes, [&](const FirstGuess& g) { return g.factor_of(contact).has_value(); });
-  if (known == concretes.end()) return;
+  const FirstGuess& known = first_guess(simulation.model().dimension());
+  const auto factor = known.factor_of(contact);
+  if (!factor) return;
   for (const auto& stage : setup.stages) {
     const auto* load = dynamic_cast<const Load*>(stage.get());
     if (!load || !load->keys().level || *load->keys().level == 0.0) continue;
     const double stated = load->keys().strength;
-    const double like = known->strength_with(mortar->young(kReferenceTemperature),
-                                             setup.specimen.block_size(), *known->factor_of(contact));
+    const double like =
+        known.strength_with(mortar->young(kReferenceTemperature), setup.specimen.block_size(), *factor);
     if (std::abs(stated / like - 1.0) > kLikeStrength)
       fmt::print("{}", describe_warnings(
                            {fmt::format("a load is {:g} of f_c = {:.3g} MPa, but specimens with such mortar "

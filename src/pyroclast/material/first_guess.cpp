@@ -18,43 +18,31 @@ constexpr double kOfStiffness = 0.22, kOfFactor = 0.79;
 
 /// The paper's Table 2. E, f_c, and how f_c goes with the size of blocks: decks of `pyroclast concrete`, the
 /// means of five to ten seeds (docs/validation/after_peak.md#first-guesses): E within 2 %, f_c within 6 %.
-constexpr FirstGuess kPlane[] = {
-    {.source = "the paper's Table 2",
-     .law = Cohesive::name,
-     .contacts = {2.5e6, 60.0, 31e6, 3.8e6, 240.0, 34.0 * kDegree, 0.038e6, 34.0 * kDegree},
-     .mortar_modulus = 29.4e9,
-     .strength = 31e6,
-     .modulus_over_estimate = 1.04,
-     .of_stiffness = kOfStiffness,
-     .of_factor = kOfFactor,
-     .block_size = 4.8e-3,
-     .of_block_size = -0.27}};
+constexpr FirstGuess kPlane = {
+    .source = "the paper's Table 2",
+    .law = Cohesive::name,
+    .contacts = {2.5e6, 60.0, 31e6, 3.8e6, 240.0, 34.0 * kDegree, 0.038e6, 34.0 * kDegree},
+    .mortar_modulus = 29.4e9,
+    .strength = 31e6,
+    .modulus_over_estimate = 1.04,
+    .of_stiffness = kOfStiffness,
+    .of_factor = kOfFactor,
+    .block_size = 4.8e-3,
+    .of_block_size = -0.27};
 
-/// cases/starter_3d.toml, whose contacts were fitted by hand for space, and cases/hot_strength_3d.toml, whose
-/// contacts were recalibrated before. E over its estimate, f_c, and how f_c of the second goes with the size
-/// of blocks: docs/validation/solid_strengths.md; of the first, whose mode II energy goes with that size:
+/// cases/starter_3d.toml, whose contacts were fitted by hand for space. E over its estimate and f_c:
+/// docs/validation/solid_strengths.md; how f_c goes with the size of blocks, as does the mode II energy:
 /// docs/validation/one_concrete.md. That the other exponents are those of the plane is a guess.
-constexpr FirstGuess kSpace[] = {
-    {.source = "those of cases/starter_3d.toml",
-     .law = MixedMode::name,
-     .contacts = {1.8e6, 90.0, 48e6, 7.5e6, 300.0, 12.0 * kDegree},
-     .mortar_modulus = 29.4e9,
-     .strength = 34.3e6,
-     .modulus_over_estimate = 1.08,
-     .of_stiffness = kOfStiffness,
-     .of_factor = kOfFactor,
-     .block_size = 8.06e-3,
-     .of_block_size = -0.08},
-    {.source = "those of cases/hot_strength_3d.toml",
-     .law = Cohesive::name,
-     .contacts = {2.5e6, 60.0, 100e6, 6e6, 380.0, 8.0 * kDegree, 0.06e6, 8.0 * kDegree},
-     .mortar_modulus = 29.4e9,
-     .strength = 34.3e6,
-     .modulus_over_estimate = 1.08,
-     .of_stiffness = kOfStiffness,
-     .of_factor = kOfFactor,
-     .block_size = 8.06e-3,
-     .of_block_size = -0.3}};
+constexpr FirstGuess kSpace = {.source = "those of cases/starter_3d.toml",
+                               .law = MixedMode::name,
+                               .contacts = {1.8e6, 90.0, 48e6, 7.5e6, 300.0, 12.0 * kDegree},
+                               .mortar_modulus = 29.4e9,
+                               .strength = 34.3e6,
+                               .modulus_over_estimate = 1.08,
+                               .of_stiffness = kOfStiffness,
+                               .of_factor = kOfFactor,
+                               .block_size = 8.06e-3,
+                               .of_block_size = -0.08};
 
 }  // namespace
 
@@ -67,6 +55,7 @@ std::optional<double> FirstGuess::factor_of(const ContactMaterial& mortar) const
   // by name: a program may be linked without the tables of these laws
   std::string_view of = mortar.law->name;
   if (of == CohesiveWithMemory::name) of = Cohesive::name;
+  if (of == MixedModeWithMemory::name) of = MixedMode::name;
   if (of != law) return std::nullopt;
   const auto over = [&](const char* key, double of_guess) {
     return mortar[key](kReferenceTemperature) / of_guess;
@@ -78,9 +67,8 @@ std::optional<double> FirstGuess::factor_of(const ContactMaterial& mortar) const
   return std::sqrt(least * most);
 }
 
-std::span<const FirstGuess> known_concretes(int dimension) {
-  if (dimension == 2) return kPlane;
-  return kSpace;
+const FirstGuess& first_guess(int dimension) {
+  return dimension == 2 ? kPlane : kSpace;
 }
 
 }  // namespace pyroclast

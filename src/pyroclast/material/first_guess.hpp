@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string_view>
 
 #include "pyroclast/material/concrete.hpp"
@@ -38,12 +37,7 @@ struct FirstGuess {
   std::optional<double> factor_of(const ContactMaterial& mortar) const;
 };
 
-/// Returns the concretes that are known of bodies in the plane or in space, whose stones may part where they
-/// touch: first that which a deck begins with.
-std::span<const FirstGuess> known_concretes(int dimension);
-
-inline const FirstGuess& first_guess(int dimension) {
-  return known_concretes(dimension).front();
-}
+/// Returns what is known of bodies in the plane or in space, whose stones may part where they touch.
+const FirstGuess& first_guess(int dimension);
 
 }  // namespace pyroclast
