@@ -187,16 +187,39 @@ std::vector<std::string> side_names(std::size_t count) {
   return names;
 }
 
+/// Takes the holes and notches of a deck out of a region.
+/// \param round    returns the corners of a circle
+/// \param size_at  returns the size of blocks at a place, m
+template <class Round, class SizeAt>
+specimen::Region cut_out(const specimen::Region& region, const ReadOutline& o, Round round, SizeAt size_at) {
+  std::vector<specimen::Hole> holes;
+  for (const auto& hole : o.holes)
+    holes.push_back(hole.corners.empty()
+                        ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}), true}
+                        : specimen::Hole{hole.name, hole.corners, false});
+  std::vector<specimen::Notch> notches = o.notches;
+  for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size_at(n.tip));
+  return region.with_holes(holes).with_notches(notches);
+}
+
 /// Returns the solid of a deck.
 specimen::Prism prism_of(const ReadOutline& o, double depth, const ReadBlocks& read,
                          std::span<const ReadBearing> bearings, const specimen::BlockSizes* sizes) {
   using enum specimen::Prism::Axis;
   if (o.shape == Shape::cylinder)
     return {round_section({{{}, o.diameter}, y, o.height}, read, sizes, {}), y, o.height};
-  if (o.shape == Shape::rectangle) return {specimen::Region::rectangle(o.width, o.height), z, depth};
+  const auto cut = [&](const specimen::Region& section) {
+    const double even = read.size_in_solid(section.extent() * depth);
+    const auto size_at = [&](const Vec<2>& place) {
+      return sizes ? sizes->at(specimen::in_space(place, z, 0.5 * depth)) : even;
+    };
+    return cut_out(
+        section, o, [&](const Circle& c) { return corners_of(c, even, sizes, bearings, size_at); }, size_at);
+  };
+  if (o.shape == Shape::rectangle) return {cut(specimen::Region::rectangle(o.width, o.height)), z, depth};
   if (o.shape == Shape::polygon)
-    return {specimen::Region::polygon(o.corners, side_names(o.corners.size())), z, depth};
-  return {round_section({{{}, o.diameter}, z, depth}, read, sizes, bearings), z, depth};
+    return {cut(specimen::Region::polygon(o.corners, side_names(o.corners.size()))), z, depth};
+  return {cut(round_section({{{}, o.diameter}, z, depth}, read, sizes, bearings)), z, depth};
 }
 
 /// Returns the region of a deck in the plane.
@@ -225,15 +248,10 @@ specimen::Region region_of(const ReadOutline& o, const ReadBlocks& read,
           region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
   }
   size = read.size_in(region.extent());
-  std::vector<specimen::Hole> holes;
-  for (const auto& hole : o.holes)
-    holes.push_back(hole.corners.empty()
-                        ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}, size), true}
-                        : specimen::Hole{hole.name, hole.corners, false});
-  std::vector<specimen::Notch> notches = o.notches;
-  for (specimen::Notch& n : notches)
-    n.point = specimen::slot_point(n.length(), n.width, sizes ? sizes->at(n.tip) : size);
-  return with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
+  region = cut_out(
+      region, o, [&](const Circle& circle) { return round(circle, size); },
+      [&](const Vec<2>& place) { return sizes ? sizes->at(place) : size; });
+  return with_seats(region, circles, bearings);
 }
 
 }  // namespace

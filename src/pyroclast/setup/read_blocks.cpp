@@ -177,7 +177,7 @@ int count_in_range(const Section& blocks, double count) {
 }
 
 std::span<const specimen::Notch> notches_of(const specimen::SpecimenParameters& specimen) {
-  if (!specimen.region()) return {};
+  if (const specimen::Prism* body = specimen.prism()) return body->section().notches();
   return specimen.region()->notches();
 }
 
@@ -242,7 +242,9 @@ void find_part(const specimen::SpecimenParameters& specimen, std::span<const Rea
   add_side(specimen, name, part);
   for (const specimen::Notch& notch : notches_of(specimen)) {
     if (notch.name == name) part.pieces.push_back({resized<3>(notch.mouth), resized<3>(notch.tip)});
-    if (notch.name + kTip == name) part.pieces.push_back({resized<3>(notch.tip)});
+    if (notch.name + kTip != name) continue;
+    part.pieces.push_back({resized<3>(notch.tip)});
+    part.is_along_z = specimen.prism() != nullptr;
   }
   if (!part.pieces.empty()) return;
   const std::vector<std::string> names = parts_of(specimen, bearings, sets);

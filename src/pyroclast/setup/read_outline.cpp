@@ -79,12 +79,6 @@ double read_unit(const Section& s) {
   }
 }
 
-/// Records an error for each hole and notch of a solid.
-void refuse_cuts(const Section& s) {
-  for (const char* const cuts : {"holes", "notches"})
-    if (s.has(cuts)) s.error(cuts, "cannot be made in a solid yet: its section must be convex and whole");
-}
-
 }  // namespace
 
 ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, const DeckSpace& space) {
@@ -118,12 +112,16 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
   }
   s.know({"width", "height", "corners", "diameter", "inner_diameter", "file", "join", "unit"});
   if (o.shape == Shape::cells || o.shape == Shape::polyhedra || o.shape == Shape::tessellation) return o;
-  if (space.is_solid()) {
-    refuse_cuts(s);
+  if (o.shape == Shape::cylinder) {
+    for (const char* const cuts : {"holes", "notches"})
+      if (s.has(cuts))
+        s.error(cuts,
+                "a cylinder stands, and holes and notches go along z: shape = \"disc\" with a depth lies");
     return o;
   }
   int number = 0;
-  for (const Section& h : s.optional_sections("holes", "holes in the specimen, any number")) {
+  for (const Section& h : s.optional_sections(
+           "holes", "holes in the specimen, any number; in a solid they go through all of its depth")) {
     ReadOutline::Hole hole;
     hole.name = h.text("name", fmt::format("hole_{}", ++number), "of its side");
     if (h.has("corners")) {
@@ -137,7 +135,8 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
     o.holes.push_back(std::move(hole));
   }
   number = 0;
-  for (const Section& n : s.optional_sections("notches", "straight cuts from the outline, any number")) {
+  for (const Section& n : s.optional_sections(
+           "notches", "straight cuts from the outline, any number; in a solid through all of its depth")) {
     specimen::Notch notch;
     notch.place = fmt::format("{}: {}", n.where("width"), n.path());
     notch.name = n.text("name", fmt::format("notch_{}", ++number), "of its side");
@@ -145,8 +144,10 @@ ReadOutline read_outline(const Section& s, const std::filesystem::path& folder, 
     notch.tip = read_place(n, "tip", "where the notch ends, in the specimen; a corner of blocks");
     notch.width =
         n.quantity("width", unit::length, Range::non_negative(), 0.0,
-                   "of a slot, which ends in a point at the tip; 0: the blocks on both sides touch, and "
-                   "nothing holds them together");
+                   "of a slot, which ends in a point at the tip; 0, not in a solid: the blocks on both sides "
+                   "touch, and nothing holds them together");
+    if (space.is_solid() && notch.width == 0.0)
+      n.error("width", "must be above 0 in a solid, such as \"2 mm\"");
     o.notches.push_back(std::move(notch));
   }
   return o;

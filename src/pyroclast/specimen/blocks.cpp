@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "pyroclast/specimen/stone_seeds.hpp"
 #include "pyroclast/specimen/topology.hpp"
 #include "pyroclast/specimen/united_cells.hpp"
+#include "pyroclast/specimen/walls.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -419,9 +421,11 @@ constexpr double kWider = 1.02;
 constexpr int kRegularisations = 2;
 /// Places tried before a free seed may come a step closer to the surface of a stone.
 constexpr int kTriesAtOneDistance = 500;
+/// Owner of the seeds whose cells are taken out.
+constexpr int kWithinCut = std::numeric_limits<int>::max() / 4;
 
-/// Seeds in space of which some stand in pairs along the surfaces of stones, in the order of a curve through
-/// the body.
+/// Seeds in space of which some stand in pairs along the surfaces of stones, or along the walls of holes and
+/// notches, in the order of a curve through the body.
 class FollowingSeeds {
  public:
   FollowingSeeds(const BlockParameters& parameters, const Prism& body, std::span<const Stone<3>> stones,
@@ -430,7 +434,8 @@ class FollowingSeeds {
         body_(body),
         sizes_(sizes),
         random_(random),
-        following_(parameters, stones, body, nullptr, sizes) {
+        following_(parameters, stones, body, nullptr, sizes),
+        walls_(wall_seeds(body, sizes)) {
     make({});
   }
 
@@ -468,17 +473,23 @@ class FollowingSeeds {
   }
 
   Seeds<3> seeds;
-  std::vector<int> owner;  ///< stone of each seed, -1: of none
+  std::vector<int> owner;  ///< stone of each seed, -1: of none; kWithinCut within holes and notches
 
  private:
   /// Places the seeds along surfaces, and free ones up to the number of blocks.
   /// \param places  places of free seeds, taken as far as they are needed
   void make(const std::vector<Vec<3>>& places) {
-    const std::size_t count = parameters_.count;
+    const auto within = static_cast<std::size_t>(std::ranges::count(walls_.are_within, 1));
+    const std::size_t count = parameters_.count + within;
     while (along().owners().size() > count) following_.follow_wider(kWider);
     seeds.position = along().positions();
     seeds.radius = along().radii();
     owner = along().owners();
+    for (std::size_t i = 0; i < walls_.positions.size(); ++i) {
+      seeds.position.push_back(walls_.positions[i]);
+      seeds.radius.push_back(walls_.radii[i]);
+      owner.push_back(walls_.are_within[i] ? kWithinCut : -1);
+    }
     is_free_.assign(owner.size(), 0);
     for (const Vec<3>& place : places)
       if (owner.size() < count && along().leave_room_at(place, kLeastClear)) add_free(place);
@@ -493,8 +504,9 @@ class FollowingSeeds {
 
   SpacedSeedDraw free_draw(const std::vector<Vec<3>>& standing) {
     SpacedSeedDraw draw(body_, sizes_, random_, [this](const Vec<3>& place, int tried) {
-      return along().leave_room_at(
-          place, std::max(kLeastClear, kClearOfStones - 0.05 * (tried / kTriesAtOneDistance)));
+      const double clear = std::max(kLeastClear, kClearOfStones - 0.05 * (tried / kTriesAtOneDistance));
+      return along().leave_room_at(place, clear) &&
+             body_.distance_from_walls(place) >= clear * sizes_.at(place);
     });
     for (const Vec<3>& place : standing) draw.add(place);
     return draw;
@@ -532,6 +544,7 @@ class FollowingSeeds {
   const BlockSizes& sizes_;
   Random& random_;
   Following<3> following_;
+  WallSeeds walls_;
   std::vector<char> is_free_;                                                        ///< of each seed
   std::optional<std::tuple<Seeds<3>, std::vector<int>, std::vector<char>>> before_;  ///< the last correction
 };
@@ -572,13 +585,19 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
                       std::span<const Stone<3>> stones) {
   const BlockSizes sizes = sizes_of<3>(parameters, body);
   std::optional<FollowingSeeds> following;
-  if (!stones.empty()) following.emplace(parameters, body, stones, sizes, random);
+  const bool has_walls = !body.walls().empty();
+  if (has_walls && !stones.empty())
+    throw Error(
+        fmt::format("{}blocks of a solid with holes or notches cannot follow stones yet: "
+                    "[superposition] rule = \"each\"",
+                    parameters.place.empty() ? "" : parameters.place + ": "));
+  if (has_walls || !stones.empty()) following.emplace(parameters, body, stones, sizes, random);
   Seeds<3> free;
   if (!following) free = spaced_seeds(body, sizes, parameters.count, parameters.radius_spread, random);
   Seeds<3>& seeds = following ? following->seeds : free;
   const std::string what = fmt::format("Tessellation of {} blocks", parameters.count);
   Blocks<3> blocks;
-  int corrections = 0, regularisations = 0, most_corrections = kCorrections;
+  int corrections = 0, regularisations = 0, most_corrections = stones.empty() ? 0 : kCorrections;
   for (int failed = 0; failed < kMostRoundsInSpace; ++blocks.rounds) {
     Laguerre<3> result = laguerre_cells(seeds, body, team);
     if (!result.broken.empty()) {
@@ -612,6 +631,12 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
       }
     }
     blocks.cells = std::move(result.cells);
+    if (has_walls) {
+      std::vector<char> is_out;
+      for (const int owner : std::exchange(blocks.stone, {})) is_out.push_back(owner == kWithinCut ? 1 : 0);
+      take_out(blocks.cells, is_out, body);
+      require_filled(blocks.cells, body, what);
+    }
     add_sizes(sizes, blocks);
     return blocks;
   }

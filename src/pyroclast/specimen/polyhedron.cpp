@@ -200,10 +200,11 @@ void require_valid(const Cells<3>& cells, const Prism& body, const std::string& 
       fail(cell, "turns a triangle of a face away from its centroid, so that it cannot be cut into zones");
     filled += its;
   }
-  if (!(std::abs(filled - body.extent()) <= kVolumeError * body.extent()))
+  const double whole = body.extent_before_cuts();
+  if (!(std::abs(filled - whole) <= kVolumeError * whole))
     throw Error(fmt::format(
         "{}: its cells fill {:.12g} m3, but the body has {:.12g} m3; both may differ by {:g} of it", what,
-        filled, body.extent(), kVolumeError));
+        filled, whole, kVolumeError));
 }
 
 }  // namespace pyroclast::specimen

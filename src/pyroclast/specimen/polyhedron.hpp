@@ -46,7 +46,7 @@ double common_volume(const Cells<3>& cells, std::size_t cell, const Vec<3>& cent
 
 /// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
 /// each vertex of a face stands once on it, each zone of a cell has a volume, and the volumes of all cells
-/// fill that of the body to 1e-9.
+/// fill that of the body, before holes and notches are taken out, to 1e-9.
 void require_valid(const Cells<3>& cells, const Prism& body, const std::string& what);
 
 }  // namespace pyroclast::specimen

@@ -7,14 +7,13 @@
 
 #include "pyroclast/specimen/outline.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/seed_pairs.hpp"
 #include "pyroclast/specimen/stone.hpp"
 
 namespace pyroclast::specimen {
 namespace {
 
 // Lengths are in spacings.
-constexpr double kFromSurface = 0.4;   ///< distance of a seed from the surface
-constexpr double kAlongSurface = 0.9;  ///< distance from seed to seed along the surface
 /// Half of the gap below which two stones share a row of seeds: wider ones have room for two.
 constexpr double kNarrow = 0.7;
 /// Radius below which the cells of a stone become one; in space it has one seed.
@@ -41,8 +40,6 @@ template <int Dim>
 constexpr int kHalvingsOfGap = Dim == 2 ? 40 : 20;
 /// Distance of a stone's surface from the outline of the body up to which the outline cuts the stone.
 constexpr double kCut = 1e-3;
-/// Power of a point of the surface, in squared spacings: with it a seed at the offset has a radius of 0.5.
-constexpr double kPower = 0.25 - kFromSurface * kFromSurface;
 
 /// Returns the area of the polygon of tangents at points of an outline, counter-clockwise.
 double area_of_tangents(const std::vector<SurfacePoint<2>>& points) {
@@ -82,7 +79,7 @@ double distance_before_cuts(const Region& region, const Vec<2>& place) {
   return region.distance_before_cuts(place);
 }
 double distance_before_cuts(const Prism& body, const Vec<3>& place) {
-  return body.distance(place);
+  return body.distance_before_cuts(place);
 }
 
 }  // namespace
