@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "solid_bodies.hpp"
@@ -90,6 +92,17 @@ TEST(WallsOfSolids, LieWhereHolesAndNotchesAre) {
     EXPECT_NEAR(on.area.at("left"), (kHeightOfPlate - 0.004) * kDepthOfPlate, 0.02 * on.area.at("left"));
     EXPECT_LT(on.farthest, 0.35 * s.metrics.mean_size);
   }
+}
+
+TEST(WallsOfSolids, GoThroughFiles) {
+  const Specimen<3> made = made_in(of_plate(500, 0.35, 1), plate_with_cuts(0.004));
+  const auto file = cells_from(cells_text(made), "plate.json");
+  const Specimen<3> read = specimen_from(std::get<GivenCells<3>>(file));
+  const OnWalls before = on_walls(made), after = on_walls(read);
+  EXPECT_EQ(read.cells.cells, made.cells.cells);
+  EXPECT_DOUBLE_EQ(read.outline.extent(), made.outline.extent());
+  ASSERT_EQ(before.area.size(), after.area.size());
+  for (const auto& [side, area] : before.area) EXPECT_NEAR(after.area.at(side), area, 1e-9 * area) << side;
 }
 
 TEST(WallsOfSolids, PartBlocksAtANotchThatIsMuchNarrowerThanThey) {

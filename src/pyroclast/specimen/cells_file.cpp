@@ -100,7 +100,22 @@ Prism body_in(const Json& json, std::size_t cells) {
   if (corners.size() >= 3 && cells > 0)
     straighten(corners, kOffSide * std::cbrt(std::abs(area(corners)) * length.get<double>() /
                                              static_cast<double>(cells)));
-  auto section = Region::polygon(std::move(corners), sides, sides.size() == 1);
+  std::vector<Hole> holes;
+  std::vector<Notch> notches;
+  if (found->contains("holes"))
+    holes = list_in(*found, "holes", "a table with name, corners_m and is_round", [](const Json& hole) {
+      std::vector<Vec<2>> around;
+      for (const Json& corner : hole.at("corners_m")) around.push_back(coordinates_in<2>(corner));
+      return Hole{hole.at("name"), std::move(around), hole.at("is_round")};
+    });
+  if (found->contains("notches"))
+    notches = list_in(
+        *found, "notches", "a table with name, mouth_m, tip_m, width_m and point_m", [](const Json& notch) {
+          return Notch{notch.at("name"), coordinates_in<2>(notch.at("mouth_m")),
+                       coordinates_in<2>(notch.at("tip_m")), notch.at("width_m"), notch.at("point_m")};
+        });
+  auto section =
+      Region::polygon(std::move(corners), sides, sides.size() == 1).with_holes(holes).with_notches(notches);
   return {std::move(section), axis == "y" ? Prism::Axis::y : Prism::Axis::z, length.get<double>()};
 }
 
@@ -166,17 +181,30 @@ Json places(const auto& list) {
 /// Returns the table of a body.
 Json table_of(const Prism& body) {
   const Region& section = body.section();
-  const Loop& outline = section.loops().front();
-  Json sides = Json::array();
-  for (int side : outline.side) {
+  Json sides = Json::array(), corners = Json::array();
+  for (auto [from, to, side] : body.around()) {
+    corners.push_back(from.c);
     while (section.sides()[side].part_of >= 0) side = section.sides()[side].part_of;
     if (section.sides()[side].is_round && !sides.empty()) continue;  // one name for all
     sides.push_back(section.sides()[side].name);
   }
-  return {{"axis", body.axis() == Prism::Axis::y ? "y" : "z"},
-          {"length_m", body.length()},
-          {"section_m", places(outline.corners)},
-          {"sides", std::move(sides)}};
+  Json table = {{"axis", body.axis() == Prism::Axis::y ? "y" : "z"},
+                {"length_m", body.length()},
+                {"section_m", std::move(corners)},
+                {"sides", std::move(sides)}};
+  for (std::size_t i = 1; i < section.loops().size(); ++i) {
+    const Loop& hole = section.loops()[i];
+    const Side& side = section.sides()[hole.side.front()];
+    table["holes"].push_back(
+        {{"name", side.name}, {"corners_m", places(hole.corners)}, {"is_round", side.is_round}});
+  }
+  for (const Notch& notch : section.notches())
+    table["notches"].push_back({{"name", notch.name},
+                                {"mouth_m", notch.mouth.c},
+                                {"tip_m", notch.tip.c},
+                                {"width_m", notch.width},
+                                {"point_m", notch.point}});
+  return table;
 }
 
 }  // namespace

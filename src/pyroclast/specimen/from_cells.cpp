@@ -15,6 +15,7 @@
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/topology.hpp"
+#include "pyroclast/specimen/walls.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -317,11 +318,16 @@ void lay_on_sides(Cells<3>& cells, const Prism& body, const std::vector<int>& nu
                exact = kExact * norm(body.high() - body.low());
   std::vector<std::vector<const Plane*>> planes(cells.vertices.size());
   for (std::size_t f = 0; f < cells.faces.size(); ++f) {
-    const Facet<3>& face = cells.faces[f];
+    Facet<3>& face = cells.faces[f];
     if (face.outer >= 0) continue;
     const auto [plane, farthest] = plane_of(face, cells, body);
     const Vec<3>& at = cells.vertices[farthest];
-    if (const double off = std::abs(plane->distance(at)); off > slack)
+    const double off = std::abs(plane->distance(at));
+    if (off > slack && !body.walls().empty()) {
+      face.side = nearest_wall(face, cells, body);
+      continue;
+    }
+    if (off > slack)
       throw Error(fmt::format(
           "face {} (from 0), of cell {} alone, lies on no side of the body: its corner ({:.6g}, "
           "{:.6g}, {:.6g}) m is {:.3g} m off \"{}\", the nearest; {:.3g} m is allowed, {:g} of a block",
@@ -417,14 +423,30 @@ GivenCells<3> completed(GivenCells<3> given, double join) {
   return given;
 }
 
+namespace {
+
+/// Tells whether blocks of a body in space need not fill it exactly.
+bool is_cut(const Prism& body) {
+  return !body.walls().empty();
+}
+bool is_cut(const Region& /*region*/) {
+  return false;
+}
+
+}  // namespace
+
 template <int Dim>
 Specimen<Dim> specimen_from(GivenCells<Dim> given) {
   const OutlineOf<Dim>& outline = given.outline;
   const std::string origin = given.origin.empty() ? "The cells" : given.origin;
   if constexpr (Dim == 3)
-    for (Facet<3>& face : given.cells.faces)
-      if (face.outer < 0) face.side = plane_of(face, given.cells, outline).first->side;
-  require_valid(given.cells, outline, origin);
+    for (Facet<3>& face : given.cells.faces)  // those on walls have their side already
+      if (face.outer < 0 && (face.side < 0 || outline.walls().empty()))
+        face.side = plane_of(face, given.cells, outline).first->side;
+  if (!is_cut(outline))
+    require_valid(given.cells, outline, origin);
+  else if constexpr (Dim == 3)
+    require_filled(given.cells, outline, origin);
   Specimen<Dim> specimen{.outline = std::move(given.outline),
                          .cells = std::move(given.cells),
                          .phases = std::move(given.phases),

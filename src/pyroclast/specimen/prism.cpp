@@ -46,14 +46,14 @@ void require_convex(const Region& section, const std::vector<Piece>& pieces) {
 }  // namespace
 
 Prism::Prism(Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
-  const std::vector<Piece> around = pieces_around(section_);
-  require_convex(section_, around);
+  around_ = pieces_around(section_);
+  require_convex(section_, around_);
   sides_ = section_.sides();
   for (const Loop& loop : section_.loops())
     for (std::size_t i = 0; i < loop.corners.size(); ++i)
       if (&loop != &section_.loops().front() || sides_[loop.side[i]].is_cut)
         walls_.push_back({loop.corners[i], loop.corners[(i + 1) % loop.corners.size()], loop.side[i]});
-  for (const auto& [from, to, side] : around) {
+  for (const auto& [from, to, side] : around_) {
     const Vec<2> along = to - from;
     const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
     planes_.push_back({in_space(out, axis_, 0.0), dot(out, from), side});
@@ -71,7 +71,7 @@ Prism::Prism(Region section, Axis axis, double length) : section_(std::move(sect
   volume_ = whole_ = section_.extent() * length;
   if (walls_.empty()) return;
   std::vector<Vec<2>> corners;
-  for (const Piece& piece : around) corners.push_back(piece.from);
+  for (const Piece& piece : around_) corners.push_back(piece.from);
   whole_ = area(corners) * length;
 }
 
@@ -115,12 +115,11 @@ std::vector<FlatPart> Prism::flat_parts() const {
     return {in_space(piece.from, axis_, 0.0), in_space(piece.to, axis_, 0.0),
             in_space(piece.to, axis_, length()), in_space(piece.from, axis_, length())};
   };
-  const std::vector<Piece> pieces = pieces_around(section_);
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    parts[i].corners = along_axis(pieces[i]);
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    parts[i].corners = along_axis(around_[i]);
     for (const bool is_far : {false, true})
-      parts[pieces.size() + (is_far ? 1 : 0)].corners.push_back(
-          in_space(pieces[i].from, axis_, is_far ? length() : 0.0));
+      parts[around_.size() + (is_far ? 1 : 0)].corners.push_back(
+          in_space(around_[i].from, axis_, is_far ? length() : 0.0));
   }
   for (const Piece& wall : walls_) {
     const Vec<2> along = wall.to - wall.from;

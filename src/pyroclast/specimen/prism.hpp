@@ -35,6 +35,8 @@ class Prism {
   const std::vector<Side>& sides() const { return sides_; }
   /// Returns the planes around the body, as if nothing had been cut.
   const std::vector<Plane>& planes() const { return planes_; }
+  /// Returns the pieces around the section, as if nothing had been cut.
+  const std::vector<Piece>& around() const { return around_; }
   /// Returns the walls of holes and notches in the section, walked with the body on their left.
   const std::vector<Piece>& walls() const { return walls_; }
   const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
@@ -61,7 +63,7 @@ class Prism {
   Axis axis_ = Axis::z;
   std::vector<Side> sides_;
   std::vector<Plane> planes_;
-  std::vector<Piece> walls_;
+  std::vector<Piece> around_, walls_;
   Vec<3> low_{}, high_{};
   double volume_ = 0.0, whole_ = 0.0;
 };

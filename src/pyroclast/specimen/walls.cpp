@@ -96,17 +96,17 @@ WallSeeds wall_seeds(const Prism& body, const BlockSizes& sizes) {
   return seeds;
 }
 
+int nearest_wall(const Facet<3>& face, const Cells<3>& cells, const Prism& body) {
+  Vec<3> mean{};
+  for (const int v : face.corners)
+    mean += cells.vertices[v] * (1.0 / static_cast<double>(face.corners.size()));
+  const Vec<2> at = body.in_section(mean);
+  const auto wall = std::ranges::min_element(
+      body.walls(), {}, [&](const Piece& piece) { return distance_from_segment(at, piece.from, piece.to); });
+  return wall->side;
+}
+
 void take_out(Cells<3>& cells, const std::vector<char>& is_out, const Prism& body) {
-  const auto side_at = [&](const Facet<3>& face) {
-    Vec<3> mean{};
-    for (const int v : face.corners)
-      mean += cells.vertices[v] * (1.0 / static_cast<double>(face.corners.size()));
-    const Vec<2> at = body.in_section(mean);
-    return std::ranges::min_element(
-               body.walls(), {},
-               [&](const Piece& wall) { return distance_from_segment(at, wall.from, wall.to); })
-        ->side;
-  };
   std::vector<int> number(cells.cells.size(), -1);
   int left = 0;
   for (std::size_t cell = 0; cell < number.size(); ++cell)
@@ -119,7 +119,7 @@ void take_out(Cells<3>& cells, const std::vector<char>& is_out, const Prism& bod
     const bool was_within = face.outer >= 0;
     const int inner = number[face.inner], outer = was_within ? number[face.outer] : -1;
     if (inner < 0 && outer < 0) continue;
-    if (was_within && (inner < 0 || outer < 0)) face.side = side_at(face);
+    if (was_within && (inner < 0 || outer < 0)) face.side = nearest_wall(face, cells, body);
     if (inner < 0) std::reverse(face.corners.begin() + 1, face.corners.end());  // the first begins the fan
     face.inner = inner < 0 ? outer : inner;
     face.outer = inner < 0 ? -1 : outer;

@@ -19,6 +19,9 @@ struct WallSeeds {
 /// \param sizes  sizes of blocks: mean distances of seeds
 WallSeeds wall_seeds(const Prism& body, const BlockSizes& sizes);
 
+/// Returns the side of the wall that is nearest to a face, index into the sides of the body.
+int nearest_wall(const Facet<3>& face, const Cells<3>& cells, const Prism& body);
+
 /// Takes cells out. Their faces to cells that stay come to lie on the wall of the body that is nearest.
 /// \param is_out  1 for each cell to be taken out
 void take_out(Cells<3>& cells, const std::vector<char>& is_out, const Prism& body);
