@@ -28,6 +28,7 @@ _TENTHS = 10
 _IN_PLANE = {"x": (2, 1), "y": (0, 2), "z": (0, 1)}
 """Axes to the right and upwards in the picture of a plane, by the axis across it."""
 _NEAR = 3e-7  # of the size of a body: a point so near to a side lies on it
+_WALL = 1e-3  # of the size of a body: what lies so far behind its surface is a wall of a hole or notch
 _EDGE = 1e-3  # of the size of a body: a cut so narrow is an edge
 _HOTTER = 0.05  # of the span of temperatures, and 1 K: a side is hotter than the one across by more
 _OF_TRIAD = 0.13  # of the width of a body, length of the axes in its picture
@@ -141,12 +142,39 @@ def _outer_edges(blocks: BlockMesh, points: np.ndarray, view: View) -> np.ndarra
     """Returns (L, 2, 3), m: edges between blocks on the sides that face the eye, without the quarter."""
     outer = outline(blocks, points)
     facing = outer.area_vectors @ view.towards_eye > 0.0
+    facing[facing] = ~_is_hidden(outline(blocks).of(np.flatnonzero(facing)), blocks, view)
     corners, block = outer.corners[facing], blocks.block[outer.owner[facing]]
     start, end = corners.reshape(-1, 3), np.roll(corners, -1, axis=1).reshape(-1, 3)
     middle = np.round(0.5 * (start + end) / (1e-7 * np.ptp(blocks.points))).astype(np.int64)
     _, place, count = np.unique(np.c_[middle, np.repeat(block, 3)], axis=0, return_inverse=True, return_counts=True)
     alone = count[place.ravel()] == 1  # an edge within a block is that of two of its triangles
     return _outside_quarter(np.stack([start, end], axis=1)[alone], blocks, view)
+
+
+def _is_hidden(facing: Polygons, blocks: BlockMesh, view: View) -> np.ndarray:
+    """Returns (T,) bool, of triangles of the outline that face the eye: the body hides their middle, as it may hide the
+    walls of holes and notches.
+    """
+    vectors, middles = facing.area_vectors, facing.corners.mean(axis=1)
+    near = _WALL * float(np.ptp(blocks.points, axis=0).max())
+    vertices = np.unique(facing.corners.reshape(-1, 3), axis=0)
+    highest = np.einsum("ij,ij->i", vectors, facing.corners[:, 0]) + near * np.linalg.norm(vectors, axis=1)
+    hidden = np.zeros(len(middles), bool)
+    for some in np.array_split(np.arange(len(middles)), len(middles) // 200 + 1):
+        hidden[some] = (vertices @ vectors[some].T).max(axis=0) > highest[some]  # may be hidden
+    if not hidden.any():
+        return hidden
+    polygons, _ = _seen(blocks, view)
+    before = polygons.corners.reshape(-1, 3)[polygons.triangles]
+    corners, vectors = view.flat(before), Polygons(before, np.arange(len(before))).area_vectors
+    depth, facing_eye = np.einsum("ij,ij->i", vectors, before[:, 0]), vectors @ view.towards_eye
+    sides = np.roll(corners, -1, axis=1) - corners
+    for wall in np.flatnonzero(hidden):
+        there = view.flat(middles[wall]) - corners
+        holds = (sides[..., 0] * there[..., 1] - sides[..., 1] * there[..., 0] > 0.0).all(axis=1)
+        along = (depth[holds] - vectors[holds] @ middles[wall]) / facing_eye[holds]  # from the middle to the eye
+        hidden[wall] = bool((along > near).any())
+    return hidden
 
 
 def _seams(blocks: BlockMesh, points: np.ndarray, view: View) -> Iterator[np.ndarray]:
