@@ -3,6 +3,7 @@
 PYROCLAST names the program.
 """
 
+import csv
 import json
 import os
 import pathlib
@@ -63,6 +64,34 @@ class Body(InAFolder):
                 self.pyroclast("run", case(name), *changes, *QUIET, "--body", f"body_{name}", "--out", f"read_{name}",
                                env=CHUNKS, code=None)
                 self.assert_same(f"made_{name}", f"read_{name}")
+
+    def test_holes_and_notches_of_a_solid_go_through_a_whole_run(self):
+        """A bore burns, bore and notch sink under the load, and the body's file gives the same bytes."""
+        text = (ROOT / "cases/fire_one_side_3d.toml").read_text().replace('faces = "front"', 'faces = "bore"')
+        cuts = ('[[specimen.holes]]\nname = "bore"\ncentre = ["45 mm", "45 mm"]\ndiameter = "24 mm"\n\n'
+                '[[specimen.notches]]\nname = "saw"\nmouth = ["0 mm", "20 mm"]\ntip = ["24 mm", "20 mm"]\n'
+                'width = "3 mm"\n\n'
+                '[[record]]\nname = "bore"\nkind = "displacement"\nset = "bore"\ndirection = "y"\n\n'
+                '[[record]]\nname = "saw"\nkind = "displacement"\nset = "saw"\ndirection = "y"\n\n')
+        text = text.replace("[aggregates] ", cuts + "[aggregates] ").replace('x = "40 mm"\ny = "40 mm"\nz = "5 mm"',
+                                                                            'x = "60 mm"\ny = "45 mm"\nz = "24 mm"')
+        text = text.replace('x = "40 mm"\ny = "40 mm"\nz = "24 mm"', 'x = "5 mm"\ny = "75 mm"\nz = "24 mm"')
+        (self.folder / "bored.toml").write_text(text)
+        changes = ["--set", "blocks.count=200", "--set", "aggregates.fraction=0.2", "--set", "stages[1].duration=3 min",
+                   "--set", "coupling.exchange_increment=40 K"]
+        self.pyroclast("run", "bored.toml", *changes, *QUIET, "--out", "whole", env=CHUNKS)
+        summary = self.results("whole")["summary.json"]
+        with open(self.folder / "whole/history.csv", newline="") as file:
+            *_, last = csv.DictReader(file)
+        near, far = (float(last[f"probe_{name}_degC"]) for name in ("at_5_mm", "in_the_middle"))
+        self.assertGreater(near, far + 40.0)  # 3 mm and 45 mm from the bore
+        self.assertLess(summary["heat_J"]["error_over_largest"], 1e-9)
+        self.assertLess(summary["energy_J"]["error_over_turnover"], 1e-3)
+        self.assertLess(float(last["bore_m"]), float(last["saw_m"]))  # both sink under the upper platen
+        self.assertLess(float(last["saw_m"]), 0.0)
+        self.specimen("bored.toml", *changes)
+        self.pyroclast("run", "bored.toml", *changes, *QUIET, "--body", "body", "--out", "of_body", env=CHUNKS)
+        self.assert_same("whole", "of_body")
 
     @NEEDS_MPI
     def test_ranks_read_their_chunks_and_give_the_bytes_of_one_process(self):
