@@ -141,6 +141,8 @@ struct Body {
   bool leaves_out(int face) const { return !is_left_out.empty() && is_left_out[face]; }
   /// Takes all faces in again.
   void leave_none_out();
+  /// Tells whether a face is torn because its sides have turned against each other, see TornFaces.
+  bool is_torn(int face) const { return !torn.empty() && torn[face]; }
   /// Returns the first bundle of the block whose gridpoints, or some of them, stand in a bundle.
   int first_bundle_of(int bundle) const;
   /// Tells whether gridpoints of a block that stands in parts are tied: its parts then wait for each other.
@@ -202,6 +204,7 @@ struct Body {
   std::vector<bool> left;            ///< by gridpoint: those of gone blocks; empty as long as none is
   std::vector<bool> is_left_out;     ///< by face, see leaves_out; empty as long as none is
   FlatArray<std::uint8_t> left_out;  ///< bits of these faces, see State::left_out
+  std::vector<bool> torn;            ///< by face, see is_torn; empty as long as none is
 
   std::int64_t steps = 0;
   Books books;

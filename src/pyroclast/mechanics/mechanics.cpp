@@ -10,12 +10,14 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/found/found_contacts.hpp"
 #include "pyroclast/mechanics/gone.hpp"
+#include "pyroclast/mechanics/torn.hpp"
 
 namespace pyroclast {
 
 namespace {
 
-/// Steps from one hand-over of broken faces to the next: whatever the batches, the same steps of a run.
+/// Steps from one look at faces that are to be torn or handed over to the next: whatever the batches, the
+/// same steps of a run.
 constexpr int kStepsToHandOver = 64;
 /// Largest ratio between the time steps of a body and of a state that it takes over.
 constexpr double kSameStep = 2.0;
@@ -47,6 +49,7 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
   if (!properties.creep.empty() && !body.creeps())
     throw Error("a body made of materials that do not creep cannot begin to creep");
   GoneBlocks<Dim>(body).leave_out_of(properties);
+  TornFaces<Dim>(body).drain(properties);
   Ranks& ranks = body.model.ranks();
   const auto seen = ranks.together([&] {
     return std::pair(before_change(),
@@ -198,16 +201,30 @@ void Mechanics<Dim>::advance(int steps) {
   }
 }
 
-/// Returns how many steps may follow before broken faces are handed over to found contacts, and hands over
-/// those that are due now.
+/// Returns how many steps may follow before faces that have turned are torn, and broken faces are handed over
+/// to found contacts; does with those that are due now.
 template <int Dim>
 int Mechanics<Dim>::steps_to_hand_over() {
-  if (body_->found) {
-    const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
-    if (since == 0) FoundContacts<Dim>(*body_).hand_over();
-    return kStepsToHandOver - since;
+  const bool turns = body_->parameters.kinematics == Kinematics::finite;
+  if (!turns && !body_->found) return std::numeric_limits<int>::max();
+  const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
+  if (since == 0) {
+    if (turns) tear_turned_faces();
+    if (body_->found) FoundContacts<Dim>(*body_).hand_over();
   }
-  return std::numeric_limits<int>::max();
+  return kStepsToHandOver - since;
+}
+
+template <int Dim>
+void Mechanics<Dim>::tear_turned_faces() {
+  Body<Dim>& body = *body_;
+  TornFaces<Dim> torn(body);
+  const std::vector<int> faces = torn.turned();
+  if (!body.model.ranks().any(!faces.empty())) return;
+  mover_.take_from_owners();  // velocities, which travel when steps are measured
+  const double pushed = totals().work_of_pore_pressure();
+  torn.tear(faces);
+  body.books.pore_pressure += pushed - totals().work_of_pore_pressure();
 }
 
 template <int Dim>
@@ -233,6 +250,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   body.visit_arrays(visitor);
   constraints().visit_state(visitor);
   Properties<Dim>(body).visit_state(visitor);
+  if (body.parameters.kinematics == Kinematics::finite) TornFaces<Dim>(body).visit_state(visitor);
   if (body.found) FoundContacts<Dim>(body).visit_state(visitor);
   if (!visitor.replaces()) return;
   Masses<Dim>(body).follow_state();

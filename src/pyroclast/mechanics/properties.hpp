@@ -31,6 +31,8 @@ class Properties {
   /// Breaks a contact from the start: neither tension nor cohesion ever held it. Returns false where the law
   /// of the contact has no damage; the contact then holds.
   [[nodiscard]] bool break_contact(int contact);
+  /// Puts the pressures of pore water in their places.
+  void place_pore_pressure();
   void visit_state(StateVisitor& visitor);
 
  private:
@@ -38,7 +40,6 @@ class Properties {
   void place_contact_properties();
   std::vector<int> find_sets_of_faces();
   void place_own_constants();
-  void place_pore_pressure();
   void visit_contacts_sets(StateVisitor& visitor);
   std::vector<ContactProperties> visit_sets_of_interfaces(StateVisitor& visitor);
   void add_set(const StateVisitor& visitor, const LawTable& law, std::span<const int> choices,

@@ -156,6 +156,7 @@ Vec<Dim> Reader<Dim>::jump_of_forces(int contact) const {
 
 template <int Dim>
 double Reader<Dim>::opening(int contact) const {
+  if (body_.is_torn(body_.model.contacts[contact].face)) return norm(jump_of_forces(contact));
   return dot(jump_of_forces(contact), frame_of_forces(contact).normal);
 }
 
@@ -189,11 +190,16 @@ ContactState Reader<Dim>::contact(int contact) const {
   state.internals =
       values(body_.state.internals, body_.state.first_internal, state.law->internals(Dim).size());
   state.losses = values(body_.state.loss, body_.state.first_loss, state.law->losses.size());
-  const auto frame = frame_of_forces(contact);
   const Vec<Dim> u = jump_of_forces(contact);
+  const int face = body_.model.contacts[contact].face;
+  if (body_.is_torn(face) && body_.leaves_out(face)) {
+    state.opening = norm(u);
+    return state;
+  }
+  const auto frame = frame_of_forces(contact);
   state.opening = dot(u, frame.normal);
   for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
-  if (body_.leaves_out(body_.model.contacts[contact].face)) return state;
+  if (body_.leaves_out(face)) return state;
   // the law, taken to the same jump once more, gives the same tractions
   std::array<double, Dim> jump{state.opening};
   for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];

@@ -62,7 +62,8 @@ class Reader {
   /// Returns an internal variable of a contact; 0 where its law has none of this meaning.
   double remembered(int contact, Remembers what) const;
   double crack_step(int contact) const;  ///< Returns the step noted by note_cracks, else kNotCracked.
-  double opening(int contact) const;     ///< Returns u_n at the displacements of the last forces, m.
+  /// Returns u_n at the displacements of the last forces, m; of a torn face the distance of its sides there.
+  double opening(int contact) const;
   /// Returns the directions of a contact at the displacements of the last forces.
   ContactFrame<Dim> frame_of_forces(int contact) const;
 

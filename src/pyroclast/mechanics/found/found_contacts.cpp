@@ -26,6 +26,9 @@ namespace {
 constexpr double kMostDepth = 0.25;
 /// Depth over the length of an edge that counts as touching where blocks are placed.
 constexpr double kTouching = 1e-6;
+/// Cosine between the facets of a torn face below which its pairs begin anew: it leans, and does not spin on
+/// its other side.
+constexpr double kLeans = 0.5;
 /// Bound of a change of gaps, overlaps and cosines over the reach, while gridpoints go that far.
 constexpr double kMargin = 5.0;
 /// Distance from the origin, over the mean edge, beyond which nothing meets any more.
@@ -976,7 +979,10 @@ std::vector<int> FoundContacts<Dim>::broken_faces() const {
           (broken >> static_cast<unsigned>(lane) & 1U) != 0 && face >= 0)
         faces.push_back(face);
   }
+  for (int face = 0; face < std::ssize(body_.torn); ++face)
+    if (body_.torn[face] && !found_.is_handed_over[face]) faces.push_back(face);
   std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
 }
 
@@ -1000,6 +1006,9 @@ std::vector<FoundPair<Dim>> FoundContacts<Dim>::pairs_of_face(int face) const {
   std::vector<Pair> pairs;
   std::vector<PairShape<Dim>> shapes;
   double face_area = 0.0, stored = 0.0, overlap = 0.0;
+  const auto goes_on = [&](const PairShape<Dim>& shape) {
+    return shape.overlaps() && !(body_.is_torn(face) && shape.cosine() < kLeans);
+  };
   for (int c = first; c < last; ++c) {
     face_area += body_.model.contacts[c].area;
     stored += read.contact(c).stored * body_.model.contacts[c].area;
@@ -1009,10 +1018,10 @@ std::vector<FoundPair<Dim>> FoundContacts<Dim>::pairs_of_face(int face) const {
       pairs.push_back(new_pair({a, b}));
       shapes.push_back(shape_of(found_, pairs.back(), places(pairs.back().facets, at)));
       const auto& shape = shapes.back();
-      if (shape.overlaps()) overlap += shape.cosine() * shape.cosine() * shape.overlap();
+      if (goes_on(shape)) overlap += shape.cosine() * shape.cosine() * shape.overlap();
     }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!shapes[i].overlaps()) continue;  // they have left each other already, or never met
+    if (!goes_on(shapes[i])) continue;  // they have left each other already, or never met
     Pair& pair = pairs[i];
     pair.is_handed_over = true;
     if constexpr (Dim == 2) {
@@ -1035,11 +1044,12 @@ std::vector<FoundPair<Dim>> FoundContacts<Dim>::pairs_of_face(int face) const {
       pair.ratio = face_area / overlap;
       pair.pressed_at = places(pair.facets, at);
       take_history(shapes[i].p, shapes[i].points(), first, last, pair);
-      // its points are others than those of the face, and so is their energy, a little
-      stored -= pair.stored;
     }
+    stored -= pair.stored;
   }
-  if (Dim == 3 && overlap > 0.0) pairs.front().lost_area = stored;
+  // in space points of pairs are others than those of the face, and so is their energy, a little; and what
+  // sides held that have left each other is lost
+  pairs.front().lost_area = stored;
   return pairs;
 }
 
