@@ -168,12 +168,7 @@ TEST(SolidDeck, WhatItCannotHaveIsRefusedWithItsPlace) {
       {with_body(corners("000 100 010 110")), {"bodies[0].corners", "must not all lie in one plane"}},
       {with_body(corners("000 900 090 221 009")),
        {"bodies[0].corners", "number 4 (from 1), (2, 2, 1) m, lies in the hull of the others"}},
-      {with_body("centre = [\"0 m\", \"0 m\"]\ndiameter = \"1 m\""),
-       {"bodies[0].centre", "\"0.075 m\"]"}},
-      {with_more(solid(),
-                 "[[inclusions]]\nshape = \"fibre\"\nphase = \"mortar\"\ncount = 3\n"
-                 "length = \"30 mm\"\nminimum_gap = \"1 mm\"\n"),
-       {"inclusions[0].shape", "fibres cannot be placed in a solid yet"}},
+      {with_body("centre = [\"0 m\", \"0 m\"]\ndiameter = \"1 m\""), {"bodies[0].centre", "\"0.075 m\"]"}},
       {with_more(solid(),
                  "[[bearings]]\nname = \"strip\"\nat = [\"0 mm\", \"150 mm\"]\nwidth = \"20 mm\"\n"
                  "thickness = \"10 mm\"\nmaterial = \"platen\"\ncontact = \"glued\"\n"),

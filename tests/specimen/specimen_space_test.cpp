@@ -92,10 +92,41 @@ TEST(SpecimenInSpace, EachStoneHasABlockAndCoarseBlocksAreTold) {
   expect_in("have no block of their own", warnings(by_area).back());
 }
 
-TEST(SpecimenInSpace, WhatASolidCannotHaveIsRefused) {
-  auto p = concrete(100);
-  p.inclusions = {FibreParameters{.phase = "steel", .count = 1, .length = 0.03}};
-  expect_in("fibres", message([&] { made_in(p, cuboid(0.1, 0.1, 0.1)); }));
+// Promise: fibres of a solid keep off stones and the surface, look all ways, and are the blocks that they
+// cross.
+TEST(SpecimenInSpace, FibresTakeTheBlocksThatTheyCross) {
+  auto p = concrete(2000);
+  constexpr double kLength = 0.03, kGap = 1e-3;
+  p.inclusions = {FibreParameters{
+      .phase = "steel", .count = 60, .length = kLength, .minimum_gap = kGap, .attempts = 100'000}};
+  const Prism body = cuboid(0.1, 0.1, 0.1);
+  const Specimen<3> s = made_in(p, body);
+  ASSERT_EQ(s.fibres.size(), 60U);
+  const int steel = s.fibres.front().phase;
+  EXPECT_EQ(s.phases[steel], "steel");
+  std::array<double, 3> squares{};
+  for (const Fibre<3>& fibre : s.fibres) {
+    const Vec<3> along = fibre.to - fibre.from;
+    EXPECT_NEAR(norm(along), kLength, 1e-12);
+    for (int d = 0; d < 3; ++d) squares[d] += along[d] * along[d] / (kLength * kLength * 60.0);
+    for (const Vec<3>& end : {fibre.from, fibre.to}) EXPECT_LE(body.distance(end), -kGap);
+    for (const Stone<3>& stone : s.stones)
+      EXPECT_GT(distance_from_segment(stone.centre, fibre.from, fibre.to),
+                0.5 * stone.diameter + kGap - 1e-3 * stone.diameter);
+  }
+  for (const double square : squares) EXPECT_NEAR(square, 1.0 / 3.0, 0.12);
+  // a block that holds a place of a fibre is steel, and a block far from all fibres is not
+  const double size = s.metrics.mean_size;
+  for (std::size_t cell = 0; cell < s.cells.cells.size(); ++cell) {
+    double nearest = 1.0;
+    for (const Fibre<3>& fibre : s.fibres)
+      nearest = std::min(nearest, distance_from_segment(centroid(s.cells, cell), fibre.from, fibre.to));
+    if (nearest < 0.15 * size) {
+      EXPECT_EQ(s.phase[cell], steel) << cell;
+    } else if (nearest > 1.5 * size) {
+      EXPECT_NE(s.phase[cell], steel) << cell;
+    }
+  }
 }
 
 std::vector<Bearing> two_platens() {

@@ -407,7 +407,7 @@ TEST(Stone, FibresRunThroughNoHoleAndNoStone) {
   const FibreParameters p{
       .phase = "steel", .count = 100, .length = 0.05, .minimum_gap = 1e-3, .attempts = 100'000};
   Random random(5);
-  for (const Fibre& fibre : place_fibres(p, region, stones, random)) {
+  for (const Fibre<2>& fibre : place_fibres<2>(p, region, stones, random)) {
     for (const Piece& piece : region.pieces())
       EXPECT_GE(distance_of_segments(fibre.from, fibre.to, piece.from, piece.to), p.minimum_gap);
     for (std::size_t i = 0; i < 4; ++i) {

@@ -99,14 +99,14 @@ TEST(Superposition, ACellIsOfThePhaseThatCoversMostOfIt) {
 
 TEST(Superposition, AFibreTakesTheCellsThatItRunsThrough) {
   std::vector<int> phase(4, kMatrix), stone(4, 7);
-  const std::vector<Fibre> fibre{{{{0.1, 0.1}}, {{0.9, 0.2}}, 0}};
-  superpose(quarters, fibre, phase, stone);
+  const std::vector<Fibre<2>> fibre{{{{0.1, 0.1}}, {{0.9, 0.2}}, 0}};
+  superpose<2>(quarters, fibre, phase, stone);
   EXPECT_EQ(std::ranges::count(phase, 0), 2);
   EXPECT_EQ(phase[0], 0);
   EXPECT_EQ(phase[3], kMatrix);
   EXPECT_EQ(stone, (std::vector<int>{-1, -1, 7, 7})) << "a fibre is no stone";
-  const std::vector<Fibre> along_an_edge{{{{0.1, 0.5}}, {{0.4, 0.5}}, 1}};  // runs through none
-  superpose(quarters, along_an_edge, phase, stone);
+  const std::vector<Fibre<2>> along_an_edge{{{{0.1, 0.5}}, {{0.4, 0.5}}, 1}};  // runs through none
+  superpose<2>(quarters, along_an_edge, phase, stone);
   EXPECT_EQ(std::ranges::count(phase, 1), 0);
 }
 

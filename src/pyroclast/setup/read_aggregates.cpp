@@ -444,8 +444,6 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std
           "circles, in a solid balls, with a gradation of their own: another aggregate, or pores"},
          {"fibre", Kind::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
         "shape of the inclusions");
-    if (kind == Kind::fibre && space.is_solid())
-      s.error("shape", "fibres cannot be placed in a solid yet; \"circle\" makes balls");
     if (kind == Kind::circle)
       list.emplace_back(read_aggregates(s, folder, space));
     else

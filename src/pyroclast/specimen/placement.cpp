@@ -158,29 +158,57 @@ void require_placed(double placed, double asked, const AggregateParameters& para
         parameters.place, placed, asked, parameters.d_min));
 }
 
-std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
-                                std::span<const Stone<2>> standing, Random& random) {
-  const auto fits = [&](const Fibre& fibre) {
-    for (const Vec<2>& end : {fibre.from, fibre.to})
-      if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
+namespace {
+
+const Region& section_of(const Region& region) {
+  return region;
+}
+const Region& section_of(const Prism& body) {
+  return body.section();
+}
+Vec<2> in_section_of(const Region& /*region*/, const Vec<2>& place) {
+  return place;
+}
+Vec<2> in_section_of(const Prism& body, const Vec<3>& place) {
+  return body.in_section(place);
+}
+
+Vec<2> direction_in(std::integral_constant<int, 2> /*dimension*/, Random& random) {
+  const double angle = random.uniform(0.0, std::numbers::pi);
+  return {{std::cos(angle), std::sin(angle)}};
+}
+Vec<3> direction_in(std::integral_constant<int, 3> /*dimension*/, Random& random) {
+  const double z = random.uniform(-1.0, 1.0), angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const double across = std::sqrt(1.0 - z * z);
+  return {{across * std::cos(angle), across * std::sin(angle), z}};
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<Fibre<Dim>> place_fibres(const FibreParameters& p, const OutlineOf<Dim>& outline,
+                                     std::span<const Stone<Dim>> standing, Random& random) {
+  const auto fits = [&](const Fibre<Dim>& fibre) {
+    for (const Vec<Dim>& end : {fibre.from, fibre.to})
+      if (outline.distance_before_cuts(end) > -p.minimum_gap) return false;
+    const Vec<2> from = in_section_of(outline, fibre.from), to = in_section_of(outline, fibre.to);
     const auto meets = [&](const Piece& piece) {
-      return distance_of_segments(fibre.from, fibre.to, piece.from, piece.to) < p.minimum_gap ||
-             cross_each_other(fibre.from, fibre.to, piece.from, piece.to);
+      return distance_of_segments(from, to, piece.from, piece.to) < p.minimum_gap ||
+             cross_each_other(from, to, piece.from, piece.to);
     };
-    return std::ranges::none_of(region.pieces_before_cuts(), meets) &&
-           std::ranges::none_of(standing, [&](const Stone<2>& a) {
+    return std::ranges::none_of(section_of(outline).pieces_before_cuts(), meets) &&
+           std::ranges::none_of(standing, [&](const Stone<Dim>& a) {
              return are_closer(a, fibre.from, fibre.to, p.minimum_gap);
            });
   };
-  std::vector<Fibre> fibres;
+  std::vector<Fibre<Dim>> fibres;
   for (int i = 0; i < p.count; ++i) {
     int attempt = 0;
     for (; attempt < p.attempts; ++attempt) {
-      const Box& box = region.box();
-      const Vec<2> centre{{random.uniform(box.low[0], box.high[0]), random.uniform(box.low[1], box.high[1])}};
-      const double angle = random.uniform(0.0, std::numbers::pi);
-      const Vec<2> half = Vec<2>{{std::cos(angle), std::sin(angle)}} * (0.5 * p.length);
-      const Fibre fibre{centre - half, centre + half};
+      Vec<Dim> centre;
+      for (int d = 0; d < Dim; ++d) centre[d] = random.uniform(outline.low()[d], outline.high()[d]);
+      const Vec<Dim> half = direction_in(std::integral_constant<int, Dim>{}, random) * (0.5 * p.length);
+      const Fibre<Dim> fibre{centre - half, centre + half};
       if (!fits(fibre)) continue;
       fibres.push_back(fibre);
       break;
@@ -194,5 +222,10 @@ std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
   }
   return fibres;
 }
+
+template std::vector<Fibre<2>> place_fibres<2>(const FibreParameters&, const Region&,
+                                               std::span<const Stone<2>>, Random&);
+template std::vector<Fibre<3>> place_fibres<3>(const FibreParameters&, const Prism&,
+                                               std::span<const Stone<3>>, Random&);
 
 }  // namespace pyroclast::specimen

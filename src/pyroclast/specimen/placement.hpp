@@ -33,7 +33,8 @@ void require_placed(double placed, double asked, const AggregateParameters& para
 
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.
-std::vector<Fibre> place_fibres(const FibreParameters& parameters, const Region& region,
-                                std::span<const Stone<2>> standing, Random& random);
+template <int Dim>
+std::vector<Fibre<Dim>> place_fibres(const FibreParameters& parameters, const OutlineOf<Dim>& outline,
+                                     std::span<const Stone<Dim>> standing, Random& random);
 
 }  // namespace pyroclast::specimen

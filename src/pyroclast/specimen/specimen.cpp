@@ -161,14 +161,15 @@ void add_stones(const AggregateParameters& asked, int kind, Random& random, Spec
       asked, place_in(specimen.phases, asked.phase), kind, random, specimen.stones);
 }
 
-void add_fibres(const FibreParameters& kind, Random& random, Specimen<2>& specimen) {
-  for (Fibre& fibre : place_fibres(kind, specimen.outline, specimen.stones, random)) {
+template <int Dim>
+void add_fibres(const FibreParameters& kind, Random& random, Specimen<Dim>& specimen) {
+  for (Fibre<Dim>& fibre : place_fibres<Dim>(kind, specimen.outline, specimen.stones, random)) {
     fibre.phase = place_in(specimen.phases, kind.phase);
     specimen.fibres.push_back(fibre);
   }
 }
 
-/// Adds all stones, and in the plane fibres, kind by kind in the order of the parameters.
+/// Adds all stones and fibres, kind by kind in the order of the parameters.
 template <int Dim>
 void add_inclusions(const SpecimenParameters& p, Random& random, Specimen<Dim>& specimen) {
   int kind = 0;
@@ -176,7 +177,7 @@ void add_inclusions(const SpecimenParameters& p, Random& random, Specimen<Dim>& 
   for (const Inclusions& inclusions : p.inclusions)
     if (const auto* stones = std::get_if<AggregateParameters>(&inclusions))
       add_stones(*stones, ++kind, random, specimen);
-    else if constexpr (Dim == 2)
+    else
       add_fibres(std::get<FibreParameters>(inclusions), random, specimen);
   specimen.fraction_placed =
       extent_of(std::span<const Stone<Dim>>(specimen.stones)) / specimen.outline.extent();
@@ -199,7 +200,6 @@ double share_beside_matrix(const Specimen<Dim>& specimen) {
 void require_of_space(const SpecimenParameters& p) {
   if (p.blocks.cells) throw Error("a solid cannot be made of cells of a plane");
   if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
-  if (stone_kinds(p).size() <= p.inclusions.size()) throw Error("a solid cannot have fibres yet");
   for (const auto* const kind : stone_kinds(p)) {
     if (has_shapes(*kind) && p.superposition != Superposition::follow &&
         p.superposition != Superposition::centroid)
@@ -425,7 +425,7 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, Team* team) {
       specimen.stone = std::move(superposed.stone);
     }
     specimen.fraction_of_stones = share_beside_matrix(specimen);
-    if constexpr (Dim == 2) superpose(specimen.cells, specimen.fibres, specimen.phase, specimen.stone);
+    superpose<Dim>(specimen.cells, specimen.fibres, specimen.phase, specimen.stone);
     specimen.fraction_superposed = share_beside_matrix(specimen);
   } else {
     specimen.phase = std::move(blocks.phase);

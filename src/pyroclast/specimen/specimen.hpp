@@ -33,9 +33,10 @@ struct Stone {
 };
 
 /// Straight fibre as placed: the blocks that it crosses become its phase.
+template <int Dim>
 struct Fibre {
-  Vec<2> from, to;  ///< m
-  int phase = 0;    ///< index into Specimen::phases
+  Vec<Dim> from, to;  ///< m
+  int phase = 0;      ///< index into Specimen::phases
 };
 
 /// Stone that is known, read from a list.
@@ -273,7 +274,7 @@ struct Specimen {
   /// Size that each block was to have, m, which contact stiffnesses follow; empty where blocks are alike.
   std::vector<double> size = {};
   std::vector<Stone<Dim>> stones = {};  ///< stones as placed, those of each kind largest first
-  std::vector<Fibre> fibres = {};       ///< fibres as placed
+  std::vector<Fibre<Dim>> fibres = {};  ///< fibres as placed
   /// Share of stones asked for and placed, and of blocks that are not matrix.
   double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
   double fraction_of_stones = 0.0;      ///< superposed share before fibres were superposed

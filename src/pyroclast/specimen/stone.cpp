@@ -269,4 +269,14 @@ bool are_closer(const Stone<2>& stone, const Vec<2>& from, const Vec<2>& to, dou
          });
 }
 
+bool are_closer(const Stone<3>& stone, const Vec<3>& from, const Vec<3>& to, double gap) {
+  const double length = norm(to - from);
+  for (double along = 0.0;;) {  // nothing of the stone is nearer than its distance: so far the way is free
+    const double free = distance(stone, from + (to - from) * (along / length)) - gap;
+    if (free < 0.0) return true;
+    if (along >= length) return false;
+    along = std::min(along + std::max(free, 1e-3 * stone.diameter), length);
+  }
+}
+
 }  // namespace pyroclast::specimen

@@ -104,7 +104,9 @@ std::vector<Vec<2>> corners_of(const Stone<2>& stone);
 std::vector<Vec<3>> corners_of(const Stone<3>& stone);
 
 /// Tells whether a segment comes closer to a stone than `gap` (m), or runs through the stone; with a gap of 0
-/// or less whether the segment lies deeper in the stone than its length.
+/// or less whether the segment lies deeper in the stone than its length. In space to a thousandth of the
+/// stone's diameter.
 bool are_closer(const Stone<2>& stone, const Vec<2>& from, const Vec<2>& to, double gap);
+bool are_closer(const Stone<3>& stone, const Vec<3>& from, const Vec<3>& to, double gap);
 
 }  // namespace pyroclast::specimen

@@ -104,14 +104,42 @@ void fit(const Cells<Dim>& cells, std::span<const Stone<Dim>> stones, std::span<
     result.covered_fraction = 0.5 * (candidates[taken - 1].share + candidates[taken].share);
 }
 
-/// Tells whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
-bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
-  const Vec<2> along = fibre.to - fibre.from;
-  double enters = 0.0, leaves = 1.0;
+/// Half of the plane, or of space, beside a facet of a cell.
+template <int Dim>
+struct Half {
+  Vec<Dim> at;      ///< a place on the facet, m
+  Vec<Dim> inward;  ///< way into the cell, of any length
+};
+
+/// Lists the halves beside the facets of a cell: their common part is the cell.
+void halves_of(const Cells<2>& cells, std::size_t cell, std::vector<Half<2>>& halves) {
+  std::vector<Vec<2>> polygon;
+  corners(cells, cell, polygon);
+  halves.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec<2> edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-    const Vec<2> inward{{-edge[1], edge[0]}};
-    const double start = dot(fibre.from - polygon[i], inward), rate = dot(along, inward);
+    halves.push_back({polygon[i], {{-edge[1], edge[0]}}});
+  }
+}
+void halves_of(const Cells<3>& cells, std::size_t cell, std::vector<Half<3>>& halves) {
+  halves.clear();
+  for (const int f : cells.cells[cell]) {
+    const Facet<3>& face = cells.faces[f];
+    Vec<3> middle{};
+    for (const int v : face.corners)
+      middle += cells.vertices[v] * (1.0 / static_cast<double>(face.corners.size()));
+    const double sense = face.inner == static_cast<int>(cell) ? -1.0 : 1.0;
+    halves.push_back({middle, area_vector(cells, face) * sense});
+  }
+}
+
+/// Tells whether a fibre runs through the inside of a convex cell: clips it by the halves beside the facets.
+template <int Dim>
+bool crosses(const std::vector<Half<Dim>>& halves, const Fibre<Dim>& fibre) {
+  const Vec<Dim> along = fibre.to - fibre.from;
+  double enters = 0.0, leaves = 1.0;
+  for (const auto& [at, inward] : halves) {
+    const double start = dot(fibre.from - at, inward), rate = dot(along, inward);
     if (rate > 0.0)
       enters = std::max(enters, -start / rate);
     else if (rate < 0.0)
@@ -209,17 +237,22 @@ template Superposed superpose<2>(const Cells<2>&, const Region&, std::span<const
 template Superposed superpose<3>(const Cells<3>&, const Prism&, std::span<const Stone<3>>,
                                  const SpecimenParameters&, int);
 
-void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
+template <int Dim>
+void superpose(const Cells<Dim>& cells, std::span<const Fibre<Dim>> fibres, std::vector<int>& phase,
                std::vector<int>& stone) {
-  std::vector<Vec<2>> polygon;
+  if (fibres.empty()) return;
+  std::vector<Half<Dim>> halves;
   for (std::size_t c = 0; c < cells.cells.size(); ++c) {
-    corners(cells, c, polygon);
-    for (const Fibre& fibre : fibres)
-      if (crosses(polygon, fibre)) {
+    halves_of(cells, c, halves);
+    for (const Fibre<Dim>& fibre : fibres)
+      if (crosses(halves, fibre)) {
         phase[c] = fibre.phase;
         stone[c] = -1;
       }
   }
 }
+
+template void superpose<2>(const Cells<2>&, std::span<const Fibre<2>>, std::vector<int>&, std::vector<int>&);
+template void superpose<3>(const Cells<3>&, std::span<const Fibre<3>>, std::vector<int>&, std::vector<int>&);
 
 }  // namespace pyroclast::specimen

@@ -50,7 +50,8 @@ Superposed superpose(const Cells<Dim>& cells, const OutlineOf<Dim>& outline,
                      std::span<const Stone<Dim>> stones, const SpecimenParameters& parameters, int matrix);
 
 /// Gives the cells that a fibre crosses its phase; they are of no stone then.
-void superpose(const Cells<2>& cells, std::span<const Fibre> fibres, std::vector<int>& phase,
+template <int Dim>
+void superpose(const Cells<Dim>& cells, std::span<const Fibre<Dim>> fibres, std::vector<int>& phase,
                std::vector<int>& stone);
 
 }  // namespace pyroclast::specimen
