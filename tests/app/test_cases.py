@@ -68,8 +68,8 @@ class Cases(unittest.TestCase):
 
     def test_each_completes_and_its_ledger_closes(self):
         for case in ("biaxial", "biaxial_3d", "brazilian", "column_fire_3d", "compression_3d", "cube_3d", "direct_tension",
-                     "disc_3d", "drop", "fire_long", "fire_one_side_3d", "hot_strength_3d", "loose_splitting",
-                     "notched_beam", "ring_cooling", "spalling_slab_3d", "transient_heating_3d", "wall_bent"):
+                     "disc_3d", "drop", "drop_3d", "fire_long", "fire_one_side_3d", "hot_strength_3d",
+                     "loose_splitting", "notched_beam", "ring_cooling", "spalling_slab_3d", "transient_heating_3d", "wall_bent"):
             with self.subTest(case):
                 summary = finished(case).summary
                 *before, last = [stage["outcome"] for stage in summary["stages"]]
