@@ -671,11 +671,17 @@ double FoundContacts<Dim>::way_to_press(const Key& key, const Corners& at, doubl
 }
 
 /// Returns the same of a pair that is handed over and rests: until a point goes through the law, or until its
-/// facets may leave each other. In space such pairs are always near.
+/// facets may leave each other.
 template <int Dim>
-double FoundContacts<Dim>::way_to_change(const Pair& pair, const Corners& at) const {
+double FoundContacts<Dim>::way_to_change(const Pair& pair, const Corners& at, double within) const {
   if constexpr (Dim == 3) {
-    return 0.0;
+    // points of another overlap may take their rest from one and their offset from another
+    double rest = 0.0, offset = 0.0;
+    for (const PairPoint<Dim>& point : pair.points) {
+      rest = std::max(rest, point.rest);
+      offset = std::min(offset, point.offset);
+    }
+    return pyroclast::way_to_change(triangle_of(at, 0), triangle_of(at, 3), rest - offset, within);
   } else {
     const EdgePair<double> p = shape_of(found_, pair, at).p;
     double way = std::min(p.overlap, p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
@@ -691,8 +697,9 @@ double FoundContacts<Dim>::wakes(const Key& key, const Pair* handed_over) const 
   const Corners at = places(key, [&](int g) { return place(g, body_.arrays.displacement); });
   const double reach =
       std::max(found_.reach[found_.facets[key[0]].block], found_.reach[found_.facets[key[1]].block]);
-  const double way = handed_over ? way_to_change(*handed_over, at) : way_to_press(key, at, kMargin * reach);
-  const double share = way / (kMargin * reach);
+  const double within = kMargin * reach;
+  const double way = handed_over ? way_to_change(*handed_over, at, within) : way_to_press(key, at, within);
+  const double share = way / within;
   return share > 0.0 ? share * share : 0.0;
 }
 
@@ -764,6 +771,7 @@ void FoundContacts<Dim>::make_rows() {
   struct Group {
     int law;
     std::vector<int> choices;
+    bool rests;
     double wakes;  // those that sleep long stand together
     auto operator<=>(const Group&) const = default;
     bool goes_with(const Group& o) const { return law == o.law && choices == o.choices; }
@@ -774,7 +782,8 @@ void FoundContacts<Dim>::make_rows() {
     pair.slot = -1;
     if (!pair.is_near) continue;
     if (pair.sets[0] < 0) pair.sets = sets_of(pair);
-    order.push_back({{pair.law, body_.properties.contacts.choices(pair.sets[0]), pair.wakes}, i});
+    order.push_back(
+        {{pair.law, body_.properties.contacts.choices(pair.sets[0]), !pair.presses(), pair.wakes}, i});
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;

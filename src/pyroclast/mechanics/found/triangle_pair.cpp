@@ -15,6 +15,8 @@ constexpr double kParallel = 1e-3;
 constexpr double kSteepest = 0.1;
 /// Overlap over the areas of both triangles below which there is none.
 constexpr double kLeastOverlap = 1e-12;
+/// Radius of a disc over the root of twice both areas that surely makes such an overlap.
+constexpr double kLeastDisc = 1e-5;
 /// Corners of a triangle that is cut by three lines, with three more that rounding may make.
 constexpr int kMostCut = Overlap::kMost + 3;
 
@@ -126,6 +128,35 @@ double distance_beside(const FlatTriangle& t, const FlatTriangle& other) {
   return most;
 }
 
+/// Returns the lesser distance of a place from the edges of a triangle; negative outside.
+double distance_within(const FlatTriangle& t, const Vec<2>& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const Vec<2>&from = t[i].at, &to = t[(i + 1) % 3].at;
+    least = std::min(least, left_of(place, from, to) / norm(to - from));
+  }
+  return least;
+}
+
+/// Returns the least and the largest gap where both triangles, grown by a distance, lie over each other:
+/// while corners go no further, all gaps of the overlap are gaps of this region.
+std::array<double, 2> gaps_within(const MeanPlane& plane, const Vec<3>& from_a_to_b, double within) {
+  // the gap is linear
+  const double over_a = 1.0 / dot(plane.normal, plane.area_a), over_b = 1.0 / dot(plane.normal, plane.area_b);
+  const auto gap = [&](const Vec<2>& at) {
+    const Vec<3> place = plane.axes[0] * at[0] + plane.axes[1] * at[1];
+    return dot(plane.area_b, from_a_to_b - place) * over_b + dot(plane.area_a, place) * over_a;
+  };
+  const Polygon region = cut_to(grown(plane.flat_a, within), grown(plane.flat_b, within));
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (int k = 0; k < region.count; ++k) {
+    const double here = gap(region.corners[k].at);
+    least = std::min(least, here);
+    most = std::max(most, here);
+  }
+  return {least, most};
+}
+
 /// Returns the least height of a triangle.
 double height(const Triangle& t) {
   double longest = 0.0;
@@ -190,23 +221,26 @@ double way_to_press(const Triangle& a, const Triangle& b, double most_depth, dou
   const MeanPlane plane(a, b);
   const double cosine = dot(plane.area_a, plane.area_b) / (norm(plane.area_a) * norm(plane.area_b));
   if (!(cosine > 0.0)) return -cosine / (1.0 / height(a) + 1.0 / height(b));
-  double way =
+  const double way =
       std::max(distance_beside(plane.flat_a, plane.flat_b), distance_beside(plane.flat_b, plane.flat_a));
-  // the gap is linear; while the corners go, the overlap stays where both triangles, grown, lie over each
-  // other
-  const double over_a = 1.0 / dot(plane.normal, plane.area_a), over_b = 1.0 / dot(plane.normal, plane.area_b);
-  const auto gap = [&](const Vec<2>& at) {
-    const Vec<3> place = plane.axes[0] * at[0] + plane.axes[1] * at[1];
-    return dot(plane.area_b, b[0] - a[0] - place) * over_b + dot(plane.area_a, place) * over_a;
-  };
-  const Polygon region = cut_to(grown(plane.flat_a, within), grown(plane.flat_b, within));
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (int k = 0; k < region.count; ++k) {
-    const double here = gap(region.corners[k].at);
-    least = std::min(least, here);
-    most = std::max(most, here);
-  }
+  if (way >= within) return way;
+  const auto [least, most] = gaps_within(plane, b[0] - a[0], within);
   return std::max({way, least, -most_depth - most});
+}
+
+double way_to_change(const Triangle& a, const Triangle& b, double bound, double within) {
+  const MeanPlane plane(a, b);
+  const double cosine = dot(plane.area_a, plane.area_b) / (norm(plane.area_a) * norm(plane.area_b));
+  const Polygon overlap = cut_to(plane.flat_a, plane.flat_b);
+  if (!(cosine > 0.0) || overlap.count == 0) return 0.0;
+  // as long as both hold a disc they overlap
+  Vec<2> middle{};
+  for (int k = 0; k < overlap.count; ++k) middle += overlap.corners[k].at * (1.0 / overlap.count);
+  const double radius =
+      std::min(distance_within(plane.flat_a, middle), distance_within(plane.flat_b, middle));
+  const double spare = radius - kLeastDisc * std::sqrt(norm(plane.area_a + plane.area_b));
+  const double least = gaps_within(plane, b[0] - a[0], within)[0];
+  return std::min({cosine / (1.0 / height(a) + 1.0 / height(b)), spare, least - bound});
 }
 
 template struct TrianglePair<double>;

@@ -332,6 +332,12 @@ std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<
 /// \param most_depth  depth from which on nothing presses, m
 /// \param within  largest way that is asked for, times that factor, m
 double way_to_press(const Triangle& a, const Triangle& b, double most_depth, double within);
+/// Returns the same of two triangles that overlap: until a gap may fall below a bound, or until they may
+/// leave each other.
+///
+/// \param bound   gap, m
+/// \param within  as above, m
+double way_to_change(const Triangle& a, const Triangle& b, double bound, double within);
 
 // Steps are compiled for several instruction sets, and these once: no set's code gets into another's.
 extern template struct TrianglePair<double>;
