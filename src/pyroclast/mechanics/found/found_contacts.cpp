@@ -97,7 +97,7 @@ struct PairShape<3> {
 
   PairShape(const TriangleCorners& at, const BlockFacet<3>& a, const BlockFacet<3>& b)
       : names(overlap_at(at)), least(std::min(a.length, b.length)) {
-    if (names.count > 0) p = triangle_pair<double>(names, triangle_of(at, 0), triangle_of(at, 3));
+    if (names.count > 0) p = triangle_pair(names, triangle_of(at, 0), triangle_of(at, 3));
   }
   bool overlaps() const { return names.count > 0; }
   double overlap() const { return p.overlap; }
@@ -888,9 +888,11 @@ void FoundContacts<Dim>::put_into_row(const Pair& pair, int index, int lane) {
     for (int k = 0; k < 2; ++k)
       if ((joined >> static_cast<unsigned>(k) & 1U) == 0) row.counts[k] |= bit;
   } else {
-    row.pressed_at[lane] = pair.pressed_at;
+    for (int i = 0; i < 2 * Dim; ++i) row.pressed_at[i][lane] = pair.pressed_at[i];
     row.overlap[lane] = pair.bears() || pair.is_handed_over ? overlap_at(pair.pressed_at) : Overlap{};
+    if (row.overlap[lane].count > 0) row.had |= bit;
     row.joined[lane] = joined;
+    row.sides.number[lane] = -1.0;
   }
   for (int i = 0; i < law.losses; ++i) put(arrays.lost[row.first_loss + i], pair.lost[i]);
 }
@@ -1065,7 +1067,7 @@ void FoundContacts<Dim>::take_history(const TrianglePair<double>& p, int points,
   if constexpr (Dim == 3) {
     const Reader<Dim> read(body_);
     const LawOfRows& law = found_.arrays.laws[pair.law];
-    const auto tangents = tangents_of(p);
+    const auto tangents = tangents_of(p.a, p.normal);
     for (int k = 0; k < points; ++k) {
       const Vec<3> place = p.on_a(k);
       int nearest = first;
@@ -1202,7 +1204,7 @@ void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair) {
   pair.applied = row.applied.number[lane];
   pair.lost_area = row.lost_area.number[lane];
   pair.lost_damping = row.lost_damping.number[lane];
-  if constexpr (Dim == 3) pair.pressed_at = row.pressed_at[lane];
+  if constexpr (Dim == 3) pair.pressed_at = corners_in(row.pressed_at, lane);
   for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
     PairPoint<Dim>& point = pair.points[k];
     point.area = row.area[k].number[lane];
