@@ -550,7 +550,8 @@ void FoundContacts<Dim>::list_if_far(int a, const Box& box_a, int b, const Box& 
   const Corners at = places(key, [&](int g) { return place(g, found_.searched_far); });
   const double skin = std::max(found_.skin[found_.facets[a].block], found_.skin[found_.facets[b].block]);
   const double within = kMargin * (1.0 + kLongestNear) * skin;
-  if (way_to_press(key, at, within) < within) found_.far.push_back(key);
+  const double way = way_to_press(key, at, within);
+  if (way < within) found_.far.push_back({key, way / kMargin});
 }
 
 template <int Dim>
@@ -720,8 +721,8 @@ void FoundContacts<Dim>::let_sleep() {
   }
 }
 
-/// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether the near
-/// ones are others than before.
+/// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether there
+/// are near ones that stand in no row.
 template <int Dim>
 bool FoundContacts<Dim>::find_near() {
   std::vector<double> reach =
@@ -732,6 +733,21 @@ bool FoundContacts<Dim>::find_near() {
   next.reserve(found_.pairs.size());
   bool others = false;
   auto old = found_.pairs.begin();
+  std::vector<double> gone(found_.broadest.size());  // way of each block since the search for far pairs, m
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
+    const int slot = body_.layout.gridpoint_slot[g];
+    double& of_block = gone[found_.block_of_slot[slot]];
+    of_block = larger(of_block, norm(body_.arrays.displacement[slot] - found_.searched_far[slot]));
+  }
+  // Tells whether a pair that was far may be near.
+  const auto may_be_near = [&](const FarPair& far) {
+    double way = 0.0, reach_of_pair = 0.0;
+    for (const int facet : far.facets) {
+      way = larger(way, 2.0 * gone[found_.facets[facet].block]);
+      reach_of_pair = larger(reach_of_pair, found_.reach[found_.facets[facet].block]);
+    }
+    return !(far.way >= way + reach_of_pair);
+  };
   const auto keep_old = [&](bool is_far) {
     if (old->presses())
       old->wakes = 0.0;
@@ -740,21 +756,28 @@ bool FoundContacts<Dim>::find_near() {
     else
       old->wakes = 1.0;
     old->is_near = old->wakes < 1.0;
-    others = others || old->is_near != (old->slot >= 0);
-    if (old->is_near || old->remembers() || old->has_lost()) next.push_back(std::move(*old));
+    others = others || (old->is_near && old->slot < 0);
+    if (old->is_near || old->slot >= 0 || old->remembers() || old->has_lost())
+      next.push_back(std::move(*old));
     ++old;
   };
-  for (const Key& key : found_.far) {
-    while (old != found_.pairs.end() && old->facets < key) keep_old(false);
-    if (old != found_.pairs.end() && old->facets == key) {
-      keep_old(true);
-    } else if (const double share = wakes(key, nullptr); share < 1.0) {
-      next.push_back(new_pair(key));
+  for (const FarPair& far : found_.far) {
+    while (old != found_.pairs.end() && old->facets < far.facets) keep_old(false);
+    if (old != found_.pairs.end() && old->facets == far.facets) {
+      keep_old(may_be_near(far));
+    } else if (!may_be_near(far)) {
+      continue;
+    } else if (const double share = wakes(far.facets, nullptr); share < 1.0) {
+      next.push_back(new_pair(far.facets));
       next.back().wakes = share;
       others = true;
     }
   }
   while (old != found_.pairs.end()) keep_old(false);
+  // while no pair is to come into a row, those that are near no more sleep in theirs
+  if (others)
+    std::erase_if(next,
+                  [](const Pair& pair) { return !pair.is_near && !pair.remembers() && !pair.has_lost(); });
   found_.pairs = std::move(next);
   found_.arrays.searched = body_.arrays.displacement;
   found_.has_near = true;
@@ -787,31 +810,40 @@ void FoundContacts<Dim>::make_rows() {
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;
-  std::vector<FoundRow<Dim>> rows;
+  struct Begin {
+    int law, internal, loss, constant, choice;
+  };
+  std::vector<Begin> rows;
   std::vector<std::size_t> firsts{0};  // entries of `order`
   int internals = 0, losses = 0, constants = 0, choices = 0;
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
     while (end < order.size() && end < i + kLanes && order[end].first.goes_with(order[i].first)) ++end;
-    FoundRow<Dim>& row = rows.emplace_back();
-    row.law = order[i].first.law;
-    const LawOfRows& law = arrays.laws[row.law];
-    row.first_internal = std::exchange(internals, internals + kPointsOfPair<Dim> * law.internals);
-    row.first_loss = std::exchange(losses, losses + law.losses);
-    row.first_constant = std::exchange(constants, constants + kSetsOfPair<Dim> * law.constants);
-    const int bytes = static_cast<int>((body_.laws[row.law]->constants_size + 63) / 64 * 64);
-    row.first_choice = std::exchange(choices, choices + bytes);
+    const int of_law = order[i].first.law;
+    const LawOfRows& law = arrays.laws[of_law];
+    const int bytes = static_cast<int>((body_.laws[of_law]->constants_size + 63) / 64 * 64);
+    rows.push_back({of_law, internals, losses, constants, choices});
+    internals += kPointsOfPair<Dim> * law.internals;
+    losses += law.losses;
+    constants += kSetsOfPair<Dim> * law.constants;
+    choices += bytes;
     i = end;
     firsts.push_back(end);
   }
-  arrays.rows = FlatArray<FoundRow<Dim>>(rows);
+  arrays.rows = FlatArray<FoundRow<Dim>>(rows.size());
   arrays.internals = FlatArray<Line>(static_cast<std::size_t>(internals));
   arrays.lost = FlatArray<Line>(static_cast<std::size_t>(losses));
   arrays.constants = FlatArray<Line>(static_cast<std::size_t>(constants));
   arrays.choices = FlatArray<std::byte>(static_cast<std::size_t>(choices));
   arrays.forces = FlatArray<Vec<Dim>>(2 * Dim * kLanes * rows.size());
   found_.constants.resize(static_cast<std::size_t>(body_.properties.contacts.size()));
-  for (std::size_t r = 0; r < rows.size(); ++r)
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    FoundRow<Dim>& row = arrays.rows[r];
+    row.law = rows[r].law;
+    row.first_internal = rows[r].internal;
+    row.first_loss = rows[r].loss;
+    row.first_constant = rows[r].constant;
+    row.first_choice = rows[r].choice;
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::size_t at = firsts[r] + static_cast<std::size_t>(lane);
       const bool idles = at >= firsts[r + 1];
@@ -819,8 +851,9 @@ void FoundContacts<Dim>::make_rows() {
       if (!idles) pair.slot = slot_of(static_cast<int>(r), lane);
       // an idle lane is a new pair of the same facets, without thickness
       put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane);
-      if (idles) arrays.rows[r].thickness.number[lane] = 0.0;
+      if (idles) row.thickness.number[lane] = 0.0;
     }
+  }
   list_loads();
   let_sleep();
   see(found_.seen, arrays);

@@ -185,15 +185,20 @@ struct FoundContactForces {
     const Truth rests_on = was_handed_over & (!bore) & lie.over & (lie.gap > rest_below + Real(kRounding));
     const Truth is_asked =
         (!lie.beside) & (!rests_on) & (was_handed_over | bore | (lie.gap < Real(kRounding)));
-    if (row.rests && !any(is_asked | (was_handed_over & lie.beside))) return;
+    const Truth flies_off = was_handed_over & lie.beside;
+    if (row.rests && !any(is_asked | flies_off)) return;
 
+    const Real sides = sides_of(at, lie);
+    const Truth may_touch = may_touch_of(row, at, lie, sides);
+    const Truth lies_still = was_handed_over & is_asked & !(may_touch | bore);
+    const Truth is_taken = is_asked & (bore | may_touch);
+    if (row.rests && !any(is_taken | flies_off)) return;
     OverlapsInLanes of;
     TrianglePair<Real> p;
-    const std::uint32_t carried = take_to_overlaps(found, row, at, lie, is_asked, of, p);
-    row.rests = false;
+    const std::uint32_t carried = take_to_overlaps(found, row, at, sides, is_taken, of, p);
     const std::uint32_t faces = of.count > 0 ? of.exists[0] : 0U;
     const std::uint32_t live = faces & ~(row.changed & ~carried);  // others rest on
-    const Truth is_live = Truth::from_bits(live), face = Truth::from_bits(faces) | rests_on;
+    const Truth is_live = Truth::from_bits(live), face = Truth::from_bits(faces) | rests_on | lies_still;
     const auto leaves = was_handed_over & !face;
 
     Now now;
@@ -207,6 +212,8 @@ struct FoundContactForces {
                        (now.gap[k] < Real::load(row.rest[k].number)) & (zero - now.gap[k] < most_depth);
       touches = touches | now.goes_in[k];
     }
+    if (row.rests && !any(touches | bore | leaves)) return;
+    row.rests = false;
     const Real left_out = Real::load(row.not_counted.number);
     const Real not_counted = select(is_live, select(touches, smaller(left_out, p.overlap), zero),
                                     select(Truth::from_bits(faces), left_out, zero));
@@ -261,18 +268,23 @@ struct FoundContactForces {
 
   /// How eight pairs of triangles lie, seen along the mean normal.
   struct Lie {
-    Truth beside;  ///< one triangle lies beyond an edge of the other
-    Truth over;    ///< they face each other, and the middle of one lies over the other
-    Real gap;      ///< bound below which no gap of them lies, m
-    Truth surely;  ///< no rounding decides on which side of an edge a corner lies
-    Real sides;    ///< sum of powers of two: those of the corners that lie inside of edges of the other one
+    Truth beside;   ///< one triangle lies beyond an edge of the other
+    Truth over;     ///< they face each other, and the middle of one lies over the other
+    Real gap;       ///< bound below which no gap of them lies, m
+    Truth surely;   ///< no rounding decides on which side of an edge a corner lies
+    Truth clearly;  ///< corners lie so far from the edges that an overlap which holds one is not tiny
+    /// Sides of the corners of b beside each edge of a, then of those of a beside each edge of b: positive
+    /// inside.
+    std::array<std::array<Real, 3>, kCorners> side;
+    Vector sum;  ///< of the area vectors, times 2, m²
+    Real sides;  ///< sum of powers of two: those of the corners that lie inside of edges of the other one
   };
 
   static Lie lie_of(const std::array<Vector, kCorners>& at) {
     const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
     const Vector normal = area_a + area_b;
     const Truth none = Truth::from_bits(0);
-    Lie lie{none, none, 0.0, !none, 0.0};
+    Lie lie{none, none, 0.0, !none, !none, {}, normal, 0.0};
     double power = 1.0;
     for (int own : {0, 3}) {
       const int other = 3 - own;
@@ -286,7 +298,9 @@ struct FoundContactForces {
         for (int k = 0; k < 3; ++k, power *= 2.0) {
           const Real side = dot(inwards, at[other + k] - from);
           most = k == 0 ? side : larger(most, side);
+          lie.side[own + i][k] = side;
           lie.surely = lie.surely & (abs(side) > surely);
+          lie.clearly = lie.clearly & (abs(side) > surely * Real(kClearly / kSurely));
           lie.sides += select(side > Real(0.0), Real(power), Real(0.0));
         }
         lie.beside = lie.beside | (most < -surely);
@@ -337,18 +351,100 @@ struct FoundContactForces {
     return select(lie.surely, sides, Real(-1.0));
   }
 
+  /// Tells whether the row knows the overlaps of pairs.
+  static Truth is_known(const Row& row, const Real& sides) {
+    const Real known = Real::load(row.sides.number);
+    return (sides >= Real(0.0)) & (sides <= known) & (known <= sides);
+  }
+
+  /// Tells which pairs may have a point that goes through the law, or may have left each other: those of
+  /// which rounding does not decide have gaps at the corners that lie over the other triangle, and where
+  /// edges cross.
+  static Truth may_touch_of(const Row& row, const std::array<Vector, kCorners>& at, const Lie& lie,
+                            const Real& sides) {
+    const Real zero = 0.0;
+    const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
+    const Vector normal = lie.sum * (Real(1.0) / norm(lie.sum));
+    const Real over_a = Real(1.0) / dot(area_a, normal), over_b = Real(1.0) / dot(area_b, normal);
+    std::array<Real, kCorners> height, at_corner;
+    Real highest = 0.0;
+    for (int i = 0; i < kCorners; ++i) {
+      height[i] = dot(normal, at[i] - at[0]);
+      highest = larger(highest, abs(height[i]));
+      at_corner[i] = i < 3 ? dot(area_b, at[3] - at[i]) * over_b : dot(area_a, at[i] - at[0]) * over_a;
+    }
+    const Real margin = highest * Real(kOfHeights) + Real(kRounding),
+               most_depth = Real::load(row.most_depth.number);
+    std::array<std::array<Real, 3>, 3> at_crossing;
+    // pairs that are not handed over touch at any place
+    Truth touches = zero > zero;
+    const auto look = [&](const Truth& is_there, const Real& gap) {
+      touches = touches | (is_there & (gap < margin) & (zero - gap < most_depth + margin));
+    };
+    std::array<std::array<Truth, 3>, kCorners> inside;
+    for (int i = 0; i < kCorners; ++i)
+      for (int k = 0; k < 3; ++k) inside[i][k] = lie.side[i][k] > zero;
+    for (int k = 0; k < 3; ++k) {
+      look(inside[3][k] & inside[4][k] & inside[5][k], at_corner[k]);
+      look(inside[0][k] & inside[1][k] & inside[2][k], at_corner[3 + k]);
+    }
+    const auto differ = [](const Truth& x, const Truth& y) { return (x & !y) | (y & !x); };
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+        const Real &of_a = lie.side[3 + j][i], &of_b = lie.side[i][j];
+        const Real along_a = of_a / (of_a - lie.side[3 + j][i1]), along_b = of_b / (of_b - lie.side[i][j1]);
+        at_crossing[i][j] = height[3 + j] + along_b * (height[3 + j1] - height[3 + j]) - height[i] -
+                            along_a * (height[i1] - height[i]);
+        look(differ(inside[3 + j][i], inside[3 + j][i1]) & differ(inside[i][j], inside[i][j1]),
+             at_crossing[i][j]);
+      }
+    Truth may_touch = touches | !lie.surely;
+    if (row.handed_over == 0) return may_touch;
+    // those that are look at their own points
+    Truth asks = zero > zero;
+    unsigned holds_corner = 0;
+    Real rest = zero, offset = zero;
+    for (int k = 0; k < kPoints; ++k) {
+      rest = larger(rest, Real::load(row.rest[k].number));
+      offset = smaller(offset, Real::load(row.offset[k].number));
+    }
+    for (int k = 0; k < kPoints && row.names.exists[k] != 0; ++k) {
+      const OverlapsInLanes& of = row.names;
+      holds_corner |= static_cast<unsigned>(of.of_a[k] | of.of_b[k]);
+      Real gap = zero;
+      const auto take = [&](unsigned bits, const Real& here) {
+        if (bits != 0) gap = select(Truth::from_bits(bits), here, gap);
+      };
+      for (int i = 0; i < 3; ++i) {
+        take(of.of_a[k] & of.on_a[k][i], at_corner[i]);
+        take(of.of_b[k] & of.on_b[k][i], at_corner[3 + i]);
+        for (int j = 0; j < 3; ++j) take(of.crosses[k] & of.on_a[k][i] & of.on_b[k][j], at_crossing[i][j]);
+      }
+      // points of another overlap may take their rest from one and their offset from another
+      const Real bound = select(Truth::from_bits(row.changed), rest - offset,
+                                Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
+      asks = asks | (Truth::from_bits(of.exists[k]) & !(gap > bound + margin));
+    }
+    const Truth is_sure = lie.clearly & is_known(row, sides) & Truth::from_bits(holds_corner);
+    return select_truth(Truth::from_bits(row.handed_over), asks | !is_sure, may_touch);
+  }
+  static Truth select_truth(const Truth& condition, const Truth& yes, const Truth& no) {
+    return (condition & yes) | (no & !condition);
+  }
+
   /// Takes pairs to their overlaps, and points whose overlap has others than before to what they remember.
   /// Returns the bits of the lanes of these.
   static std::uint32_t take_to_overlaps(FoundRows<Dim>& found, Row& row,
-                                        const std::array<Vector, kCorners>& at, const Lie& lie,
+                                        const std::array<Vector, kCorners>& at, const Real& sides,
                                         const Truth& is_asked, OverlapsInLanes& of, TrianglePair<Real>& p) {
-    const Real zero = 0.0, sides = sides_of(at, lie), known = Real::load(row.sides.number);
+    const Real zero = 0.0;
     const std::uint32_t asked = bits_of(is_asked & (Real::load(row.thickness.number) > zero));
     alignas(64) typename Row::Places places;
     for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
     Line new_sides;
     sides.store(new_sides.number);
-    std::uint32_t anew = asked & ~bits_of((sides >= zero) & (sides <= known) & (known <= sides)), seen = 0;
+    std::uint32_t anew = asked & ~bits_of(is_known(row, sides)), seen = 0;
     while (true) {
       for (std::uint32_t left = anew; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
@@ -659,6 +755,10 @@ struct FoundContactForces {
   static constexpr double kPowerOfFirstCrossing = 0x1p18;  ///< behind the powers of Lie::sides
   /// Distance from an edge, over the height of the triangle, from which on no rounding decides on an overlap.
   static constexpr double kSurely = 1e-9;
+  /// Likewise of which follows that an overlap is larger than Overlap::kSurelyOne, unless triangles are as
+  /// slender as 1 to 200.
+  static constexpr double kClearly = 1e-3;
+  static constexpr double kOfHeights = 1e-6;  ///< rounding of gaps over the heights of the corners
   static constexpr double kRounding = 1e-14;  ///< more than rounding may change a gap, m
   static constexpr double kOpen = 1.0;        ///< opening of a point that does not press, m
   static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
