@@ -1,5 +1,7 @@
 #include "pyroclast/mechanics/found/found.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "copy_state.hpp"

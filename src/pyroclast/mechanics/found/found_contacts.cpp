@@ -792,12 +792,21 @@ bool FoundContacts<Dim>::find_near() {
 template <int Dim>
 void FoundContacts<Dim>::make_rows() {
   struct Group {
-    int law;
-    std::vector<int> choices;
+    int law, choices;
     bool rests;
     double wakes;  // those that sleep long stand together
     auto operator<=>(const Group&) const = default;
     bool goes_with(const Group& o) const { return law == o.law && choices == o.choices; }
+  };
+  std::vector<std::vector<int>> all_choices;
+  std::vector<int> choices_of_set(static_cast<std::size_t>(body_.properties.contacts.size()), -1);
+  const auto choices_of = [&](int set) {
+    int& number = choices_of_set[set];
+    if (number >= 0) return number;
+    const auto& choices = body_.properties.contacts.choices(set);
+    number = place_in(all_choices, choices);
+    if (number == std::ssize(all_choices)) all_choices.push_back(choices);
+    return number;
   };
   std::vector<std::pair<Group, int>> order;
   for (int i = 0; i < std::ssize(found_.pairs); ++i) {
@@ -805,8 +814,7 @@ void FoundContacts<Dim>::make_rows() {
     pair.slot = -1;
     if (!pair.is_near) continue;
     if (pair.sets[0] < 0) pair.sets = sets_of(pair);
-    order.push_back(
-        {{pair.law, body_.properties.contacts.choices(pair.sets[0]), !pair.presses(), pair.wakes}, i});
+    order.push_back({{pair.law, choices_of(pair.sets[0]), !pair.presses(), pair.wakes}, i});
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;
@@ -1143,6 +1151,7 @@ void FoundContacts<Dim>::hand_over() {
   take_back();
   // facets beside the face are fresh too: where it held them together they may press from now on
   std::vector<bool> ends(body_.model.position.size()), fresh(found_.facets.size());
+  const std::ptrdiff_t known = std::ssize(found_.pairs);
   for (const int face : faces) {
     for (Pair& pair : pairs_of_face(face))
       if (Dim == 2 || pair.is_handed_over || pair.has_lost()) found_.pairs.push_back(std::move(pair));
@@ -1157,8 +1166,9 @@ void FoundContacts<Dim>::hand_over() {
     mark_handed_over(face);
     for (int f = found_.first_of_face[face]; f < found_.first_of_face[face + 1]; ++f) sides.push_back(f);
   }
-  std::sort(found_.pairs.begin(), found_.pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.facets < b.facets; });
+  const auto by_key = [](const Pair& a, const Pair& b) { return a.facets < b.facets; };
+  std::sort(found_.pairs.begin() + known, found_.pairs.end(), by_key);
+  std::inplace_merge(found_.pairs.begin(), found_.pairs.begin() + known, found_.pairs.end(), by_key);
   add_to_far(sides);
   search();
   leave_out_overlaps(fresh, 0.0);

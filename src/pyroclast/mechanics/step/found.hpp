@@ -188,10 +188,13 @@ struct FoundContactForces {
     const Truth flies_off = was_handed_over & lie.beside;
     if (row.rests && !any(is_asked | flies_off)) return;
 
+    const PlacesOfOverlap places = places_of(at, lie);
+    const Truth rests_here = is_asked & was_handed_over & !bore;
+    const Truth is_pressed = is_asked & (bore | ((!was_handed_over) & may_touch(row, lie, places)));
+    if (row.rests && !any(is_pressed | rests_here | flies_off)) return;
     const Real sides = sides_of(at, lie);
-    const Truth may_touch = may_touch_of(row, at, lie, sides);
-    const Truth lies_still = was_handed_over & is_asked & !(may_touch | bore);
-    const Truth is_taken = is_asked & (bore | may_touch);
+    const Truth changes = rests_here & may_change(row, lie, places, sides);
+    const Truth is_taken = is_pressed | changes, lies_still = rests_here & !changes;
     if (row.rests && !any(is_taken | flies_off)) return;
     OverlapsInLanes of;
     TrianglePair<Real> p;
@@ -357,36 +360,34 @@ struct FoundContactForces {
     return (sides >= Real(0.0)) & (sides <= known) & (known <= sides);
   }
 
-  /// Tells which pairs may have a point that goes through the law, or may have left each other: those of
-  /// which rounding does not decide have gaps at the corners that lie over the other triangle, and where
-  /// edges cross.
-  static Truth may_touch_of(const Row& row, const std::array<Vector, kCorners>& at, const Lie& lie,
-                            const Real& sides) {
-    const Real zero = 0.0;
+  /// Where overlaps may have corners: at those of triangles, and where edges cross.
+  struct PlacesOfOverlap {
+    std::array<Truth, kCorners> over;                 ///< true where a corner lies over the other triangle
+    std::array<std::array<Truth, 3>, 3> cross;        ///< true where edges cross
+    std::array<Real, kCorners> gap;                   ///< gap at corners, m
+    std::array<std::array<Real, 3>, 3> gap_of_edges;  ///< gap where edges cross, m
+    Real margin;                                      ///< more than rounding may change gaps, m
+  };
+
+  static PlacesOfOverlap places_of(const std::array<Vector, kCorners>& at, const Lie& lie) {
+    const Real zero = 0.0, one = 1.0;
+    PlacesOfOverlap places;
     const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
-    const Vector normal = lie.sum * (Real(1.0) / norm(lie.sum));
-    const Real over_a = Real(1.0) / dot(area_a, normal), over_b = Real(1.0) / dot(area_b, normal);
-    std::array<Real, kCorners> height, at_corner;
-    Real highest = 0.0;
+    const Vector normal = lie.sum * (one / norm(lie.sum));
+    const Real over_a = one / dot(area_a, normal), over_b = one / dot(area_b, normal);
+    std::array<Real, kCorners> height;
+    Real highest = zero;
+    std::array<std::array<Truth, 3>, kCorners> inside;
     for (int i = 0; i < kCorners; ++i) {
       height[i] = dot(normal, at[i] - at[0]);
       highest = larger(highest, abs(height[i]));
-      at_corner[i] = i < 3 ? dot(area_b, at[3] - at[i]) * over_b : dot(area_a, at[i] - at[0]) * over_a;
-    }
-    const Real margin = highest * Real(kOfHeights) + Real(kRounding),
-               most_depth = Real::load(row.most_depth.number);
-    std::array<std::array<Real, 3>, 3> at_crossing;
-    // pairs that are not handed over touch at any place
-    Truth touches = zero > zero;
-    const auto look = [&](const Truth& is_there, const Real& gap) {
-      touches = touches | (is_there & (gap < margin) & (zero - gap < most_depth + margin));
-    };
-    std::array<std::array<Truth, 3>, kCorners> inside;
-    for (int i = 0; i < kCorners; ++i)
+      places.gap[i] = i < 3 ? dot(area_b, at[3] - at[i]) * over_b : dot(area_a, at[i] - at[0]) * over_a;
       for (int k = 0; k < 3; ++k) inside[i][k] = lie.side[i][k] > zero;
+    }
+    places.margin = highest * Real(kOfHeights) + Real(kRounding);
     for (int k = 0; k < 3; ++k) {
-      look(inside[3][k] & inside[4][k] & inside[5][k], at_corner[k]);
-      look(inside[0][k] & inside[1][k] & inside[2][k], at_corner[3 + k]);
+      places.over[k] = inside[3][k] & inside[4][k] & inside[5][k];
+      places.over[3 + k] = inside[0][k] & inside[1][k] & inside[2][k];
     }
     const auto differ = [](const Truth& x, const Truth& y) { return (x & !y) | (y & !x); };
     for (int i = 0; i < 3; ++i)
@@ -394,43 +395,57 @@ struct FoundContactForces {
         const int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
         const Real &of_a = lie.side[3 + j][i], &of_b = lie.side[i][j];
         const Real along_a = of_a / (of_a - lie.side[3 + j][i1]), along_b = of_b / (of_b - lie.side[i][j1]);
-        at_crossing[i][j] = height[3 + j] + along_b * (height[3 + j1] - height[3 + j]) - height[i] -
-                            along_a * (height[i1] - height[i]);
-        look(differ(inside[3 + j][i], inside[3 + j][i1]) & differ(inside[i][j], inside[i][j1]),
-             at_crossing[i][j]);
+        places.gap_of_edges[i][j] = height[3 + j] + along_b * (height[3 + j1] - height[3 + j]) - height[i] -
+                                    along_a * (height[i1] - height[i]);
+        places.cross[i][j] =
+            differ(inside[3 + j][i], inside[3 + j][i1]) & differ(inside[i][j], inside[i][j1]);
       }
-    Truth may_touch = touches | !lie.surely;
-    if (row.handed_over == 0) return may_touch;
-    // those that are look at their own points
-    Truth asks = zero > zero;
-    unsigned holds_corner = 0;
+    return places;
+  }
+
+  /// Tells which pairs that are not handed over may touch.
+  static Truth may_touch(const Row& row, const Lie& lie, const PlacesOfOverlap& places) {
+    const Real zero = 0.0, most_depth = Real::load(row.most_depth.number);
+    Truth touches = !lie.surely;
+    const auto look = [&](const Truth& is_there, const Real& gap) {
+      touches = touches | (is_there & (gap < places.margin) & (zero - gap < most_depth + places.margin));
+    };
+    for (int i = 0; i < kCorners; ++i) look(places.over[i], places.gap[i]);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) look(places.cross[i][j], places.gap_of_edges[i][j]);
+    return touches;
+  }
+
+  /// Tells which pairs that are handed over and rest may have a point that goes through the law, or may have
+  /// left each other.
+  static Truth may_change(const Row& row, const Lie& lie, const PlacesOfOverlap& places, const Real& sides) {
+    const Real zero = 0.0;
+    const OverlapsInLanes& of = row.names;
     Real rest = zero, offset = zero;
     for (int k = 0; k < kPoints; ++k) {
       rest = larger(rest, Real::load(row.rest[k].number));
       offset = smaller(offset, Real::load(row.offset[k].number));
     }
-    for (int k = 0; k < kPoints && row.names.exists[k] != 0; ++k) {
-      const OverlapsInLanes& of = row.names;
+    Truth changes = zero > zero;
+    unsigned holds_corner = 0;
+    for (int k = 0; k < kPoints && of.exists[k] != 0; ++k) {
       holds_corner |= static_cast<unsigned>(of.of_a[k] | of.of_b[k]);
       Real gap = zero;
       const auto take = [&](unsigned bits, const Real& here) {
         if (bits != 0) gap = select(Truth::from_bits(bits), here, gap);
       };
       for (int i = 0; i < 3; ++i) {
-        take(of.of_a[k] & of.on_a[k][i], at_corner[i]);
-        take(of.of_b[k] & of.on_b[k][i], at_corner[3 + i]);
-        for (int j = 0; j < 3; ++j) take(of.crosses[k] & of.on_a[k][i] & of.on_b[k][j], at_crossing[i][j]);
+        take(of.of_a[k] & of.on_a[k][i], places.gap[i]);
+        take(of.of_b[k] & of.on_b[k][i], places.gap[3 + i]);
+        for (int j = 0; j < 3; ++j)
+          take(of.crosses[k] & of.on_a[k][i] & of.on_b[k][j], places.gap_of_edges[i][j]);
       }
       // points of another overlap may take their rest from one and their offset from another
       const Real bound = select(Truth::from_bits(row.changed), rest - offset,
                                 Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
-      asks = asks | (Truth::from_bits(of.exists[k]) & !(gap > bound + margin));
+      changes = changes | (Truth::from_bits(of.exists[k]) & !(gap > bound + places.margin));
     }
-    const Truth is_sure = lie.clearly & is_known(row, sides) & Truth::from_bits(holds_corner);
-    return select_truth(Truth::from_bits(row.handed_over), asks | !is_sure, may_touch);
-  }
-  static Truth select_truth(const Truth& condition, const Truth& yes, const Truth& no) {
-    return (condition & yes) | (no & !condition);
+    return changes | !(lie.clearly & is_known(row, sides) & Truth::from_bits(holds_corner));
   }
 
   /// Takes pairs to their overlaps, and points whose overlap has others than before to what they remember.
