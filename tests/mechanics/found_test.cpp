@@ -1,5 +1,7 @@
 #include "pyroclast/mechanics/found/found.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "copy_state.hpp"
@@ -142,15 +144,19 @@ TEST(FoundContacts, FaceThatOpensRestsUntilItCloses) {
       body->advance(steps);
     }
   };
-  const auto pair = [&] { return m.body().found->pairs.front(); };
+  const auto sleeps = [&] {
+    const auto& found = *m.body().found;
+    const auto pair = std::ranges::find_if(found.pairs, [](const auto& p) { return p.is_handed_over; });
+    if (pair == found.pairs.end()) return false;
+    return pair->slot < 0 || found.arrays.rows[pair->slot / kLanes].wakes >= 1.0;
+  };
   move(-1e-7, 40);  // crushes the contact, which keeps a closure
-  EXPECT_GE(pair().slot, 0);
+  EXPECT_FALSE(sleeps());
   move(1e-6, 1000);
-  EXPECT_TRUE(pair().is_handed_over);
-  EXPECT_EQ(pair().slot, -1);
+  EXPECT_TRUE(sleeps());
   EXPECT_EQ(m.totals().energy().contacts, 0.0);
   move(-1e-6, 1000);
-  EXPECT_GE(pair().slot, 0);
+  EXPECT_FALSE(sleeps());
   const EnergyLedger a = m.totals().energy(), b = first.totals().energy();
   EXPECT_GT(b.contacts, 0.0);
   EXPECT_NEAR(a.contacts, b.contacts, 1e-6 * b.contacts);

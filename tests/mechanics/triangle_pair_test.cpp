@@ -41,8 +41,8 @@ Triangle second_of(const Corners& x) {
 
 Pressed pressed(const Corners& x, const Springs& s) {
   const Overlap overlap = overlap_of(first_of(x), second_of(x));
-  const auto pair = triangle_pair<double>(overlap, first_of(x), second_of(x));
-  return {overlap, pair, Areas(overlap, pair, s.ratio, s.not_counted, s.most_depth, pair.gap)};
+  const auto pair = triangle_pair(overlap, first_of(x), second_of(x));
+  return {overlap, pair, Areas(overlap.count, pair, s.ratio, s.not_counted, s.most_depth, pair.gap)};
 }
 
 PointTractions<double> tractions_of(const Pressed& p, const Springs& s) {
@@ -173,7 +173,7 @@ TEST(TrianglePairVerification, ShearWorksAlongTheSlide) {
       t.shear[k] = traction - p.pair.normal * dot(traction, p.pair.normal);
     const Corners forces = corner_forces(p.overlap, p.pair, p.areas, t);
     worst = std::max(worst, gradient_error(kGradientStep, x, forces, [&](const Corners& y) {
-                       const auto now = triangle_pair<double>(p.overlap, first_of(y), second_of(y));
+                       const auto now = triangle_pair(p.overlap, first_of(y), second_of(y));
                        double work = 0.0;
                        for (int k = 0; k < p.overlap.count; ++k) {
                          const Vec<3> apart = Pair::mixed(second_of(y), p.pair.at_b[k]) -

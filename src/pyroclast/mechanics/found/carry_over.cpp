@@ -131,18 +131,19 @@ using NumbersOfPoints = std::array<PointNumbers, Overlap::kMost>;
 /// nearest new one, which takes the mean by area; a new point to which none goes is like the nearest earlier
 /// one. A point whose area is 0 follows points that rested.
 NumbersOfPoints carried_over(const LanePoints& points, const Overlap& earlier,
-                             const TrianglePair<double>& pair_then, const TouchedPair& now) {
-  const int count_then = earlier.count, count = now.overlap.count;
+                             const TrianglePair<double>& pair_then, const Overlap& overlap,
+                             const TrianglePair<double>& pair) {
+  const int count_then = earlier.count, count = overlap.count;
   std::array<Vec<3>, Overlap::kMost> then{}, places{};
   NumbersOfPoints numbers{}, carried{};
   double whole = 0.0;
   for (int k = 0; k < count_then; ++k) {
-    then[k] = TrianglePair<double>::mixed(now.pair.a, pair_then.at_a[k]);  // it moves with a
+    then[k] = TrianglePair<double>::mixed(pair.a, pair_then.at_a[k]);  // it moves with a
     numbers[k] = points.take(k);
     whole += numbers[k].area;
   }
   std::array<std::vector<std::pair<PointNumbers, double>>, Overlap::kMost> come;
-  for (int k = 0; k < count; ++k) places[k] = now.pair.on_a(k);
+  for (int k = 0; k < count; ++k) places[k] = pair.on_a(k);
   for (int k = 0; k < count_then; ++k) {
     const double weight = whole > 0.0 ? numbers[k].area : 1.0;
     if (weight > 0.0) come[nearest(then[k], places, count)].emplace_back(numbers[k], weight);
@@ -160,88 +161,74 @@ NumbersOfPoints carried_over(const LanePoints& points, const Overlap& earlier,
   return carried;
 }
 
+void set_bit(std::uint32_t& bits, int lane, bool is_set) {
+  const auto bit = 1U << static_cast<unsigned>(lane);
+  bits = is_set ? bits | bit : bits & ~bit;
+}
+
 }  // namespace
 
-std::array<Vec<3>, 2> tangents_of(const TrianglePair<double>& pair) {
-  const Vec<3> edge = pair.a[1] - pair.a[0], along = edge - pair.normal * dot(edge, pair.normal);
-  const Vec<3> first = along * (1.0 / norm(along));
-  return {first, cross(pair.normal, first)};
+TriangleCorners corners_in(const ShapesOfRow<3>::Places& places, int lane) {
+  TriangleCorners corners;
+  for (int i = 0; i < 6; ++i) corners[i] = places[i][lane];
+  return corners;
 }
 
-double TouchedPair::opening_velocity(int point, const TriangleCorners& velocity) const {
-  Vec<3> apart{};
-  for (int i = 0; i < 3; ++i)
-    apart += velocity[3 + i] * pair.at_b[point][i] - velocity[i] * pair.at_a[point][i];
-  return dot(pair.gap_slope[point], apart);
+void see_overlap(FoundRow<3>& row, int lane, const TriangleCorners& corners, double sides) {
+  Overlap& seen = row.seen[lane];
+  seen = overlap_of(first_of(corners), second_of(corners));
+  row.names.put(lane, seen);
+  bool is_lasting = seen.count > 0;  // places of fixed corners follow anew, and the size of tiny overlaps
+  for (int k = 0; k < Overlap::kMost; ++k) {
+    const bool is_point = k < seen.count;
+    is_lasting = is_lasting && !(is_point && seen.corners[k].kind == OverlapCorner::Kind::fixed);
+    std::uint32_t joined = row.joined_points[k];
+    set_bit(joined, lane, is_point && is_joined(seen.corners[k], row.joined[lane]));
+    row.joined_points[k] = static_cast<std::uint8_t>(joined);
+  }
+  row.sides.number[lane] = is_lasting ? sides : -1.0;
+  set_bit(row.changed, lane, row.overlap[lane].count > 0 && !have_same_corners(row.overlap[lane], seen));
+  set_bit(row.renewed, lane, true);
 }
 
-bool touch_pair(const FoundRows<3>& found, FoundRow<3>& row, int lane, const TriangleCorners& corners,
-                TouchedPair& p) {
-  const Triangle a = first_of(corners), b = second_of(corners);
-  p.corners = corners;
-  p.overlap = overlap_of(a, b);
-  const int count = p.overlap.count;
-  if (count == 0) return false;
-  p.pair = triangle_pair<double>(p.overlap, a, b);
-  p.tangents = tangents_of(p.pair);
-
+bool carry_over(const FoundRows<3>& found, FoundRow<3>& row, int lane, const TriangleCorners& corners) {
+  const Overlap &overlap = row.seen[lane], &earlier = row.overlap[lane];
+  const TriangleCorners then = corners_in(row.pressed_at, lane);
+  const auto pair = triangle_pair(overlap, first_of(corners), second_of(corners));
+  const auto pair_then = triangle_pair(earlier, first_of(then), second_of(then));
   LanePoints points(found, row, lane);
-  const Overlap& earlier = row.overlap[lane];
-  const bool changes = earlier.count > 0 && !have_same_corners(earlier, p.overlap);
   double held_then = 0.0;
   bool bore = false;
-  NumbersOfPoints carried;
-  if (earlier.count > 0) {
-    const Triangle a_then = first_of(row.pressed_at[lane]), b_then = second_of(row.pressed_at[lane]);
-    const auto pair_then = triangle_pair<double>(earlier, a_then, b_then);
-    if (changes) {
-      for (int k = 0; k < earlier.count; ++k) {
-        held_then += points.held_energy(points.take(k));
-        bore = bore || row.area[k].number[lane] > 0.0;
-      }
-      carried = carried_over(points, earlier, pair_then, p);
-    }
-    const auto tangents_then = tangents_of(pair_then);
-    for (int k = 0; k < count; ++k) {
-      const Vec<3> apart = p.pair.on_b(k) - p.pair.on_a(k);
-      const Vec<3> apart_then = TrianglePair<double>::mixed(b_then, p.pair.at_b[k]) -
-                                TrianglePair<double>::mixed(a_then, p.pair.at_a[k]);
-      for (int i = 0; i < 2; ++i)
-        p.slide[k][i] = dot(p.tangents[i], apart) - dot(tangents_then[i], apart_then);
-    }
+  for (int k = 0; k < earlier.count; ++k) {
+    held_then += points.held_energy(points.take(k));
+    bore = bore || row.area[k].number[lane] > 0.0;
   }
-
+  NumbersOfPoints carried = carried_over(points, earlier, pair_then, overlap, pair);
   const double most_depth = row.most_depth.number[lane];
+  std::array<double, Overlap::kMost> gap{};
   bool touches = false;
-  for (int k = 0; k < count; ++k) {
-    p.gap[k] = p.pair.gap[k] + (changes ? carried[k].offset : row.offset[k].number[lane]);
-    const double rest = changes ? carried[k].rest : row.rest[k].number[lane];
-    touches = touches || (p.gap[k] < rest && -p.gap[k] < most_depth);
+  for (int k = 0; k < overlap.count; ++k) {
+    gap[k] = pair.gap[k] + carried[k].offset;
+    touches = touches || (gap[k] < carried[k].rest && -gap[k] < most_depth);
   }
   // points that rest stay those of the last overlap that pressed, whatever overlaps come between
-  if (changes && !touches && !bore) return true;
-  double& not_counted = row.not_counted.number[lane];
-  not_counted = touches ? std::min(not_counted, p.pair.overlap) : 0.0;
-  if (p.pair.overlap > not_counted) {
-    p.areas =
-        PointAreas<double>(p.overlap, p.pair, row.thickness.number[lane], not_counted, most_depth, p.gap);
-    for (int k = 0; k < count; ++k)
-      p.counts[k] = p.areas.area[k] > 0.0 && !is_joined(p.overlap.corners[k], row.joined[lane]);
+  if (!touches && !bore) return false;
+  const double not_counted = touches ? std::min(row.not_counted.number[lane], pair.overlap) : 0.0;
+  PointAreas<double> areas;
+  if (pair.overlap > not_counted)
+    areas = PointAreas<double>(overlap.count, pair, row.thickness.number[lane], not_counted, most_depth, gap);
+  // the shear holds on to the areas of the new points, and the rest of its energy is lost
+  double held = 0.0;
+  const bool is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
+  for (int k = 0; k < Overlap::kMost; ++k) {
+    PointNumbers& point = carried[k];
+    const bool counts = areas.area[k] > 0.0 && !is_joined(overlap.corners[k], row.joined[lane]);
+    if (!counts && !is_handed_over) point = points.fresh();
+    point.area = counts && point.area > 0.0 ? areas.area[k] : 0.0;
+    points.put(k, point);
+    held += points.held_energy(point);
   }
-  if (changes) {
-    // the shear holds on to the areas of the new points, and the rest of its energy is lost
-    double held = 0.0;
-    const bool is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
-    for (int k = 0; k < Overlap::kMost; ++k) {
-      PointNumbers& point = carried[k];
-      if (!p.counts[k] && !is_handed_over) point = points.fresh();
-      point.area = p.counts[k] && point.area > 0.0 ? p.areas.area[k] : 0.0;
-      points.put(k, point);
-      held += points.held_energy(point);
-    }
-    row.lost_area.number[lane] += held_then - held;
-    p.is_carried_over = true;
-  }
+  row.lost_area.number[lane] += held_then - held;
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -71,7 +72,7 @@ struct FoundPair {
   /// Square of a way since the last search, over that of the way that ends the lists, up to which the pair
   /// can neither press nor change.
   double wakes = 0.0;
-  bool is_near = true;  ///< true for a pair that stands in a row, or is to
+  bool is_near = true;  ///< true for a pair that may press before the next search, and is to stand in a row
   int slot = -1;        ///< place in the rows: kLanes row + lane; -1 for a pair that is in none
 
   /// Tells whether the pair bore something in the last step.
@@ -98,6 +99,13 @@ struct FoundPair {
     sets.fill(-1);
     return sets;
   }
+};
+
+/// Pair that may press before the next search for such pairs.
+struct FarPair {
+  std::array<int, 2> facets{};  ///< see FoundPair
+  double way = 0.0;             ///< twice the way that gridpoints go at least until it may press, m
+  auto operator<=>(const FarPair&) const = default;
 };
 
 /// Constants of a law for a set of parameters.
@@ -128,12 +136,12 @@ struct FoundData {
   std::vector<int> face_of_lane;     ///< face of each lane of the packs of faces; -1 where idle
   std::vector<bool> is_handed_over;  ///< by face of the model; true for those of gone blocks too
 
-  std::vector<FoundPair<Dim>> pairs;    ///< pairs that are near, or not as new ones, by key
-  std::vector<std::array<int, 2>> far;  ///< keys of far pairs, ascending
-  std::vector<bool> is_listed;          ///< true for facets that these lists know: free, and not flown off
-  FlatArray<Vec<Dim>> searched_far;     ///< displacement by slot at the last search for far pairs, m
-  double mean_edge = 0.0;               ///< m
-  std::vector<int> block_of_slot;       ///< block of each slot of gridpoints; 0 where idle
+  std::vector<FoundPair<Dim>> pairs;  ///< pairs that are near, or not as new ones, by key
+  std::vector<FarPair> far;           ///< far pairs, by key
+  std::vector<bool> is_listed;        ///< true for facets that these lists know: free, and not flown off
+  FlatArray<Vec<Dim>> searched_far;   ///< displacement by slot at the last search for far pairs, m
+  double mean_edge = 0.0;             ///< m
+  std::vector<int> block_of_slot;     ///< block of each slot of gridpoints; 0 where idle
   /// Twice the way that the gridpoints of each block may go before the next search for far and near pairs, m:
   /// the faster a block, the longer.
   std::vector<double> skin, reach;

@@ -100,7 +100,7 @@ struct PairShape<3> {
 
   PairShape(const TriangleCorners& at, const BlockFacet<3>& a, const BlockFacet<3>& b)
       : names(overlap_at(at)), least(std::min(a.length, b.length)) {
-    if (names.count > 0) p = triangle_pair<double>(names, triangle_of(at, 0), triangle_of(at, 3));
+    if (names.count > 0) p = triangle_pair(names, triangle_of(at, 0), triangle_of(at, 3));
   }
   bool overlaps() const { return names.count > 0; }
   double overlap() const { return p.overlap; }
@@ -553,7 +553,8 @@ void FoundContacts<Dim>::list_if_far(int a, const Box& box_a, int b, const Box& 
   const Corners at = places(key, [&](int g) { return place(g, found_.searched_far); });
   const double skin = std::max(found_.skin[found_.facets[a].block], found_.skin[found_.facets[b].block]);
   const double within = kMargin * (1.0 + kLongestNear) * skin;
-  if (way_to_press(key, at, within) < within) found_.far.push_back(key);
+  const double way = way_to_press(key, at, within);
+  if (way < within) found_.far.push_back({key, way / kMargin});
 }
 
 template <int Dim>
@@ -674,11 +675,17 @@ double FoundContacts<Dim>::way_to_press(const Key& key, const Corners& at, doubl
 }
 
 /// Returns the same of a pair that is handed over and rests: until a point goes through the law, or until its
-/// facets may leave each other. In space such pairs are always near.
+/// facets may leave each other.
 template <int Dim>
-double FoundContacts<Dim>::way_to_change(const Pair& pair, const Corners& at) const {
+double FoundContacts<Dim>::way_to_change(const Pair& pair, const Corners& at, double within) const {
   if constexpr (Dim == 3) {
-    return 0.0;
+    // points of another overlap may take their rest from one and their offset from another
+    double rest = 0.0, offset = 0.0;
+    for (const PairPoint<Dim>& point : pair.points) {
+      rest = std::max(rest, point.rest);
+      offset = std::min(offset, point.offset);
+    }
+    return pyroclast::way_to_change(triangle_of(at, 0), triangle_of(at, 3), rest - offset, within);
   } else {
     const EdgePair<double> p = shape_of(found_, pair, at).p;
     double way = std::min(p.overlap, p.cosine / (1.0 / p.length_a + 1.0 / p.length_b));
@@ -694,8 +701,9 @@ double FoundContacts<Dim>::wakes(const Key& key, const Pair* handed_over) const 
   const Corners at = places(key, [&](int g) { return place(g, body_.arrays.displacement); });
   const double reach =
       std::max(found_.reach[found_.facets[key[0]].block], found_.reach[found_.facets[key[1]].block]);
-  const double way = handed_over ? way_to_change(*handed_over, at) : way_to_press(key, at, kMargin * reach);
-  const double share = way / (kMargin * reach);
+  const double within = kMargin * reach;
+  const double way = handed_over ? way_to_change(*handed_over, at, within) : way_to_press(key, at, within);
+  const double share = way / within;
   return share > 0.0 ? share * share : 0.0;
 }
 
@@ -716,8 +724,8 @@ void FoundContacts<Dim>::let_sleep() {
   }
 }
 
-/// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether the near
-/// ones are others than before.
+/// Lists the pairs that are near, in rows or not, and those that remember something. Returns whether there
+/// are near ones that stand in no row.
 template <int Dim>
 bool FoundContacts<Dim>::find_near() {
   std::vector<double> reach =
@@ -728,6 +736,21 @@ bool FoundContacts<Dim>::find_near() {
   next.reserve(found_.pairs.size());
   bool others = false;
   auto old = found_.pairs.begin();
+  std::vector<double> gone(found_.broadest.size());  // way of each block since the search for far pairs, m
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
+    const int slot = body_.layout.gridpoint_slot[g];
+    double& of_block = gone[found_.block_of_slot[slot]];
+    of_block = larger(of_block, norm(body_.arrays.displacement[slot] - found_.searched_far[slot]));
+  }
+  // Tells whether a pair that was far may be near.
+  const auto may_be_near = [&](const FarPair& far) {
+    double way = 0.0, reach_of_pair = 0.0;
+    for (const int facet : far.facets) {
+      way = larger(way, 2.0 * gone[found_.facets[facet].block]);
+      reach_of_pair = larger(reach_of_pair, found_.reach[found_.facets[facet].block]);
+    }
+    return !(far.way >= way + reach_of_pair);
+  };
   const auto keep_old = [&](bool is_far) {
     if (old->presses())
       old->wakes = 0.0;
@@ -736,21 +759,28 @@ bool FoundContacts<Dim>::find_near() {
     else
       old->wakes = 1.0;
     old->is_near = old->wakes < 1.0;
-    others = others || old->is_near != (old->slot >= 0);
-    if (old->is_near || old->remembers() || old->has_lost()) next.push_back(std::move(*old));
+    others = others || (old->is_near && old->slot < 0);
+    if (old->is_near || old->slot >= 0 || old->remembers() || old->has_lost())
+      next.push_back(std::move(*old));
     ++old;
   };
-  for (const Key& key : found_.far) {
-    while (old != found_.pairs.end() && old->facets < key) keep_old(false);
-    if (old != found_.pairs.end() && old->facets == key) {
-      keep_old(true);
-    } else if (const double share = wakes(key, nullptr); share < 1.0) {
-      next.push_back(new_pair(key));
+  for (const FarPair& far : found_.far) {
+    while (old != found_.pairs.end() && old->facets < far.facets) keep_old(false);
+    if (old != found_.pairs.end() && old->facets == far.facets) {
+      keep_old(may_be_near(far));
+    } else if (!may_be_near(far)) {
+      continue;
+    } else if (const double share = wakes(far.facets, nullptr); share < 1.0) {
+      next.push_back(new_pair(far.facets));
       next.back().wakes = share;
       others = true;
     }
   }
   while (old != found_.pairs.end()) keep_old(false);
+  // while no pair is to come into a row, those that are near no more sleep in theirs
+  if (others)
+    std::erase_if(next,
+                  [](const Pair& pair) { return !pair.is_near && !pair.remembers() && !pair.has_lost(); });
   found_.pairs = std::move(next);
   found_.arrays.searched = body_.arrays.displacement;
   found_.has_near = true;
@@ -765,11 +795,21 @@ bool FoundContacts<Dim>::find_near() {
 template <int Dim>
 void FoundContacts<Dim>::make_rows() {
   struct Group {
-    int law;
-    std::vector<int> choices;
+    int law, choices;
+    bool rests;
     double wakes;  // those that sleep long stand together
     auto operator<=>(const Group&) const = default;
     bool goes_with(const Group& o) const { return law == o.law && choices == o.choices; }
+  };
+  std::vector<std::vector<int>> all_choices;
+  std::vector<int> choices_of_set(static_cast<std::size_t>(body_.properties.contacts.size()), -1);
+  const auto choices_of = [&](int set) {
+    int& number = choices_of_set[set];
+    if (number >= 0) return number;
+    const auto& choices = body_.properties.contacts.choices(set);
+    number = place_in(all_choices, choices);
+    if (number == std::ssize(all_choices)) all_choices.push_back(choices);
+    return number;
   };
   std::vector<std::pair<Group, int>> order;
   for (int i = 0; i < std::ssize(found_.pairs); ++i) {
@@ -777,35 +817,44 @@ void FoundContacts<Dim>::make_rows() {
     pair.slot = -1;
     if (!pair.is_near) continue;
     if (pair.sets[0] < 0) pair.sets = sets_of(pair);
-    order.push_back({{pair.law, body_.properties.contacts.choices(pair.sets[0]), pair.wakes}, i});
+    order.push_back({{pair.law, choices_of(pair.sets[0]), !pair.presses(), pair.wakes}, i});
   }
   std::sort(order.begin(), order.end());
   auto& arrays = found_.arrays;
-  std::vector<FoundRow<Dim>> rows;
+  struct Begin {
+    int law, internal, loss, constant, choice;
+  };
+  std::vector<Begin> rows;
   std::vector<std::size_t> firsts{0};  // entries of `order`
   int internals = 0, losses = 0, constants = 0, choices = 0;
   for (std::size_t i = 0; i < order.size();) {
     std::size_t end = i + 1;
     while (end < order.size() && end < i + kLanes && order[end].first.goes_with(order[i].first)) ++end;
-    FoundRow<Dim>& row = rows.emplace_back();
-    row.law = order[i].first.law;
-    const LawOfRows& law = arrays.laws[row.law];
-    row.first_internal = std::exchange(internals, internals + kPointsOfPair<Dim> * law.internals);
-    row.first_loss = std::exchange(losses, losses + law.losses);
-    row.first_constant = std::exchange(constants, constants + kSetsOfPair<Dim> * law.constants);
-    const int bytes = static_cast<int>((body_.laws[row.law]->constants_size + 63) / 64 * 64);
-    row.first_choice = std::exchange(choices, choices + bytes);
+    const int of_law = order[i].first.law;
+    const LawOfRows& law = arrays.laws[of_law];
+    const int bytes = static_cast<int>((body_.laws[of_law]->constants_size + 63) / 64 * 64);
+    rows.push_back({of_law, internals, losses, constants, choices});
+    internals += kPointsOfPair<Dim> * law.internals;
+    losses += law.losses;
+    constants += kSetsOfPair<Dim> * law.constants;
+    choices += bytes;
     i = end;
     firsts.push_back(end);
   }
-  arrays.rows = FlatArray<FoundRow<Dim>>(rows);
+  arrays.rows = FlatArray<FoundRow<Dim>>(rows.size());
   arrays.internals = FlatArray<Line>(static_cast<std::size_t>(internals));
   arrays.lost = FlatArray<Line>(static_cast<std::size_t>(losses));
   arrays.constants = FlatArray<Line>(static_cast<std::size_t>(constants));
   arrays.choices = FlatArray<std::byte>(static_cast<std::size_t>(choices));
   arrays.forces = FlatArray<Vec<Dim>>(2 * Dim * kLanes * rows.size());
   found_.constants.resize(static_cast<std::size_t>(body_.properties.contacts.size()));
-  for (std::size_t r = 0; r < rows.size(); ++r)
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    FoundRow<Dim>& row = arrays.rows[r];
+    row.law = rows[r].law;
+    row.first_internal = rows[r].internal;
+    row.first_loss = rows[r].loss;
+    row.first_constant = rows[r].constant;
+    row.first_choice = rows[r].choice;
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::size_t at = firsts[r] + static_cast<std::size_t>(lane);
       const bool idles = at >= firsts[r + 1];
@@ -813,8 +862,9 @@ void FoundContacts<Dim>::make_rows() {
       if (!idles) pair.slot = slot_of(static_cast<int>(r), lane);
       // an idle lane is a new pair of the same facets, without thickness
       put_into_row(idles ? new_pair(pair.facets) : pair, static_cast<int>(r), lane);
-      if (idles) arrays.rows[r].thickness.number[lane] = 0.0;
+      if (idles) row.thickness.number[lane] = 0.0;
     }
+  }
   list_loads();
   let_sleep();
   see(found_.seen, arrays);
@@ -882,9 +932,11 @@ void FoundContacts<Dim>::put_into_row(const Pair& pair, int index, int lane) {
     for (int k = 0; k < 2; ++k)
       if ((joined >> static_cast<unsigned>(k) & 1U) == 0) row.counts[k] |= bit;
   } else {
-    row.pressed_at[lane] = pair.pressed_at;
+    for (int i = 0; i < 2 * Dim; ++i) row.pressed_at[i][lane] = pair.pressed_at[i];
     row.overlap[lane] = pair.bears() || pair.is_handed_over ? overlap_at(pair.pressed_at) : Overlap{};
+    if (row.overlap[lane].count > 0) row.had |= bit;
     row.joined[lane] = joined;
+    row.sides.number[lane] = -1.0;
   }
   for (int i = 0; i < law.losses; ++i) put(arrays.lost[row.first_loss + i], pair.lost[i]);
 }
@@ -1066,7 +1118,7 @@ void FoundContacts<Dim>::take_history(const TrianglePair<double>& p, int points,
   if constexpr (Dim == 3) {
     const Reader<Dim> read(body_);
     const LawOfRows& law = found_.arrays.laws[pair.law];
-    const auto tangents = tangents_of(p);
+    const auto tangents = tangents_of(p.a, p.normal);
     for (int k = 0; k < points; ++k) {
       const Vec<3> place = p.on_a(k);
       int nearest = first;
@@ -1109,6 +1161,7 @@ void FoundContacts<Dim>::hand_over() {
   take_back();
   // facets beside the face are fresh too: where it held them together they may press from now on
   std::vector<bool> ends(body_.model.position.size()), fresh(found_.facets.size());
+  const std::ptrdiff_t known = std::ssize(found_.pairs);
   for (const int face : faces) {
     for (Pair& pair : pairs_of_face(face))
       if (Dim == 2 || pair.is_handed_over || pair.has_lost()) found_.pairs.push_back(std::move(pair));
@@ -1123,8 +1176,9 @@ void FoundContacts<Dim>::hand_over() {
     mark_handed_over(face);
     for (int f = found_.first_of_face[face]; f < found_.first_of_face[face + 1]; ++f) sides.push_back(f);
   }
-  std::sort(found_.pairs.begin(), found_.pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.facets < b.facets; });
+  const auto by_key = [](const Pair& a, const Pair& b) { return a.facets < b.facets; };
+  std::sort(found_.pairs.begin() + known, found_.pairs.end(), by_key);
+  std::inplace_merge(found_.pairs.begin(), found_.pairs.begin() + known, found_.pairs.end(), by_key);
   add_to_far(sides);
   search();
   leave_out_overlaps(fresh, 0.0);
@@ -1203,7 +1257,7 @@ void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair) {
   pair.applied = row.applied.number[lane];
   pair.lost_area = row.lost_area.number[lane];
   pair.lost_damping = row.lost_damping.number[lane];
-  if constexpr (Dim == 3) pair.pressed_at = row.pressed_at[lane];
+  if constexpr (Dim == 3) pair.pressed_at = corners_in(row.pressed_at, lane);
   for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
     PairPoint<Dim>& point = pair.points[k];
     point.area = row.area[k].number[lane];

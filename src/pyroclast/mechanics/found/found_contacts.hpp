@@ -74,7 +74,7 @@ class FoundContacts {
   std::vector<double> ways(double steps, double least, double most) const;
   bool find_near();
   double way_to_press(const Key& key, const Corners& at, double within) const;
-  double way_to_change(const Pair& pair, const Corners& at) const;
+  double way_to_change(const Pair& pair, const Corners& at, double within) const;
   double wakes(const Key& key, const Pair* handed_over) const;
   void let_sleep();
   void search();

@@ -4,7 +4,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/found_contacts.hpp"
 #include "pyroclast/mechanics/reader.hpp"
@@ -65,8 +64,8 @@ class PressedTriangles {
       b[i] = pair.pressed_at[3 + i];
     }
     overlap_ = overlap_of(a, b);
-    pair_ = triangle_pair<double>(overlap_, a, b);
-    tangents_ = tangents_of(pair_);
+    pair_ = triangle_pair(overlap_, a, b);
+    tangents_ = tangents_of(pair_.a, pair_.normal);
   }
 
   Vec<3> place(int k) const { return (pair_.on_a(k) + pair_.on_b(k)) * 0.5; }

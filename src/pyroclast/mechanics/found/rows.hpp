@@ -46,11 +46,27 @@ using TriangleCorners = std::array<Vec<3>, 6>;
 
 template <>
 struct ShapesOfRow<3> {
+  /// Corners side by side.
+  using Places = std::array<std::array<Vec<3>, kLanes>, 6>;
+
   /// Places of the corners in the last step in which the pair pressed, from which jumps go on, m.
-  std::array<TriangleCorners, kLanes> pressed_at;
-  std::array<Overlap, kLanes> overlap;       ///< overlap there; its count is 0 where the pair did not press
+  alignas(64) Places pressed_at;
+  std::array<Overlap, kLanes> overlap;  ///< overlap there; its count is 0 where the pair did not press
+  std::uint32_t had;                    ///< bits of the lanes where it is not
+  // What follows from places, kept because it changes seldom.
+  std::array<Overlap, kLanes>
+      seen;               ///< overlap in the last step in which corners lay on other sides of edges
+  OverlapsInLanes names;  ///< names of its corners
+  Line sides;             ///< see FoundContactForces::Sides; less than 0 where not known
+  /// Bits of the lanes where `seen` has other corners than `overlap`, and where it may have other numbers.
+  std::uint32_t changed, renewed;
+  std::array<std::uint8_t, Overlap::kMost>
+      joined_points;                         ///< bits of the points that an unbroken contact joins
   std::array<std::uint32_t, kLanes> joined;  ///< bits of the corners that an unbroken contact joins
 };
+
+/// Returns the corners of one pair of several.
+TriangleCorners corners_in(const ShapesOfRow<3>::Places& places, int lane);
 
 /// Eight pairs side by side.
 template <int Dim>

@@ -6,15 +6,11 @@ namespace pyroclast {
 
 namespace {
 
-/// Sine of the angle between edges below which they count as parallel: their crossing would run along them a
-/// thousand times as fast as the triangles move.
-constexpr double kParallel = 1e-3;
-/// Cosine of the angle between the mean normal and the common perpendicular of two edges below which they do
-/// not press where they cross: the gap there, which is taken along the normal, would change ten times as fast
-/// as the edges move. Edges of tilted triangles that lie in one outer side of their blocks are such.
-constexpr double kSteepest = 0.1;
 /// Overlap over the areas of both triangles below which there is none.
 constexpr double kLeastOverlap = 1e-12;
+static_assert(2.0 * kLeastOverlap < 0.2 * Overlap::kSurelyOne);
+/// Radius of a disc over the root of twice both areas that surely makes such an overlap.
+constexpr double kLeastDisc = 1e-5;
 /// Corners of a triangle that is cut by three lines, with three more that rounding may make.
 constexpr int kMostCut = Overlap::kMost + 3;
 
@@ -126,6 +122,35 @@ double distance_beside(const FlatTriangle& t, const FlatTriangle& other) {
   return most;
 }
 
+/// Returns the lesser distance of a place from the edges of a triangle; negative outside.
+double distance_within(const FlatTriangle& t, const Vec<2>& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const Vec<2>&from = t[i].at, &to = t[(i + 1) % 3].at;
+    least = std::min(least, left_of(place, from, to) / norm(to - from));
+  }
+  return least;
+}
+
+/// Returns the least and the largest gap where both triangles, grown by a distance, lie over each other:
+/// while corners go no further, all gaps of the overlap are gaps of this region.
+std::array<double, 2> gaps_within(const MeanPlane& plane, const Vec<3>& from_a_to_b, double within) {
+  // the gap is linear
+  const double over_a = 1.0 / dot(plane.normal, plane.area_a), over_b = 1.0 / dot(plane.normal, plane.area_b);
+  const auto gap = [&](const Vec<2>& at) {
+    const Vec<3> place = plane.axes[0] * at[0] + plane.axes[1] * at[1];
+    return dot(plane.area_b, from_a_to_b - place) * over_b + dot(plane.area_a, place) * over_a;
+  };
+  const Polygon region = cut_to(grown(plane.flat_a, within), grown(plane.flat_b, within));
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (int k = 0; k < region.count; ++k) {
+    const double here = gap(region.corners[k].at);
+    least = std::min(least, here);
+    most = std::max(most, here);
+  }
+  return {least, most};
+}
+
 /// Returns the least height of a triangle.
 double height(const Triangle& t) {
   double longest = 0.0;
@@ -164,7 +189,8 @@ Overlap overlap_of(const Triangle& a, const Triangle& b) {
       const int i = corner.edge_a(), j = corner.edge_b();
       const Vec<3> edge_a = a[(i + 1) % 3] - a[i], edge_b = b[(j + 1) % 3] - b[j];
       const Vec<3> across = cross(edge_a, edge_b);
-      const double least = std::max(kParallel * norm(edge_a) * norm(edge_b), kSteepest * norm(across));
+      const double least =
+          std::max(Overlap::kParallel * norm(edge_a) * norm(edge_b), Overlap::kSteepest * norm(across));
       if (std::abs(dot(across, plane.normal)) >= least) {
         corner.kind = Kind::crossing;
       } else {
@@ -190,29 +216,79 @@ double way_to_press(const Triangle& a, const Triangle& b, double most_depth, dou
   const MeanPlane plane(a, b);
   const double cosine = dot(plane.area_a, plane.area_b) / (norm(plane.area_a) * norm(plane.area_b));
   if (!(cosine > 0.0)) return -cosine / (1.0 / height(a) + 1.0 / height(b));
-  double way =
+  const double way =
       std::max(distance_beside(plane.flat_a, plane.flat_b), distance_beside(plane.flat_b, plane.flat_a));
-  // the gap is linear; while the corners go, the overlap stays where both triangles, grown, lie over each
-  // other
-  const double over_a = 1.0 / dot(plane.normal, plane.area_a), over_b = 1.0 / dot(plane.normal, plane.area_b);
-  const auto gap = [&](const Vec<2>& at) {
-    const Vec<3> place = plane.axes[0] * at[0] + plane.axes[1] * at[1];
-    return dot(plane.area_b, b[0] - a[0] - place) * over_b + dot(plane.area_a, place) * over_a;
-  };
-  const Polygon region = cut_to(grown(plane.flat_a, within), grown(plane.flat_b, within));
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (int k = 0; k < region.count; ++k) {
-    const double here = gap(region.corners[k].at);
-    least = std::min(least, here);
-    most = std::max(most, here);
-  }
+  if (way >= within) return way;
+  const auto [least, most] = gaps_within(plane, b[0] - a[0], within);
   return std::max({way, least, -most_depth - most});
+}
+
+double way_to_change(const Triangle& a, const Triangle& b, double bound, double within) {
+  const MeanPlane plane(a, b);
+  const double cosine = dot(plane.area_a, plane.area_b) / (norm(plane.area_a) * norm(plane.area_b));
+  const Polygon overlap = cut_to(plane.flat_a, plane.flat_b);
+  if (!(cosine > 0.0) || overlap.count == 0) return 0.0;
+  // as long as both hold a disc they overlap
+  Vec<2> middle{};
+  for (int k = 0; k < overlap.count; ++k) middle += overlap.corners[k].at * (1.0 / overlap.count);
+  const double radius =
+      std::min(distance_within(plane.flat_a, middle), distance_within(plane.flat_b, middle));
+  const double spare = radius - kLeastDisc * std::sqrt(norm(plane.area_a + plane.area_b));
+  const double least = gaps_within(plane, b[0] - a[0], within)[0];
+  return std::min({cosine / (1.0 / height(a) + 1.0 / height(b)), spare, least - bound});
+}
+
+void OverlapsInLanes::put(int lane, const Overlap& overlap) {
+  const auto set = [&](Bits& bits, bool is_set) {
+    const auto bit = 1U << static_cast<unsigned>(lane);
+    bits = static_cast<Bits>(is_set ? bits | bit : bits & ~bit);
+  };
+  for (int k = 0; k < Overlap::kMost; ++k) {
+    using Kind = OverlapCorner::Kind;
+    const bool is_one = k < overlap.count;
+    const OverlapCorner& corner = overlap.corners[k];
+    const bool is_of_a = corner.kind == Kind::of_a, is_of_b = corner.kind == Kind::of_b;
+    const bool is_crossing = corner.kind == Kind::crossing;
+    set(exists[k], is_one);
+    set(of_a[k], is_one && is_of_a);
+    set(of_b[k], is_one && is_of_b);
+    set(crosses[k], is_one && is_crossing);
+    const int a = is_of_a ? corner.behind : corner.edge_a(),
+              b = is_of_b ? corner.behind - 3 : corner.edge_b();
+    for (int i = 0; i < 3; ++i) {
+      set(on_a[k][i], is_one && (is_of_a || is_crossing) && a == i);
+      set(on_b[k][i], is_one && (is_of_b || is_crossing) && b == i);
+    }
+  }
+  count = 0;
+  while (count < Overlap::kMost && exists[count] != 0) ++count;
+}
+
+TrianglePair<double> triangle_pair(const Overlap& of, const Triangle& a, const Triangle& b) {
+  TrianglePair<double> p;
+  OverlapsInLanes names;
+  names.put(0, of);
+  for (int k = 0; k < of.count; ++k) {
+    p.at_a[k] = of.corners[k].at_a;
+    p.at_b[k] = of.corners[k].at_b;
+  }
+  place_corners(names, a, b, p);
+  return p;
+}
+
+std::array<Vec<3>, 6> corner_forces(const Overlap& of, const TrianglePair<double>& p,
+                                    const PointAreas<double>& areas,
+                                    const PointTractions<double>& tractions) {
+  OverlapsInLanes names;
+  names.put(0, of);
+  return corner_forces(names, p, areas, tractions);
 }
 
 template struct TrianglePair<double>;
 template struct PointAreas<double>;
-template TrianglePair<double> triangle_pair(const Overlap&, const Triangle&, const Triangle&);
-template std::array<Vec<3>, 6> corner_forces(const Overlap&, const TrianglePair<double>&,
+template void place_corners(const OverlapsInLanes&, const Triangle&, const Triangle&, TrianglePair<double>&);
+template std::array<Vec<3>, 6> corner_forces(const OverlapsInLanes&, const TrianglePair<double>&,
                                              const PointAreas<double>&, const PointTractions<double>&);
+template std::array<Vec<3>, 2> tangents_of(const Triangle&, const Vec<3>&);
 
 }  // namespace pyroclast

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "pyroclast/base/vec.hpp"
 #include "pyroclast/mechanics/found/counted_share.hpp"
@@ -45,6 +46,15 @@ struct OverlapCorner {
 /// little.
 struct Overlap {
   static constexpr int kMost = 6;  ///< most corners
+  /// Sine of the angle between edges below which they count as parallel: their crossing would run along them
+  /// a thousand times as fast as the triangles move.
+  static constexpr double kParallel = 1e-3;
+  /// Cosine of the angle between the mean normal and the common perpendicular of two edges below which they
+  /// do not press where they cross: the gap there, which is taken along the normal, would change ten times as
+  /// fast as the edges move. Edges of tilted triangles that lie in one outer side of their blocks are such.
+  static constexpr double kSteepest = 0.1;
+  /// Overlap over the length of the sum of both area vectors above which there surely is one.
+  static constexpr double kSurelyOne = 2e-11;
 
   int count = 0;  ///< number of corners; 0 where the triangles do not face each other or do not overlap
   std::array<OverlapCorner, kMost> corners{};
@@ -53,8 +63,53 @@ struct Overlap {
 /// Returns the overlap of two triangles, seen along the normal of their mean plane.
 Overlap overlap_of(const Triangle& a, const Triangle& b);
 
-/// Places of two triangles whose overlap is known. Real is a double, or Lanes for eight pairs at once, whose
-/// overlaps have the same corners and no fixed one.
+/// Names of the corners of eight overlaps side by side, as bits of lanes; a double reads the lowest one.
+struct OverlapsInLanes {
+  using Bits = std::uint8_t;
+  template <class T>
+  using OfCorner = std::array<T, Overlap::kMost>;
+
+  int count = 0;                                       ///< number of corners of the overlap that has most
+  OfCorner<Bits> exists{}, of_a{}, of_b{}, crosses{};  ///< what exists and is nothing else is fixed
+  /// Corner of a that it is, or at which the edge of a begins that crosses there; likewise of b.
+  OfCorner<std::array<Bits, 3>> on_a{}, on_b{};
+
+  void put(int lane, const Overlap& overlap);
+};
+
+/// Condition that bits of lanes stand for.
+template <class Real>
+auto truth_of(unsigned bits) {
+  if constexpr (std::is_same_v<Real, double>)
+    return (bits & 1U) != 0;
+  else
+    return Real::Truth::from_bits(bits);
+}
+
+template <class Truth, class Real>
+Vec<3, Real> select(const Truth& condition, const Vec<3, Real>& yes, const Vec<3, Real>& no) {
+  return {
+      {select(condition, yes[0], no[0]), select(condition, yes[1], no[1]), select(condition, yes[2], no[2])}};
+}
+
+/// Returns the bits of the overlaps of which a corner is fixed.
+template <class Real>
+unsigned fixed_in(const OverlapsInLanes& of, int k) {
+  return of.exists[k] & ~static_cast<unsigned>(of.of_a[k] | of.of_b[k] | of.crosses[k]);
+}
+/// Returns the bits of the overlaps that end at a corner.
+template <class Real>
+unsigned ends_at(const OverlapsInLanes& of, int k) {
+  return of.exists[k] & ~(k + 1 < of.count ? static_cast<unsigned>(of.exists[k + 1]) : 0U);
+}
+
+/// Adds a number or a vector where bits of lanes are set.
+template <class Real, class Number>
+void add_where(unsigned bits, Number& sum, const Number& more) {
+  if (bits != 0) sum = select(truth_of<Real>(bits), sum + more, sum);
+}
+
+/// Places of two triangles whose overlap is known. Real is a double, or Lanes for eight pairs at once.
 template <class Real>
 struct TrianglePair {
   using Vector = Vec<3, Real>;
@@ -82,19 +137,36 @@ struct TrianglePair {
   Vector on_a(int k) const { return mixed(a, at_a[k]); }
   Vector on_b(int k) const { return mixed(b, at_b[k]); }
 
+  /// Returns the place of the corner behind a corner.
+  Vector next_place(const OverlapsInLanes& of, int k) const {
+    return k + 1 < of.count ? select(truth_of<Real>(of.exists[k + 1]), place[k + 1], place[0]) : place[0];
+  }
+
   static Vector mixed(const std::array<Vector, 3>& corners, const std::array<Real, 3>& weights) {
     return corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
   }
 };
 
-/// \param of  overlap of the triangles; of other ones the result has no meaning
+/// Returns the corner of a triangle that bits of lanes name, or one of the next ones.
 template <class Real>
-TrianglePair<Real> triangle_pair(const Overlap& of, const std::array<Vec<3, Real>, 3>& a,
-                                 const std::array<Vec<3, Real>, 3>& b) {
+Vec<3, Real> named(const std::array<Vec<3, Real>, 3>& corners, const std::array<std::uint8_t, 3>& bits,
+                   int next) {
+  Vec<3, Real> corner = corners[next];
+  for (int i = 1; i < 3; ++i)
+    if (bits[i] != 0) corner = select(truth_of<Real>(bits[i]), corners[(i + next) % 3], corner);
+  return corner;
+}
+
+/// Takes two triangles to the numbers of their overlap.
+///
+/// \param of  overlap of the triangles; of other ones the result has no meaning
+/// \param p   in: weights at fixed corners
+template <class Real>
+void place_corners(const OverlapsInLanes& of, const std::array<Vec<3, Real>, 3>& a,
+                   const std::array<Vec<3, Real>, 3>& b, TrianglePair<Real>& p) {
   using Vector = Vec<3, Real>;
-  using Kind = OverlapCorner::Kind;
   const Real zero = 0.0, one = 1.0, half = 0.5;
-  TrianglePair<Real> p;
+  const auto truth = [](unsigned bits) { return truth_of<Real>(bits); };
   p.a = a;
   p.b = b;
   p.area_a = cross(a[1] - a[0], a[2] - a[0]) * half;
@@ -106,78 +178,85 @@ TrianglePair<Real> triangle_pair(const Overlap& of, const std::array<Vec<3, Real
   p.size = norm(sum);
   p.normal = sum * (one / p.size);
   const Real over_a = one / dot(p.normal, p.area_a), over_b = one / dot(p.normal, p.area_b);
-  // weight of each corner of a triangle at a place: area of the triangle of the other two and the place
-  const auto weights = [&](const std::array<Vector, 3>& of_triangle, const Vector& at, const Real& over) {
-    std::array<Real, 3> w;
-    for (int i = 0; i < 3; ++i) {
-      const Vector &next = of_triangle[(i + 1) % 3], &last = of_triangle[(i + 2) % 3];
-      w[i] = dot(p.normal, cross(last - next, at - next)) * half * over;
-    }
-    return w;
-  };
   for (int k = 0; k < of.count; ++k) {
-    const OverlapCorner& corner = of.corners[k];
-    auto &at_a = p.at_a[k], &at_b = p.at_b[k];
-    at_a.fill(zero);
-    at_b.fill(zero);
-    switch (corner.kind) {
-      case Kind::of_a:
-        at_a[corner.behind] = one;
-        at_b = weights(b, a[corner.behind], over_b);
-        p.gap_slope[k] = p.area_b * over_b;
-        break;
-      case Kind::of_b:
-        at_b[corner.behind - 3] = one;
-        at_a = weights(a, b[corner.behind - 3], over_a);
-        p.gap_slope[k] = p.area_a * over_a;
-        break;
-      case Kind::crossing: {
-        const int i = corner.edge_a(), j = corner.edge_b(), i1 = (i + 1) % 3, j1 = (j + 1) % 3;
-        const Vector edge_a = a[i1] - a[i], edge_b = b[j1] - b[j], across = cross(edge_a, edge_b);
-        const Vector between = b[j] - a[i];
-        const Real over = one / dot(across, p.normal);
-        const Real along_a = dot(p.normal, cross(between, edge_b)) * over;
-        const Real along_b = dot(p.normal, cross(between, edge_a)) * over;
-        at_a[i] = one - along_a;
-        at_a[i1] = along_a;
-        at_b[j] = one - along_b;
-        at_b[j1] = along_b;
-        p.gap_slope[k] = across * over;
-        break;
+    std::array<Real, 3> at_a{zero, zero, zero}, at_b{zero, zero, zero};
+    Vector slope = p.normal;
+    if ((of.of_a[k] | of.of_b[k]) != 0) {
+      // a corner is met by the other triangle, where each of whose corners has the weight of the triangle
+      // that the others make with that place
+      const auto is_of_a = truth(of.of_a[k]);
+      const Vector at = select(is_of_a, named(a, of.on_a[k], 0), named(b, of.on_b[k], 0));
+      const Real over = select(is_of_a, over_b, over_a);
+      std::array<Vector, 3> met;
+      for (int i = 0; i < 3; ++i) met[i] = select(is_of_a, b[i], a[i]);
+      for (int i = 0; i < 3; ++i) {
+        const Vector &next = met[(i + 1) % 3], &last = met[(i + 2) % 3];
+        const Real weight = dot(p.normal, cross(last - next, at - next)) * half * over;
+        at_a[i] = select(is_of_a, select(truth(of.on_a[k][i]), one, zero), weight);
+        at_b[i] = select(is_of_a, weight, select(truth(of.on_b[k][i]), one, zero));
       }
-      case Kind::fixed:
-        for (int i = 0; i < 3; ++i) {
-          at_a[i] = corner.at_a[i];
-          at_b[i] = corner.at_b[i];
-        }
-        p.gap_slope[k] = p.normal;
-        break;
+      slope = select(is_of_a, p.area_b * over_b, p.area_a * over_a);
     }
+    if (of.crosses[k] != 0) {
+      const auto crosses = truth(of.crosses[k]);
+      const Vector from_a = named(a, of.on_a[k], 0), from_b = named(b, of.on_b[k], 0);
+      const Vector edge_a = named(a, of.on_a[k], 1) - from_a, edge_b = named(b, of.on_b[k], 1) - from_b;
+      const Vector across = cross(edge_a, edge_b), between = from_b - from_a;
+      const Real over = one / dot(across, p.normal);
+      const Real along_a = dot(p.normal, cross(between, edge_b)) * over;
+      const Real along_b = dot(p.normal, cross(between, edge_a)) * over;
+      const auto on_edge = [&](const std::array<std::uint8_t, 3>& begins, int i, const Real& along) {
+        return select(truth(begins[i]), one - along, select(truth(begins[(i + 2) % 3]), along, zero));
+      };
+      for (int i = 0; i < 3; ++i) {
+        at_a[i] = select(crosses, on_edge(of.on_a[k], i, along_a), at_a[i]);
+        at_b[i] = select(crosses, on_edge(of.on_b[k], i, along_b), at_b[i]);
+      }
+      slope = select(crosses, across * over, slope);
+    }
+    if (fixed_in<Real>(of, k) != 0) {
+      const auto fixed = truth(fixed_in<Real>(of, k));
+      for (int i = 0; i < 3; ++i) {
+        at_a[i] = select(fixed, p.at_a[k][i], at_a[i]);
+        at_b[i] = select(fixed, p.at_b[k][i], at_b[i]);
+      }
+      slope = select(fixed, p.normal, slope);
+    }
+    const auto exists = truth(of.exists[k]);
+    for (int i = 0; i < 3; ++i) {
+      p.at_a[k][i] = select(exists, at_a[i], zero);
+      p.at_b[k][i] = select(exists, at_b[i], zero);
+    }
+    p.gap_slope[k] = slope;
     const Vector on_a = p.on_a(k);
     p.gap[k] = dot(p.normal, p.on_b(k) - on_a);
     p.place[k] = on_a;
   }
-  if (of.count == 0) return p;
+  if (of.count == 0) return;
   const Vector first = p.place[0];
   for (int k = 0; k < of.count; ++k) p.place[k] -= first;
   // the triangles of the overlap's first corner and the edges that do not touch it
   Vector moment{};
   for (int k = 1; k + 1 < of.count; ++k) {
+    const auto exists = truth(of.exists[k + 1]);
     const Real area = dot(p.normal, cross(p.place[k], p.place[k + 1])) * half;
-    p.overlap += area;
-    moment += (p.place[k] + p.place[k + 1]) * (area * Real(1.0 / 3.0));
+    p.overlap = select(exists, p.overlap + area, p.overlap);
+    moment = select(exists, moment + (p.place[k] + p.place[k + 1]) * (area * Real(1.0 / 3.0)), moment);
   }
   p.middle = moment * (one / p.overlap);
   // of the triangle of the centroid and an edge, each end of the edge has half: linear gaps keep their sum
   // and their moments, and nothing jumps where corners come and go
   for (int k = 0; k < of.count; ++k) {
-    const int next = k + 1 == of.count ? 0 : k + 1;
-    const Real area = dot(p.normal, cross(p.place[k] - p.middle, p.place[next] - p.middle)) * Real(0.25);
-    p.part[k] += area;
-    p.part[next] += area;
+    const Real area =
+        dot(p.normal, cross(p.place[k] - p.middle, p.next_place(of, k) - p.middle)) * Real(0.25);
+    add_where<Real>(of.exists[k], p.part[k], area);
+    if (k + 1 < of.count) add_where<Real>(of.exists[k + 1], p.part[k + 1], area);
+    add_where<Real>(ends_at<Real>(of, k), p.part[0], area);
   }
-  return p;
 }
+
+/// \param of  overlap of the triangles; of other ones the result has no meaning
+TrianglePair<double> triangle_pair(const Overlap& of, const Triangle& a, const Triangle& b);
 
 /// Tractions of the law at the points, and the energy of their normal part.
 template <class Real>
@@ -201,12 +280,13 @@ struct PointAreas {
   std::array<Real, Overlap::kMost> area{};  ///< m²
 
   PointAreas() = default;
+  /// \param count        number of points
   /// \param of_pair      ratio of the pair's areas to these
   /// \param left_out     overlap that does not count, because the triangles lay in each other when the pair
   ///                     began, m²
   /// \param most_depth   depth from which on a point does not count, m
   /// \param gap          gap of each point from which its depth is taken, m
-  PointAreas(const Overlap& of, const TrianglePair<Real>& p, const Real& of_pair, const Real& left_out,
+  PointAreas(int count, const TrianglePair<Real>& p, const Real& of_pair, const Real& left_out,
              const Real& most_depth, const std::array<Real, Overlap::kMost>& gap)
       : ratio(of_pair), not_counted(left_out), counted(p.overlap - left_out) {
     using std::sqrt;
@@ -214,7 +294,7 @@ struct PointAreas {
     width = smaller(root, most_depth * Real(1.0 / CountedShare<Real>::kMost));
     is_wide = width < root;
     const Real of_part = factor(p);
-    for (int k = 0; k < of.count; ++k) {
+    for (int k = 0; k < count; ++k) {
       points[k] = CountedShare<Real>((Real(0.0) - gap[k]) / width);
       area[k] = of_part * p.part[k] * points[k].share;
     }
@@ -228,14 +308,15 @@ struct PointAreas {
 
 /// Returns the forces of the tractions at the points on the corners of a, then of b, N: minus the gradient of
 /// their energy, where the points' areas move with the corners too. The shear acts as its area stands.
+/// Tractions are zero where there is no point.
 template <class Real>
-std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<Real>& p,
+std::array<Vec<3, Real>, 6> corner_forces(const OverlapsInLanes& of, const TrianglePair<Real>& p,
                                           const PointAreas<Real>& areas,
                                           const PointTractions<Real>& tractions) {
   using Vector = Vec<3, Real>;
-  using Kind = OverlapCorner::Kind;
   using OfCorners = std::array<Real, 3>;
   const Real zero = 0.0, one = 1.0, half = 0.5;
+  const auto where = [](unsigned bits, const Vector& v) { return select(truth_of<Real>(bits), v, Vector{}); };
   std::array<Vector, 6> f{};
   // adds a force that acts on a, and against b, where the corners have these weights
   const auto press = [&](const Vector& force, const OfCorners& at_a, const OfCorners& at_b) {
@@ -268,12 +349,16 @@ std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<
   std::array<Vector, Overlap::kMost> by_place{};
   Vector by_middle{};
   for (int k = 0; k < of.count; ++k) {
-    const int next = k + 1 == of.count ? 0 : k + 1;
-    const Real by_area = half * (half * (by_part[k] + by_part[next]) + by_overlap);
-    const Vector here = p.place[k] - p.middle, there = p.place[next] - p.middle;
+    const bool is_last = k + 1 == of.count;
+    const Real by_next =
+        is_last ? by_part[0] : select(truth_of<Real>(of.exists[k + 1]), by_part[k + 1], by_part[0]);
+    const Real by_area =
+        select(truth_of<Real>(of.exists[k]), half * (half * (by_part[k] + by_next) + by_overlap), zero);
+    const Vector here = p.place[k] - p.middle, there = p.next_place(of, k) - p.middle;
     const Vector by_here = cross(there, p.normal) * by_area, by_there = cross(p.normal, here) * by_area;
     by_place[k] += by_here;
-    by_place[next] += by_there;
+    if (!is_last) add_where<Real>(of.exists[k + 1], by_place[k + 1], by_there);
+    add_where<Real>(ends_at<Real>(of, k), by_place[0], by_there);
     by_middle -= by_here + by_there;
     by_normal += cross(here, there) * by_area;
   }
@@ -282,35 +367,35 @@ std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<
     const Vector &here = p.place[k], &there = p.place[k + 1];
     const Vector normal_area = cross(here, there) * half;
     const Vector from_middle = (here + there) * Real(1.0 / 3.0) - p.middle;
-    const Real by_area = half * dot(by_middle, from_middle) * over_overlap;
+    const auto exists = truth_of<Real>(of.exists[k + 1]);
+    const Real by_area = select(exists, half * dot(by_middle, from_middle) * over_overlap, zero);
     const Vector by_here = cross(there, p.normal) * by_area, by_there = cross(p.normal, here) * by_area;
-    const Vector third = by_middle * (dot(p.normal, normal_area) * Real(1.0 / 3.0) * over_overlap);
+    const Vector third =
+        where(of.exists[k + 1], by_middle * (dot(p.normal, normal_area) * Real(1.0 / 3.0) * over_overlap));
     by_place[0] += third - by_here - by_there;
     by_place[k] += third + by_here;
     by_place[k + 1] += third + by_there;
     by_normal += normal_area * (Real(2.0) * by_area);
   }
   // The places on a follow the corners of a and b.
-  constexpr OfCorners none{};
   for (int k = 0; k < of.count; ++k) {
-    const OverlapCorner& corner = of.corners[k];
-    const Vector force = -by_place[k];
-    if (corner.kind == Kind::of_b) {  // below a corner of b: along the normal by the gap
-      for (int i = 0; i < 3; ++i) f[3 + i] += force * p.at_b[k][i];
-      const Vector along = p.gap_slope[k] * dot(force, p.normal);
-      press(along, p.at_a[k], p.at_b[k]);
-      by_normal -= (along - force) * p.gap[k];
-      continue;
+    const Vector force = where(of.exists[k], -by_place[k]), on_b = where(of.of_b[k], force);
+    const Vector on_a = force - on_b;
+    for (int i = 0; i < 3; ++i) {
+      f[i] += on_a * p.at_a[k][i];
+      f[3 + i] += on_b * p.at_b[k][i];
     }
-    press(force, p.at_a[k], none);
-    if (corner.kind == Kind::crossing) {  // it runs along the edge of a
-      const int i = corner.edge_a(), j = corner.edge_b();
-      const Vector edge_a = p.a[(i + 1) % 3] - p.a[i], edge_b = p.b[(j + 1) % 3] - p.b[j];
-      const Vector along =
-          cross(edge_b, p.normal) * (Real(0.0) - dot(force, edge_a) / dot(p.normal, cross(edge_a, edge_b)));
-      press(along, p.at_a[k], p.at_b[k]);
-      by_normal -= along * p.gap[k];
+    // below a corner of b: along the normal by the gap
+    Vector along = where(of.of_b[k], p.gap_slope[k] * dot(force, p.normal));
+    if (of.crosses[k] != 0) {  // it runs along the edge of a
+      const Vector edge_a = named(p.a, of.on_a[k], 1) - named(p.a, of.on_a[k], 0);
+      const Vector edge_b = named(p.b, of.on_b[k], 1) - named(p.b, of.on_b[k], 0);
+      const Vector on_edge =
+          cross(edge_b, p.normal) * (zero - dot(force, edge_a) / dot(p.normal, cross(edge_a, edge_b)));
+      along = select(truth_of<Real>(of.crosses[k]), on_edge, along);
     }
+    press(along, p.at_a[k], p.at_b[k]);
+    by_normal -= (along - on_b) * p.gap[k];
   }
   // The normal and the cosine follow the area vectors.
   const Vector turning = (by_normal - p.normal * dot(p.normal, by_normal)) * (one / p.size);
@@ -332,12 +417,33 @@ std::array<Vec<3, Real>, 6> corner_forces(const Overlap& of, const TrianglePair<
 /// \param most_depth  depth from which on nothing presses, m
 /// \param within  largest way that is asked for, times that factor, m
 double way_to_press(const Triangle& a, const Triangle& b, double most_depth, double within);
+/// Returns the same of two triangles that overlap: until a gap may fall below a bound, or until they may
+/// leave each other.
+///
+/// \param bound   gap, m
+/// \param within  as above, m
+double way_to_change(const Triangle& a, const Triangle& b, double bound, double within);
+
+/// Returns unit vectors in the mean plane of a pair. The first one turns with the first edge of a.
+///
+/// \param normal  of the mean plane
+template <class Real>
+std::array<Vec<3, Real>, 2> tangents_of(const std::array<Vec<3, Real>, 3>& a, const Vec<3, Real>& normal) {
+  const Vec<3, Real> edge = a[1] - a[0], along = edge - normal * dot(edge, normal);
+  const Vec<3, Real> first = along * (Real(1.0) / norm(along));
+  return {first, cross(normal, first)};
+}
 
 // Steps are compiled for several instruction sets, and these once: no set's code gets into another's.
 extern template struct TrianglePair<double>;
 extern template struct PointAreas<double>;
-extern template TrianglePair<double> triangle_pair(const Overlap&, const Triangle&, const Triangle&);
-extern template std::array<Vec<3>, 6> corner_forces(const Overlap&, const TrianglePair<double>&,
+extern template void place_corners(const OverlapsInLanes&, const Triangle&, const Triangle&,
+                                   TrianglePair<double>&);
+extern template std::array<Vec<3>, 6> corner_forces(const OverlapsInLanes&, const TrianglePair<double>&,
                                                     const PointAreas<double>&, const PointTractions<double>&);
+extern template std::array<Vec<3>, 2> tangents_of(const Triangle&, const Vec<3>&);
+/// Returns the forces of one pair.
+std::array<Vec<3>, 6> corner_forces(const Overlap& of, const TrianglePair<double>& p,
+                                    const PointAreas<double>& areas, const PointTractions<double>& tractions);
 
 }  // namespace pyroclast

@@ -3,7 +3,6 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <optional>
 
 #include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
@@ -167,16 +166,8 @@ struct FoundContactForces {
     applied.store(row.applied.number);
   }
 
-  /// Bits of lanes that are touched, and numbers of their points as the law takes them.
-  struct Touched {
-    std::uint32_t faces = 0;                          ///< lanes whose triangles face each other and overlap
-    std::array<std::uint32_t, kPoints> counts{};      ///< points that there are, and that may press
-    std::array<Line, kPoints> gap{}, area{}, way{};   ///< m, m², m
-    std::array<typename Row::Jump, kPoints> slide{};  ///< m
-  };
-
-  /// Overlaps and the law's tractions differ from lane to lane, so a row goes through the geometry pair by
-  /// pair, and through the law point by point.
+  /// Most rows stand apart, or rest. A row that does not goes through the geometry with all its pairs at
+  /// once: the overlaps that it knows stay as long as corners stay on their sides of edges.
   static void update_triangles(const State<Dim>& s, FoundRows<Dim>& found, int index) {
     Row& row = found.rows[index];
     Vec<Dim>* const forces = &found.forces[kCorners * kLanes * index];
@@ -191,81 +182,113 @@ struct FoundContactForces {
       bore = bore | (Real::load(row.area[k].number) > zero);
       rest_below = larger(rest_below, Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
     }
-    // most pairs stand apart, lie beside each other, or rest; overlaps of the others are taken one by one
     const Truth rests_on = was_handed_over & (!bore) & lie.over & (lie.gap > rest_below + Real(kRounding));
     const Truth is_asked =
         (!lie.beside) & (!rests_on) & (was_handed_over | bore | (lie.gap < Real(kRounding)));
-    if (row.rests && !any(is_asked | (was_handed_over & lie.beside))) return;
+    const Truth flies_off = was_handed_over & lie.beside;
+    if (row.rests && !any(is_asked | flies_off)) return;
 
-    alignas(64) std::array<std::array<Vec<Dim>, kLanes>, kCorners> places;
-    for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
-    std::array<std::optional<TouchedPair>, kLanes> pairs;
-    Touched touched{.faces = bits_of(rests_on)};
-    for (std::uint32_t asked = bits_of(is_asked); asked != 0; asked &= asked - 1) {
-      const int lane = std::countr_zero(asked);
-      TriangleCorners corners;
-      for (int i = 0; i < kCorners; ++i) corners[i] = places[i][lane];
-      touch(s, found, row, lane, corners, pairs[lane].emplace(), touched);
-    }
-    row.rests = false;
-    select(is_asked, Real::load(row.not_counted.number), zero).store(row.not_counted.number);
-    const Truth face = Truth::from_bits(touched.faces);
+    const PlacesOfOverlap places = places_of(at, lie);
+    const Truth rests_here = is_asked & was_handed_over & !bore;
+    const Truth is_pressed = is_asked & (bore | ((!was_handed_over) & may_touch(row, lie, places)));
+    if (row.rests && !any(is_pressed | rests_here | flies_off)) return;
+    const Real sides = sides_of(at, lie);
+    const Truth changes = rests_here & may_change(row, lie, places, sides);
+    const Truth is_taken = is_pressed | changes, lies_still = rests_here & !changes;
+    if (row.rests && !any(is_taken | flies_off)) return;
+    OverlapsInLanes of;
+    TrianglePair<Real> p;
+    const std::uint32_t carried = take_to_overlaps(found, row, at, sides, is_taken, of, p);
+    const std::uint32_t faces = of.count > 0 ? of.exists[0] : 0U;
+    const std::uint32_t live = faces & ~(row.changed & ~carried);  // others rest on
+    const Truth is_live = Truth::from_bits(live), face = Truth::from_bits(faces) | rests_on | lies_still;
     const auto leaves = was_handed_over & !face;
-    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
 
     Now now;
     now.handed_over = face & was_handed_over;
     const Real most_depth = Real::load(row.most_depth.number);
+    Truth touches = zero > zero;
+    for (int k = 0; k < kPoints; ++k) {
+      now.gap[k] = k < of.count ? p.gap[k] + Real::load(row.offset[k].number) : zero;
+      now.area_before[k] = Real::load(row.area[k].number);
+      now.goes_in[k] = Truth::from_bits(k < of.count ? of.exists[k] & live : 0U) &
+                       (now.gap[k] < Real::load(row.rest[k].number)) & (zero - now.gap[k] < most_depth);
+      touches = touches | now.goes_in[k];
+    }
+    if (row.rests && !any(touches | bore | leaves)) return;
+    row.rests = false;
+    const Real left_out = Real::load(row.not_counted.number);
+    const Real not_counted = select(is_live, select(touches, smaller(left_out, p.overlap), zero),
+                                    select(Truth::from_bits(faces), left_out, zero));
+    not_counted.store(row.not_counted.number);
+    PointAreas<Real> areas(of.count, p, Real::load(row.thickness.number), not_counted, most_depth, now.gap);
+    const auto tangents = tangents_of(p.a, p.normal);
+    const auto slides = slides_of(row, p, of.count, tangents);
+    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
+
     std::array<Tractions, kPoints> tractions;
-    std::array<Line, kPoints> area{};
     Real stored = zero;
     Truth loaded = zero > zero;
     for (int k = 0; k < kPoints; ++k) {
-      now.gap[k] = Real::load(touched.gap[k].number);
-      now.area_before[k] = Real::load(row.area[k].number);
-      now.goes_in[k] =
-          face & (now.gap[k] < Real::load(row.rest[k].number)) & (zero - now.gap[k] < most_depth);
-      Real area_now = Real::load(touched.area[k].number);
-      const Truth acts = face & Truth::from_bits(touched.counts[k]) & (area_now > zero) &
-                         (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
+      Real area_now = zero;
+      Truth acts = zero > zero;
+      if (k < of.count) {
+        area_now = areas.area[k];
+        acts = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.joined_points[k])) &
+               (p.overlap > not_counted) & (area_now > zero) &
+               (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
+      }
       if (any(acts | (now.area_before[k] > zero))) {
         const Truth rested = !(now.area_before[k] > zero);
-        const Jump slide = choose(rested, Jump{}, load(touched.slide[k]));
+        const Jump slide = choose(rested, Jump{}, slides[k]);
         stored += press_point(s, row, k, acts, now, slide, area_now, tractions[k]);
       } else {
         area_now = zero;
         tractions[k] = {zero, zero, Jump{}};
         forget(s, row, k, leaves);
       }
-      if (found.is_damped) damp(s, row, k, Real::load(touched.way[k].number), area_now, tractions[k].normal);
-      area_now.store(area[k].number);
-      loaded = loaded | (area_now > zero);
+      if (found.is_damped)
+        damp(s, row, k, k < of.count ? gap_way(s, row, p, k) : zero, area_now, tractions[k].normal);
+      const Truth bears = area_now > zero;
+      loaded = loaded | bears;
+      areas.area[k] = area_now;
+      auto& counts = areas.points[k];
+      for (Real* number : {&counts.depth, &counts.share, &counts.slope})
+        *number = select(bears, *number, zero);
     }
     stored.store(row.stored.number);
     const std::uint32_t bearing = bits_of(loaded);
-    const Truth remembers = (Real::load(row.not_counted.number) > zero) | is_damped(row);
+    const Truth remembers = (not_counted > zero) | is_damped(row);
     const bool presses = bearing != 0 || any(remembers);
+    keep_places(row, at, bearing | carried);
     if (!presses && row.handed_over == 0) {
-      row.overlap.fill({});
       rest(row, forces);
       return;
     }
-    place_forces(row, bearing, pairs, area, tractions, forces);
+    place_forces(row, of, p, areas, tractions, tangents, loaded, forces);
     row.rests = !presses;
   }
 
   /// How eight pairs of triangles lie, seen along the mean normal.
   struct Lie {
-    Truth beside;  ///< one triangle lies beyond an edge of the other
-    Truth over;    ///< they face each other, and the middle of one lies over the other
-    Real gap;      ///< bound below which no gap of them lies, m
+    Truth beside;   ///< one triangle lies beyond an edge of the other
+    Truth over;     ///< they face each other, and the middle of one lies over the other
+    Real gap;       ///< bound below which no gap of them lies, m
+    Truth surely;   ///< no rounding decides on which side of an edge a corner lies
+    Truth clearly;  ///< corners lie so far from the edges that an overlap which holds one is not tiny
+    /// Sides of the corners of b beside each edge of a, then of those of a beside each edge of b: positive
+    /// inside.
+    std::array<std::array<Real, 3>, kCorners> side;
+    Vector sum;  ///< of the area vectors, times 2, m²
+    Real sides;  ///< sum of powers of two: those of the corners that lie inside of edges of the other one
   };
 
   static Lie lie_of(const std::array<Vector, kCorners>& at) {
     const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
     const Vector normal = area_a + area_b;
     const Truth none = Truth::from_bits(0);
-    Lie lie{none, none, 0.0};
+    Lie lie{none, none, 0.0, !none, !none, {}, normal, 0.0};
+    double power = 1.0;
     for (int own : {0, 3}) {
       const int other = 3 - own;
       const Vector middle = (at[other] + at[other + 1] + at[other + 2]) * Real(1.0 / 3.0);
@@ -274,8 +297,15 @@ struct FoundContactForces {
         const Vector& from = at[own + i];
         const Vector inwards = cross(normal, at[own + (i + 1) % 3] - from);
         const Real surely = dot(inwards, at[own + (i + 2) % 3] - from) * Real(kSurely);
-        Real most = dot(inwards, at[other] - from);
-        for (int k = 1; k < 3; ++k) most = larger(most, dot(inwards, at[other + k] - from));
+        Real most = 0.0;
+        for (int k = 0; k < 3; ++k, power *= 2.0) {
+          const Real side = dot(inwards, at[other + k] - from);
+          most = k == 0 ? side : larger(most, side);
+          lie.side[own + i][k] = side;
+          lie.surely = lie.surely & (abs(side) > surely);
+          lie.clearly = lie.clearly & (abs(side) > surely * Real(kClearly / kSurely));
+          lie.sides += select(side > Real(0.0), Real(power), Real(0.0));
+        }
         lie.beside = lie.beside | (most < -surely);
         is_within = is_within & (dot(inwards, middle - from) > surely);
       }
@@ -291,74 +321,281 @@ struct FoundContactForces {
     return lie;
   }
 
-  /// Takes one pair to its overlap and the areas of its points, which go on from those of the last step.
-  static void touch(const State<Dim>& s, FoundRows<Dim>& found, Row& row, int lane,
-                    const TriangleCorners& corners, TouchedPair& pair, Touched& touched) {
-    const double thickness = row.thickness.number[lane];
-    if (thickness == 0.0) return;
-    const auto bit = 1U << static_cast<unsigned>(lane);
-    if (!touch_pair(found, row, lane, corners, pair)) {
-      row.not_counted.number[lane] = 0.0;
-      return;
+  /// Returns a number that names all that decides on the corners of an overlap: on which side of each edge
+  /// the corners lie, and how edges cross; -1 where rounding decides. The size of the overlap decides too.
+  static Real sides_of(const std::array<Vector, kCorners>& at, const Lie& lie) {
+    const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
+    const Vector sum = area_a + area_b, normal = sum * (Real(1.0) / norm(sum));
+    const Real zero = 0.0;
+    double power = kPowerOfFirstCrossing;
+    Real sides = lie.sides;
+    const auto add = [&](const Truth& condition) {
+      sides += select(condition, Real(power), zero);
+      power *= 2.0;
+    };
+    add(dot(area_a, area_b) > zero);
+    std::array<Vector, 3> edges_b;
+    std::array<Real, 3> lengths_b;
+    for (int j = 0; j < 3; ++j) {
+      edges_b[j] = at[3 + (j + 1) % 3] - at[3 + j];
+      lengths_b[j] = norm(edges_b[j]);
     }
-    touched.faces |= bit;
-    for (int k = 0; k < pair.overlap.count; ++k) {
-      if (pair.counts[k]) touched.counts[k] |= bit;
-      touched.gap[k].number[lane] = pair.gap[k];
-      touched.area[k].number[lane] = pair.areas.area[k];
-      for (int i = 0; i + 1 < Dim; ++i) touched.slide[k][i].number[lane] = pair.slide[k][i];
+    for (int i = 0; i < 3; ++i) {
+      const Vector edge_a = at[(i + 1) % 3] - at[i];
+      const Real length_a = norm(edge_a);
+      for (int j = 0; j < 3; ++j) {
+        const Vector across = cross(edge_a, edges_b[j]);
+        const Real least = larger(Real(Overlap::kParallel) * length_a * lengths_b[j],
+                                  Real(Overlap::kSteepest) * norm(across));
+        add(abs(dot(across, normal)) >= least);
+        add(dot(edge_a, edges_b[j]) > zero);
+      }
     }
-    if (!found.is_damped) return;
-    TriangleCorners velocity;
-    for (int i = 0; i < kCorners; ++i)
-      velocity[i] = vector_at<Dim>(s.velocity, row.corners[i][lane] / offset_of<Dim>(1));
-    for (int k = 0; k < pair.overlap.count; ++k)
-      touched.way[k].number[lane] = pair.opening_velocity(k, velocity) * s.time_step;
+    return select(lie.surely, sides, Real(-1.0));
   }
 
-  /// Writes the forces of a row, and the places from which it goes on.
-  static void place_forces(Row& row, std::uint32_t bearing,
-                           std::array<std::optional<TouchedPair>, kLanes>& pairs,
-                           const std::array<Line, kPoints>& area,
-                           const std::array<Tractions, kPoints>& tractions, Vec<Dim>* forces) {
-    struct Lines {
-      Line normal, stored;
-      typename Row::Jump shear;
+  /// Tells whether the row knows the overlaps of pairs.
+  static Truth is_known(const Row& row, const Real& sides) {
+    const Real known = Real::load(row.sides.number);
+    return (sides >= Real(0.0)) & (sides <= known) & (known <= sides);
+  }
+
+  /// Where overlaps may have corners: at those of triangles, and where edges cross.
+  struct PlacesOfOverlap {
+    std::array<Truth, kCorners> over;                 ///< true where a corner lies over the other triangle
+    std::array<std::array<Truth, 3>, 3> cross;        ///< true where edges cross
+    std::array<Real, kCorners> gap;                   ///< gap at corners, m
+    std::array<std::array<Real, 3>, 3> gap_of_edges;  ///< gap where edges cross, m
+    Real margin;                                      ///< more than rounding may change gaps, m
+  };
+
+  static PlacesOfOverlap places_of(const std::array<Vector, kCorners>& at, const Lie& lie) {
+    const Real zero = 0.0, one = 1.0;
+    PlacesOfOverlap places;
+    const Vector area_a = cross(at[1] - at[0], at[2] - at[0]), area_b = cross(at[4] - at[3], at[5] - at[3]);
+    const Vector normal = lie.sum * (one / norm(lie.sum));
+    const Real over_a = one / dot(area_a, normal), over_b = one / dot(area_b, normal);
+    std::array<Real, kCorners> height;
+    Real highest = zero;
+    std::array<std::array<Truth, 3>, kCorners> inside;
+    for (int i = 0; i < kCorners; ++i) {
+      height[i] = dot(normal, at[i] - at[0]);
+      highest = larger(highest, abs(height[i]));
+      places.gap[i] = i < 3 ? dot(area_b, at[3] - at[i]) * over_b : dot(area_a, at[i] - at[0]) * over_a;
+      for (int k = 0; k < 3; ++k) inside[i][k] = lie.side[i][k] > zero;
+    }
+    places.margin = highest * Real(kOfHeights) + Real(kRounding);
+    for (int k = 0; k < 3; ++k) {
+      places.over[k] = inside[3][k] & inside[4][k] & inside[5][k];
+      places.over[3 + k] = inside[0][k] & inside[1][k] & inside[2][k];
+    }
+    const auto differ = [](const Truth& x, const Truth& y) { return (x & !y) | (y & !x); };
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+        const Real &of_a = lie.side[3 + j][i], &of_b = lie.side[i][j];
+        const Real along_a = of_a / (of_a - lie.side[3 + j][i1]), along_b = of_b / (of_b - lie.side[i][j1]);
+        places.gap_of_edges[i][j] = height[3 + j] + along_b * (height[3 + j1] - height[3 + j]) - height[i] -
+                                    along_a * (height[i1] - height[i]);
+        places.cross[i][j] =
+            differ(inside[3 + j][i], inside[3 + j][i1]) & differ(inside[i][j], inside[i][j1]);
+      }
+    return places;
+  }
+
+  /// Tells which pairs that are not handed over may touch.
+  static Truth may_touch(const Row& row, const Lie& lie, const PlacesOfOverlap& places) {
+    const Real zero = 0.0, most_depth = Real::load(row.most_depth.number);
+    Truth touches = !lie.surely;
+    const auto look = [&](const Truth& is_there, const Real& gap) {
+      touches = touches | (is_there & (gap < places.margin) & (zero - gap < most_depth + places.margin));
     };
-    std::array<Lines, kPoints> lines;
+    for (int i = 0; i < kCorners; ++i) look(places.over[i], places.gap[i]);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) look(places.cross[i][j], places.gap_of_edges[i][j]);
+    return touches;
+  }
+
+  /// Tells which pairs that are handed over and rest may have a point that goes through the law, or may have
+  /// left each other.
+  static Truth may_change(const Row& row, const Lie& lie, const PlacesOfOverlap& places, const Real& sides) {
+    const Real zero = 0.0;
+    const OverlapsInLanes& of = row.names;
+    Real rest = zero, offset = zero;
     for (int k = 0; k < kPoints; ++k) {
-      tractions[k].normal.store(lines[k].normal.number);
-      tractions[k].stored.store(lines[k].stored.number);
-      store(tractions[k].shear, lines[k].shear);
+      rest = larger(rest, Real::load(row.rest[k].number));
+      offset = smaller(offset, Real::load(row.offset[k].number));
     }
-    for (int lane = 0; lane < kLanes; ++lane) {
-      TriangleCorners f{};
-      double applied = 0.0;
-      const bool bears = (bearing >> static_cast<unsigned>(lane) & 1U) != 0;
-      if (bears) {
-        TouchedPair& pair = *pairs[lane];
-        PointTractions<double> t;
-        for (int k = 0; k < pair.overlap.count; ++k) {
-          pair.keep_area(k, area[k].number[lane]);
-          t.normal[k] = lines[k].normal.number[lane];
-          t.stored[k] = lines[k].stored.number[lane];
-          t.shear[k] = pair.tangents[0] * lines[k].shear[0].number[lane] +
-                       pair.tangents[1] * lines[k].shear[1].number[lane];
+    Truth changes = zero > zero;
+    unsigned holds_corner = 0;
+    for (int k = 0; k < kPoints && of.exists[k] != 0; ++k) {
+      holds_corner |= static_cast<unsigned>(of.of_a[k] | of.of_b[k]);
+      Real gap = zero;
+      const auto take = [&](unsigned bits, const Real& here) {
+        if (bits != 0) gap = select(Truth::from_bits(bits), here, gap);
+      };
+      for (int i = 0; i < 3; ++i) {
+        take(of.of_a[k] & of.on_a[k][i], places.gap[i]);
+        take(of.of_b[k] & of.on_b[k][i], places.gap[3 + i]);
+        for (int j = 0; j < 3; ++j)
+          take(of.crosses[k] & of.on_a[k][i] & of.on_b[k][j], places.gap_of_edges[i][j]);
+      }
+      // points of another overlap may take their rest from one and their offset from another
+      const Real bound = select(Truth::from_bits(row.changed), rest - offset,
+                                Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
+      changes = changes | (Truth::from_bits(of.exists[k]) & !(gap > bound + places.margin));
+    }
+    return changes | !(lie.clearly & is_known(row, sides) & Truth::from_bits(holds_corner));
+  }
+
+  /// Takes pairs to their overlaps, and points whose overlap has others than before to what they remember.
+  /// Returns the bits of the lanes of these.
+  static std::uint32_t take_to_overlaps(FoundRows<Dim>& found, Row& row,
+                                        const std::array<Vector, kCorners>& at, const Real& sides,
+                                        const Truth& is_asked, OverlapsInLanes& of, TrianglePair<Real>& p) {
+    const Real zero = 0.0;
+    const std::uint32_t asked = bits_of(is_asked & (Real::load(row.thickness.number) > zero));
+    alignas(64) typename Row::Places places;
+    for (int i = 0; i < kCorners; ++i) R::store(at[i], places[i].data());
+    Line new_sides;
+    sides.store(new_sides.number);
+    std::uint32_t anew = asked & ~bits_of(is_known(row, sides)), seen = 0;
+    while (true) {
+      for (std::uint32_t left = anew; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        see_overlap(row, lane, corners_in(places, lane), new_sides.number[lane]);
+      }
+      seen |= anew;
+      name_overlaps(row, asked, of, p);
+      place_corners(of, {at[0], at[1], at[2]}, {at[3], at[4], at[5]}, p);
+      // where the overlap is tiny there may be none
+      if (of.count == 0) break;
+      anew = of.exists[0] & ~seen & ~bits_of(p.overlap > p.size * Real(Overlap::kSurelyOne));
+      if (anew == 0) break;
+      p.overlap = zero;
+      p.part.fill(zero);
+    }
+    std::uint32_t carried = 0;
+    for (std::uint32_t left = of.count > 0 ? row.changed & of.exists[0] : 0U; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      if (carry_over(found, row, lane, corners_in(places, lane)))
+        carried |= 1U << static_cast<unsigned>(lane);
+    }
+    return carried;
+  }
+
+  /// Takes the names of the overlaps of some lanes, and the weights of their fixed corners.
+  static void name_overlaps(const Row& row, std::uint32_t lanes, OverlapsInLanes& of, TrianglePair<Real>& p) {
+    using Bits = OverlapsInLanes::Bits;
+    const auto of_lanes = [&](Bits& bits, Bits all) { bits = static_cast<Bits>(all & lanes); };
+    of.count = 0;
+    for (int k = 0; k < kPoints; ++k) {
+      of_lanes(of.exists[k], row.names.exists[k]);
+      of_lanes(of.of_a[k], row.names.of_a[k]);
+      of_lanes(of.of_b[k], row.names.of_b[k]);
+      of_lanes(of.crosses[k], row.names.crosses[k]);
+      for (int i = 0; i < 3; ++i) {
+        of_lanes(of.on_a[k][i], row.names.on_a[k][i]);
+        of_lanes(of.on_b[k][i], row.names.on_b[k][i]);
+      }
+      if (of.exists[k] != 0) of.count = k + 1;
+      if (fixed_in<Real>(of, k) == 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        Line at_a, at_b;
+        for (int lane = 0; lane < kLanes; ++lane) {
+          at_a.number[lane] = row.seen[lane].corners[k].at_a[i];
+          at_b.number[lane] = row.seen[lane].corners[k].at_b[i];
         }
-        f = corner_forces(pair.overlap, pair.pair, pair.areas, t);
+        p.at_a[k][i] = Real::load(at_a.number);
+        p.at_b[k][i] = Real::load(at_b.number);
       }
-      if (bears || (pairs[lane] && pairs[lane]->is_carried_over)) {
-        row.pressed_at[lane] = pairs[lane]->corners;
-        row.overlap[lane] = pairs[lane]->overlap;
-      } else if ((row.handed_over >> static_cast<unsigned>(lane) & 1U) == 0) {
-        row.overlap[lane] = {};
-      }
-      for (int i = 0; i < kCorners; ++i) {
-        if (bears) applied += norm(f[i]);
-        forces[i * kLanes + lane] = f[i];
-      }
-      row.applied.number[lane] = applied;
     }
+  }
+
+  /// Returns the way of each point along the tangents since the last step that pressed, m.
+  static std::array<Jump, kPoints> slides_of(const Row& row, const TrianglePair<Real>& p, int count,
+                                             const std::array<Vector, 2>& tangents) {
+    std::array<Jump, kPoints> slides{};
+    if (row.had == 0) return slides;
+    const Truth had = Truth::from_bits(row.had);
+    std::array<Vector, 3> a, b;
+    for (int i = 0; i < 3; ++i) {
+      a[i] = R::load(row.pressed_at[i].data());
+      b[i] = R::load(row.pressed_at[3 + i].data());
+    }
+    const Vector sum =
+        cross(a[1] - a[0], a[2] - a[0]) * Real(0.5) + cross(b[1] - b[0], b[2] - b[0]) * Real(0.5);
+    const auto tangents_then = tangents_of(a, sum * (Real(1.0) / norm(sum)));
+    for (int k = 0; k < count; ++k) {
+      const Vector apart = p.on_b(k) - p.on_a(k);
+      const Vector apart_then =
+          TrianglePair<Real>::mixed(b, p.at_b[k]) - TrianglePair<Real>::mixed(a, p.at_a[k]);
+      for (int i = 0; i + 1 < Dim; ++i)
+        slides[k][i] = select(had, dot(tangents[i], apart) - dot(tangents_then[i], apart_then), Real(0.0));
+    }
+    return slides;
+  }
+
+  /// Returns how far the gap of a point opens in a step, m.
+  static Real gap_way(const State<Dim>& s, const Row& row, const TrianglePair<Real>& p, int k) {
+    const auto velocity = [&](int i) {
+      Line lines[Dim];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Vec<Dim> v = vector_at<Dim>(s.velocity, row.corners[i][lane] / offset_of<Dim>(1));
+        for (int j = 0; j < Dim; ++j) lines[j].number[lane] = v[j];
+      }
+      Vector v;
+      for (int j = 0; j < Dim; ++j) v[j] = Real::load(lines[j].number);
+      return v;
+    };
+    Vector apart{};
+    for (int i = 0; i < 3; ++i) apart += velocity(3 + i) * p.at_b[k][i] - velocity(i) * p.at_a[k][i];
+    return dot(p.gap_slope[k], apart) * Real(s.time_step);
+  }
+
+  /// Keeps the places of pairs that press, from which they go on; those of others are forgotten, unless they
+  /// are handed over.
+  static void keep_places(Row& row, const std::array<Vector, kCorners>& at, std::uint32_t pressed) {
+    if (pressed != 0) {
+      const Truth is_pressed = Truth::from_bits(pressed);
+      for (int i = 0; i < kCorners; ++i) {
+        Vec<Dim>* const places = row.pressed_at[i].data();
+        R::store(select(is_pressed, at[i], R::load(places)), places);
+      }
+    }
+    for (std::uint32_t left = pressed & row.renewed; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      row.overlap[lane] = row.seen[lane];
+    }
+    const std::uint32_t forgotten = row.had & ~pressed & ~row.handed_over;
+    for (std::uint32_t left = forgotten; left != 0; left &= left - 1)
+      row.overlap[std::countr_zero(left)].count = 0;
+    row.had = (row.had | pressed) & ~forgotten;
+    row.changed &= row.had & ~pressed;
+    row.renewed = (row.renewed & ~pressed) | forgotten;
+  }
+
+  /// Writes the forces of a row.
+  static void place_forces(Row& row, const OverlapsInLanes& of, const TrianglePair<Real>& p,
+                           const PointAreas<Real>& areas, const std::array<Tractions, kPoints>& tractions,
+                           const std::array<Vector, 2>& tangents, const Truth& loaded, Vec<Dim>* forces) {
+    Real applied = 0.0;
+    std::array<Vector, kCorners> f{};
+    if (of.count > 0) {
+      PointTractions<Real> t;
+      for (int k = 0; k < of.count; ++k) {
+        t.normal[k] = tractions[k].normal;
+        t.stored[k] = tractions[k].stored;
+        t.shear[k] = tangents[0] * tractions[k].shear[0] + tangents[1] * tractions[k].shear[1];
+      }
+      f = corner_forces(of, p, areas, t);
+    }
+    for (int i = 0; i < kCorners; ++i) {
+      f[i] = R::where(loaded, f[i]);
+      applied += norm(f[i]);
+      R::store(f[i], &forces[i * kLanes]);
+    }
+    applied.store(row.applied.number);
   }
 
   /// Writes what follows where no pair of a row presses.
@@ -530,8 +767,13 @@ struct FoundContactForces {
     return bits;
   }
 
+  static constexpr double kPowerOfFirstCrossing = 0x1p18;  ///< behind the powers of Lie::sides
   /// Distance from an edge, over the height of the triangle, from which on no rounding decides on an overlap.
   static constexpr double kSurely = 1e-9;
+  /// Likewise of which follows that an overlap is larger than Overlap::kSurelyOne, unless triangles are as
+  /// slender as 1 to 200.
+  static constexpr double kClearly = 1e-3;
+  static constexpr double kOfHeights = 1e-6;  ///< rounding of gaps over the heights of the corners
   static constexpr double kRounding = 1e-14;  ///< more than rounding may change a gap, m
   static constexpr double kOpen = 1.0;        ///< opening of a point that does not press, m
   static constexpr double kAlwaysAsked = std::numeric_limits<double>::max();  ///< opening, m
