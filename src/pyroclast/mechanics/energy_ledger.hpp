@@ -47,8 +47,11 @@ struct EnergyLedger {
   double accounted() const { return sum(LedgerSide::lost, sum(LedgerSide::held) + dissipated.total()); }
   double error() const { return work_in() - accounted(); }
   double elastic() const { return zones + contacts; }
-  /// Returns kinetic over elastic energy; 0 where nothing is strained.
-  double kinetic_over_elastic() const { return elastic() > 0.0 ? std::abs(kinetic) / elastic() : 0.0; }
+  /// Returns kinetic over elastic energy; 0 where nothing is strained, but by round-off of a body that flies.
+  double kinetic_over_elastic() const {
+    constexpr double kRoundOff = 1e-38;
+    return elastic() > kRoundOff * std::abs(kinetic) ? std::abs(kinetic) / elastic() : 0.0;
+  }
 };
 
 /// Entries in the order of the history's columns; the columns of `dissipated` stand before the other losses.
