@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "gradient.hpp"
+#include "pyroclast/base/lanes.hpp"
 #include "pyroclast/base/random.hpp"
 
 namespace pyroclast::triangles {
@@ -160,6 +161,62 @@ TEST(TrianglePairVerification, ForcesAreTheGradientOfTheirEnergy) {
   EXPECT_LT(worst, 1e-9);
   EXPECT_LT(balance, 1e-14);
   EXPECT_LT(with_shear, 1e-14);
+}
+
+/// Returns the forces of eight pairs that go side by side, under springs.
+std::array<Corners, kLanes> forces_in_lanes(const std::array<Corners, kLanes>& pairs,
+                                            const std::array<Springs, kLanes>& springs) {
+  using Real = Lanes<Portable>;
+  const auto line = [](auto number_of) {
+    Line numbers;
+    for (int lane = 0; lane < kLanes; ++lane) numbers.number[lane] = number_of(lane);
+    return Real::load(numbers.number);
+  };
+  std::array<Vec<3, Real>, 6> at;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 3; ++j) at[i][j] = line([&](int lane) { return pairs[lane][i][j]; });
+  OverlapsInLanes names;
+  for (int lane = 0; lane < kLanes; ++lane)
+    names.put(lane, overlap_of(first_of(pairs[lane]), second_of(pairs[lane])));
+  TrianglePair<Real> p;
+  place_corners<Real>(names, {at[0], at[1], at[2]}, {at[3], at[4], at[5]}, p);
+  const PointAreas<Real> areas(names.count, p, line([&](int lane) { return springs[lane].ratio; }),
+                               line([&](int lane) { return springs[lane].not_counted; }),
+                               line([&](int lane) { return springs[lane].most_depth; }), p.gap);
+  PointTractions<Real> t;
+  for (int k = 0; k < names.count; ++k) {
+    const Real gap = smaller(p.gap[k], Real(0.0));
+    t.normal[k] = line([&](int lane) { return springs[lane].normal; }) * gap;
+    t.stored[k] = Real(0.5) * line([&](int lane) { return springs[lane].normal; }) * gap * gap;
+  }
+  const auto f = corner_forces(names, p, areas, t);
+  std::array<Corners, kLanes> forces;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 3; ++j) {
+      Line numbers;
+      f[i][j].store(numbers.number);
+      for (int lane = 0; lane < kLanes; ++lane) forces[lane][i][j] = numbers.number[lane];
+    }
+  return forces;
+}
+
+// Promise: pairs that go side by side have the forces that each has alone, to the bit, whatever corners the
+// overlaps beside them have.
+TEST(TrianglePair, EightSideBySideAreAsEachAlone) {
+  std::array<Corners, kLanes> pairs{}, alone{};
+  std::array<Springs, kLanes> springs{};
+  int taken = 0, compared = 0;
+  for_random_pairs(800, [&](const Corners& x, const Pressed& p, const Springs& s) {
+    const int lane = taken++ % kLanes;
+    pairs[lane] = x;
+    springs[lane] = s;
+    alone[lane] = forces_of(p, s);
+    if (lane + 1 < kLanes) return;
+    const auto beside = forces_in_lanes(pairs, springs);
+    for (int other = 0; other < kLanes; ++other, ++compared)
+      EXPECT_TRUE(beside[other] == alone[other]) << "pair " << compared;
+  });
+  EXPECT_EQ(compared, 800);
 }
 
 // Promise: the shear does work along the change of the places on both triangles: along the relative motion at
