@@ -57,10 +57,6 @@ def finished(case: str, *changes: str) -> Finished:
         return Finished(folder)
 
 
-# How the last stage of a small form ends where it does not reach its stop.
-ENDS = {"hot_strength_3d": "the stress fell below the stated fraction of the peak"}
-
-
 class Cases(unittest.TestCase):
     def assert_between(self, low: float, value: float, high: float):
         self.assertGreater(value, low)
@@ -72,9 +68,7 @@ class Cases(unittest.TestCase):
                      "loose_splitting", "notched_beam", "ring_cooling", "spalling_slab_3d", "transient_heating_3d", "wall_bent"):
             with self.subTest(case):
                 summary = finished(case).summary
-                *before, last = [stage["outcome"] for stage in summary["stages"]]
-                self.assertEqual(before, ["completed"] * len(before))
-                self.assertEqual(last, ENDS.get(case, "completed"))
+                self.assertEqual({stage["outcome"] for stage in summary["stages"]}, {"completed"})
                 self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.005)
 
     def test_creep_shortens_what_is_heated_under_load(self):
