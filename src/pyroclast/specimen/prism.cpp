@@ -53,10 +53,9 @@ Prism::Prism(Region section, Axis axis, double length) : section_(std::move(sect
     for (std::size_t i = 0; i < loop.corners.size(); ++i)
       if (&loop != &section_.loops().front() || sides_[loop.side[i]].is_cut)
         walls_.push_back({loop.corners[i], loop.corners[(i + 1) % loop.corners.size()], loop.side[i]});
-  for (const auto& [from, to, side] : around_) {
-    const Vec<2> along = to - from;
-    const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
-    planes_.push_back({in_space(out, axis_, 0.0), dot(out, from), side});
+  for (const Piece& piece : around_) {
+    const Vec<2> out = out_of(piece);
+    planes_.push_back({in_space(out, axis_, 0.0), dot(out, piece.from), piece.side});
   }
   const int first_end = static_cast<int>(sides_.size());
   for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"}) {
@@ -121,11 +120,8 @@ std::vector<FlatPart> Prism::flat_parts() const {
       parts[around_.size() + (is_far ? 1 : 0)].corners.push_back(
           in_space(around_[i].from, axis_, is_far ? length() : 0.0));
   }
-  for (const Piece& wall : walls_) {
-    const Vec<2> along = wall.to - wall.from;
-    const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
-    parts.push_back({along_axis(wall), in_space(out, axis_, 0.0), wall.side});
-  }
+  for (const Piece& wall : walls_)
+    parts.push_back({along_axis(wall), in_space(out_of(wall), axis_, 0.0), wall.side});
   return parts;
 }
 

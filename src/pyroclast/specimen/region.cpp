@@ -161,13 +161,15 @@ std::vector<std::string> names_of(std::span<const Side> sides) {
   return names;
 }
 
+Vec<2> out_of(const Piece& piece) {
+  const Vec<2> along = piece.to - piece.from;
+  return Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
+}
+
 std::vector<FlatPart> Region::flat_parts() const {
   std::vector<FlatPart> parts;
-  for (const auto& [from, to, side] : pieces_) {
-    const Vec<2> along = to - from;
-    parts.push_back(
-        {{resized<3>(from), resized<3>(to)}, Vec<3>{{along[1], -along[0], 0.0}} * (1.0 / norm(along)), side});
-  }
+  for (const Piece& piece : pieces_)
+    parts.push_back({{resized<3>(piece.from), resized<3>(piece.to)}, resized<3>(out_of(piece)), piece.side});
   return parts;
 }
 

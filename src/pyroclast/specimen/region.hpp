@@ -66,6 +66,9 @@ struct Piece {
   int side;         ///< index into Region::sides
 };
 
+/// Returns the unit vector across a piece, out of the body.
+Vec<2> out_of(const Piece& piece);
+
 /// Flat part of an outline: a piece in the plane, a face in space.
 struct FlatPart {
   std::vector<Vec<3>> corners;  ///< m

@@ -22,12 +22,6 @@ constexpr double kSharp = 2.0 / 3.0 * std::numbers::pi;
 /// walls.
 constexpr double kBehindCorner = 0.1;
 
-/// Returns the unit vector out of the body across a wall.
-Vec<2> out_of(const Piece& wall) {
-  const Vec<2> way = wall.to - wall.from;
-  return Vec<2>{{way[1], -way[0]}} * (1.0 / norm(way));
-}
-
 /// Returns the unit vector into the body at the corner between two walls; none where it is blunt, or juts
 /// out.
 std::optional<Vec<2>> way_into(const Piece& before, const Piece& after) {
