@@ -26,6 +26,79 @@ phi_res = "8 deg"
 G_f2 = "380 N/m"
 """
 """The paper's law, recalibrated in space: all cases in space had it before one damage."""
+GLUED = """[[bearings]]
+name = "lower_end"
+side = "bottom"
+thickness = "20 mm"
+contact = "glued"
+
+[[bearings]]
+name = "upper_end"
+side = "top"
+thickness = "20 mm"
+contact = "glued"
+"""
+"""Instead of the platens of cube_3d."""
+PULL = """
+[[record]]
+name = "grip"
+kind = "displacement"
+set = "upper_end_support"
+direction = "y"
+
+[[record]]
+name = "load"
+kind = "force"
+set = "upper_end_support"
+direction = "y"
+
+[[stages]]
+kind = "drive"
+duration = "4 s"
+look_interval = "5 ms"
+
+[[stages.drives]]
+set = "lower_end_support"
+hold = ["x", "y", "z"]
+
+[[stages.drives]]
+set = "upper_end_support"
+hold = ["x", "z"]
+
+[[stages.drives]]
+set = "upper_end_support"
+velocity = "0.2 mm/s"
+direction = "y"
+ramp_time = "100 ms"
+
+[[stages.until]]
+record = "load"
+share_of_peak = 0.1
+
+[[stages.until]]
+record = "grip"
+above = "0.4 mm"
+
+[[stages.results]]
+name = "P"
+kind = "peak"
+record = "load"
+
+[[stages.results]]
+name = "side"
+kind = "given"
+value = "80 mm"
+
+[[stages.results]]
+name = "f_t"
+kind = "formula"
+formula = "P / (side * side)"
+unit = "MPa"
+"""
+"""Instead of the stages of cube_3d: the glued ends part a prism."""
+PRISM = ["specimen.width=80 mm", "specimen.height=120 mm", "specimen.depth=80 mm", "blocks.count=1445",
+         "mechanics.gravity=0 m/s2"]
+"""Of 80 mm x 120 mm x 80 mm, with blocks as large as those of the cube."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,6 +124,19 @@ def of_two_damages(case: str, contacts: str = CONTACTS_OF_TWO_DAMAGES + "\n") ->
     text = re.sub(r"^mode_2_energy.*\n", "", case, flags=re.MULTILINE)
     return re.sub(r"^\[contacts\.mortar_mortar\].*?(?=^\[contacts\.)", lambda _: contacts, text,
                   flags=re.MULTILINE | re.DOTALL)
+
+
+def pulled(text: str) -> str:
+    """A prism of the cube's concrete between glued ends."""
+    contacts = text.index("[contacts]")
+    lines = text[contacts:text.index("[[stages]]")].splitlines()
+    return "\n".join([text[:text.index("[platens]")] + GLUED,
+                      *(line for line in lines if not line.startswith("platen_friction")), PULL])
+
+
+def without_covered_fraction(text: str) -> str:
+    """Blocks that follow the stones need no share of a block that decides."""
+    return "".join(line for line in text.splitlines(True) if not line.startswith("covered_fraction"))
 
 
 @dataclasses.dataclass(frozen=True)
