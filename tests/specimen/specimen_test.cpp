@@ -28,6 +28,28 @@ TEST(Specimen, MeetsThePapersRequest) {
   }
 }
 
+// Promise: size classes add up to the whole request, and tell the stones that no block is left for.
+TEST(Specimen, CountsWhatBecameOfEachSize) {
+  SpecimenParameters p = paper_specimen(1);
+  p.blocks.count = 1000;
+  const Specimen<2> s = make_specimen(p);
+  ASSERT_EQ(s.classes.size(), p.aggregates.sieves.size() - 1);
+  double asked = 0.0, placed = 0.0, superposed = 0.0;
+  std::size_t stones = 0;
+  for (const SizeClass& c : s.classes) {
+    asked += c.asked;
+    placed += c.placed;
+    superposed += c.superposed;
+    stones += static_cast<std::size_t>(c.stones);
+  }
+  EXPECT_NEAR(asked, 0.34, 1e-12);
+  EXPECT_NEAR(placed, s.fraction_placed, 1e-12);
+  EXPECT_NEAR(superposed, s.fraction_superposed, 1e-12);
+  EXPECT_EQ(stones, s.stones.size());
+  EXPECT_GT(s.classes.front().without_a_block, 0);
+  EXPECT_EQ(s.classes.back().without_a_block, 0);
+}
+
 TEST(Specimen, TheSameSeedGivesTheSameSpecimen) {
   const Specimen<2> a = make_specimen(paper_specimen(11));
   const Specimen<2> b = make_specimen(paper_specimen(11));

@@ -33,6 +33,11 @@ std::string describe_phases(const specimen::Specimen<Dim>& s) {
   text += '\n';
   for (std::size_t i = 0; i < s.phases.size(); ++i)
     text += fmt::format("                {:<12} {:.3f} of the {}\n", s.phases[i], s.fraction[i], extent);
+  for (const auto& c : s.classes)
+    text += fmt::format(
+        "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "
+        "without a block\n",
+        kMilli * c.from, kMilli * c.to, c.asked, c.placed, c.stones, c.superposed, c.without_a_block);
   return text;
 }
 
@@ -63,11 +68,6 @@ std::string describe_specimen(const specimen::Specimen<2>& s) {
 std::string describe_specimen(const specimen::Specimen<3>& s) {
   const auto& m = s.metrics;
   std::string text = describe_phases(s);
-  for (const auto& c : s.classes)
-    text += fmt::format(
-        "                {:g} to {:g} mm: {:.3f} asked, {:.3f} placed by {} stones, {:.3f} superposed; {} "
-        "without a block\n",
-        kMilli * c.from, kMilli * c.to, c.asked, c.placed, c.stones, c.superposed, c.without_a_block);
   text += fmt::format("blocks          mean size {:.3f} mm, {:.1f} zones", kMilli * m.mean_size,
                       m.zones_per_block);
   if (m.most_corners > 0) text += fmt::format(", faces of up to {} corners", m.most_corners);

@@ -208,7 +208,8 @@ void require_of_space(const SpecimenParameters& p) {
 }
 
 /// Returns the size classes of all kinds: the intervals between their sieves.
-std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>& specimen) {
+template <int Dim>
+std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<Dim>& specimen) {
   const auto kinds = stone_kinds(p);
   const double whole = specimen.outline.extent();
   std::vector<double> superposed(specimen.stones.size());
@@ -225,11 +226,12 @@ std::vector<SizeClass> classes_of(const SpecimenParameters& p, const Specimen<3>
       its.asked = asked.fraction * (passing(asked, to) - passing(asked, from));
       const bool is_last = i + 1 == asked.sieves.size();
       for (std::size_t b = 0; b < specimen.stones.size(); ++b) {
-        const Stone<3>& ball = specimen.stones[b];
-        if (ball.kind != kind || ball.diameter < from || (is_last ? ball.diameter > to : ball.diameter >= to))
+        const Stone<Dim>& stone = specimen.stones[b];
+        if (stone.kind != kind || stone.diameter < from ||
+            (is_last ? stone.diameter > to : stone.diameter >= to))
           continue;
         ++its.stones;
-        its.placed += extent(ball) / whole;
+        its.placed += extent(stone) / whole;
         its.superposed += superposed[b];
         if (superposed[b] == 0.0) ++its.without_a_block;
       }
@@ -435,8 +437,8 @@ Specimen<Dim> make_specimen(const SpecimenParameters& p, Team* team) {
     specimen.small_stones = static_cast<int>(std::ranges::count_if(stones, [&](const Stone<3>& stone) {
       return stone.diameter < kSmallestStone * sizes.at(stone.centre);
     }));
-    specimen.classes = classes_of(p, specimen);
   }
+  specimen.classes = classes_of(p, specimen);
   measure(specimen, blocks.done);
   return specimen;
 }

@@ -280,7 +280,7 @@ struct Specimen {
   double fraction_of_stones = 0.0;      ///< superposed share before fibres were superposed
   double covered_fraction = 0.0;        ///< share of a block above which it became aggregate
   std::vector<double> fraction = {};    ///< share of the blocks of each phase
-  std::vector<SizeClass> classes = {};  ///< size classes in space; not counted in the plane
+  std::vector<SizeClass> classes = {};  ///< stones asked for by their sizes
   int small_stones = 0;  ///< stones in space that are smaller than three of the blocks around them
   Metrics<Dim> metrics = {};
 };
