@@ -37,48 +37,48 @@ std::uint32_t square(double x, double length) {
   return static_cast<std::uint32_t>(std::clamp(x / length * curve_side, 0.0, curve_side - 1.0));
 }
 
-std::vector<std::size_t> number_cells(Cells<2>& tessellation, const Box& box) {
+std::vector<std::size_t> number_cells(Cells<2>& cells, const Box& box) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    corners(cells, c, polygon);
     const Vec<2> centre = centroid(polygon) - box.low;
     order.emplace_back(place_on_curve(square(centre[0], box.width()), square(centre[1], box.height())), c);
   }
   std::sort(order.begin(), order.end());
-  std::vector<std::vector<int>> cells;
+  std::vector<std::vector<int>> in_order;
   std::vector<std::size_t> before;
-  cells.reserve(order.size());
+  in_order.reserve(order.size());
   for (const auto& [place, c] : order) {
-    cells.push_back(std::move(tessellation.cells[c]));
+    in_order.push_back(std::move(cells.cells[c]));
     before.push_back(c);
   }
-  tessellation.cells = std::move(cells);
+  cells.cells = std::move(in_order);
   return before;
 }
 
-void number_vertices(Cells<2>& tessellation) {
-  std::vector<int> number(tessellation.vertices.size(), -1);
+void number_vertices(Cells<2>& cells) {
+  std::vector<int> number(cells.vertices.size(), -1);
   std::vector<Vec<2>> vertices;
   vertices.reserve(number.size());
-  for (auto& cell : tessellation.cells) {
+  for (auto& cell : cells.cells) {
     for (int& v : cell) {
       int& n = number[static_cast<std::size_t>(v)];
       if (n < 0) {
         n = static_cast<int>(vertices.size());
-        vertices.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
+        vertices.push_back(cells.vertices[static_cast<std::size_t>(v)]);
       }
       v = n;
     }
   }
-  tessellation.vertices = std::move(vertices);
+  cells.vertices = std::move(vertices);
 }
 
 }  // namespace
 
-std::vector<std::size_t> number_along_curve(Cells<2>& tessellation, const Box& box) {
-  std::vector<std::size_t> before = number_cells(tessellation, box);
-  number_vertices(tessellation);
+std::vector<std::size_t> number_along_curve(Cells<2>& cells, const Box& box) {
+  std::vector<std::size_t> before = number_cells(cells, box);
+  number_vertices(cells);
   return before;
 }
 

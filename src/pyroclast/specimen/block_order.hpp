@@ -11,6 +11,6 @@ namespace pyroclast::specimen {
 /// Geometry and each cell's own order stay. Blocks that lie together then stand together in memory; the time
 /// of a step depends on this once a specimen has outgrown the caches. Returns the former number of each cell,
 /// in the new order.
-std::vector<std::size_t> number_along_curve(Cells<2>& tessellation, const Box& box);
+std::vector<std::size_t> number_along_curve(Cells<2>& cells, const Box& box);
 
 }  // namespace pyroclast::specimen

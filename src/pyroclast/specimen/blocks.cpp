@@ -350,14 +350,14 @@ std::string side_near(const Region& region, const Vec<2>& point) {
 /// one.
 /// \param stone  stone of each cell; follows
 /// \param seed   seed of each cell; follows
-void unite_small_stones(const SeedDraw& draw, Cells<2>& tessellation, std::vector<int>& stone,
+void unite_small_stones(const SeedDraw& draw, Cells<2>& cells, std::vector<int>& stone,
                         std::vector<int>& seed) {
   std::map<int, std::vector<int>> small;
   for (std::size_t c = 0; c < stone.size(); ++c)
     if (stone[c] >= 0 && draw.is_one_cell(stone[c])) small[stone[c]].push_back(static_cast<int>(c));
   std::vector<std::vector<int>> groups;
-  for (auto& [number, cells] : small) groups.push_back(std::move(cells));
-  const std::vector<int> before = unite(tessellation, groups);
+  for (auto& [number, its] : small) groups.push_back(std::move(its));
+  const std::vector<int> before = unite(cells, groups);
   for (std::size_t c = 0; c < before.size(); ++c) {
     stone[c] = stone[before[c]];
     seed[c] = seed[before[c]];

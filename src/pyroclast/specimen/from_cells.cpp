@@ -27,17 +27,16 @@ constexpr double kFarthest = 10.0;
 
 /// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
 /// are not one piece, or parts of the outline meet in one point.
-std::vector<std::vector<int>> loops_of(const Cells<2>& tessellation, const std::vector<Facet<2>>& edges,
+std::vector<std::vector<int>> loops_of(const Cells<2>& cells, const std::vector<Facet<2>>& edges,
                                        const Numbering& numbering) {
-  std::vector<int> next(tessellation.vertices.size(), -1);
-  if (const std::string pieces = describe_pieces<2>(tessellation, edges, numbering); !pieces.empty())
+  std::vector<int> next(cells.vertices.size(), -1);
+  if (const std::string pieces = describe_pieces<2>(cells, edges, numbering); !pieces.empty())
     throw Error(pieces);
   for (const Facet<2>& e : edges) {
     if (e.outer >= 0) continue;
     if (next[e.corners[0]] >= 0)
       throw Error(fmt::format("parts of the outline meet in one point, ({:.6g}, {:.6g}) m",
-                              tessellation.vertices[e.corners[0]][0],
-                              tessellation.vertices[e.corners[0]][1]));
+                              cells.vertices[e.corners[0]][0], cells.vertices[e.corners[0]][1]));
     next[e.corners[0]] = e.corners[1];
   }
   std::vector<std::vector<int>> loops;
@@ -53,14 +52,14 @@ std::vector<std::vector<int>> loops_of(const Cells<2>& tessellation, const std::
 }
 
 /// Returns the largest distance of a vertex from its side, m (`kOffSide`).
-double slack_of(const Cells<2>& tessellation) {
+double slack_of(const Cells<2>& cells) {
   double whole = 0.0;
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    corners(cells, c, polygon);
     whole += std::abs(area(polygon));
   }
-  return kOffSide * std::sqrt(whole / static_cast<double>(tessellation.cells.size()));
+  return kOffSide * std::sqrt(whole / static_cast<double>(cells.cells.size()));
 }
 
 /// Adds the corners between two vertices of a loop: of those farther than `slack` from the line between the
@@ -163,14 +162,13 @@ void make_upright(std::vector<Vec<2>>& corners, double slack) {
   std::rotate(corners.begin(), corners.end() - static_cast<std::ptrdiff_t>(lowest), corners.end());
 }
 
-Region outline_of_loops(const Cells<2>& tessellation, const std::vector<Facet<2>>& edges,
+Region outline_of_loops(const Cells<2>& cells, const std::vector<Facet<2>>& edges,
                         const Numbering& numbering) {
-  const double slack = slack_of(tessellation);
+  const double slack = slack_of(cells);
   std::vector<Vec<2>> outer;
   std::vector<Hole> holes;
-  for (const auto& loop : loops_of(tessellation, edges, numbering)) {
-    std::vector<Vec<2>> corners =
-        places_of(corners_of(loop, tessellation.vertices, slack), loop, tessellation.vertices);
+  for (const auto& loop : loops_of(cells, edges, numbering)) {
+    std::vector<Vec<2>> corners = places_of(corners_of(loop, cells.vertices, slack), loop, cells.vertices);
     if (area(corners) < 0.0)
       holes.push_back({fmt::format("hole_{}", holes.size() + 1), std::move(corners)});
     else if (outer.empty())
@@ -343,15 +341,15 @@ void lay_on_sides(Cells<3>& cells, const Prism& body, const std::vector<int>& nu
 
 }  // namespace
 
-void lay_on_sides(Cells<2>& tessellation) {
-  auto& at = tessellation.vertices;
+void lay_on_sides(Cells<2>& cells) {
+  auto& at = cells.vertices;
   std::vector<std::vector<int>> loops;
   try {
-    loops = loops_of(tessellation, facets(tessellation), {});
+    loops = loops_of(cells, facets(cells), {});
   } catch (const Error&) {
     return;
   }
-  const double slack = slack_of(tessellation);
+  const double slack = slack_of(cells);
   const Box box = box_of(at);
   const double exact = kExact * std::max(box.width(), box.height());
   const auto move = [&](int vertex, const Vec<2>& to) {
@@ -374,12 +372,12 @@ void lay_on_sides(Cells<2>& tessellation) {
   }
 }
 
-Region outline_of(const Cells<2>& tessellation, const Numbering& numbering) {
-  const std::vector<Facet<2>> all = facets(tessellation, numbering);
+Region outline_of(const Cells<2>& cells, const Numbering& numbering) {
+  const std::vector<Facet<2>> all = facets(cells, numbering);
   try {
-    return outline_of_loops(tessellation, all, numbering);
+    return outline_of_loops(cells, all, numbering);
   } catch (const Error& error) {
-    throw Error(error.what() + describe_joinable(tessellation));
+    throw Error(error.what() + describe_joinable(cells));
   }
 }
 

@@ -20,7 +20,7 @@ inline constexpr double kExact = 1e-12;
 /// between its corners. Sides of a rectangle become level and upright, and begin at 0 where they nearly do.
 /// Vertices that are off by no more than twelve decimals leave stay; so do all where the cells have no
 /// outline, as `outline_of` tells.
-void lay_on_sides(Cells<2>& tessellation);
+void lay_on_sides(Cells<2>& cells);
 
 /// Returns the outline of cells: its outer loop and its holes, with straight sides joined from corner to
 /// corner: vertices no farther than `kOffSide` from the line between two others are no corners. Sides of the
@@ -28,7 +28,7 @@ void lay_on_sides(Cells<2>& tessellation);
 /// of each hole `hole_1`, ...; those of a rectangle along the axes `bottom`, `right`, `top`, `left`. Throws
 /// Error when the cells are not one piece (`describe_pieces`), or meet in a point alone; the message says
 /// whether vertices could be joined (`describe_joinable`).
-Region outline_of(const Cells<2>& tessellation, const Numbering& numbering = {});
+Region outline_of(const Cells<2>& cells, const Numbering& numbering = {});
 
 /// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when there are no cells,
 /// when a list has another length, when a cell names a vertex that does not exist, or one twice, and when it

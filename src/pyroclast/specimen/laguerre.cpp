@@ -260,7 +260,7 @@ Cells<2> join(const std::vector<std::vector<Vec<2>>>& polygons) {
 
 /// Moves each vertex that lies within the tolerance of a corner of the outline, or of the mouth or tip of a
 /// notch, exactly onto it.
-void snap_to_corners(Cells<2>& tessellation, const Region& region, double tolerance) {
+void snap_to_corners(Cells<2>& cells, const Region& region, double tolerance) {
   std::vector<Vec<2>> corners;
   for (const Piece& piece : region.pieces()) corners.push_back(piece.from);
   for (const Notch& notch : region.notches()) {
@@ -268,7 +268,7 @@ void snap_to_corners(Cells<2>& tessellation, const Region& region, double tolera
     corners.push_back(notch.tip);
   }
   std::ranges::sort(corners, {}, &Vec<2>::c);
-  for (Vec<2>& p : tessellation.vertices) {
+  for (Vec<2>& p : cells.vertices) {
     const Vec<2> lowest{{p[0] - tolerance, 0.0}};
     for (auto at = std::ranges::lower_bound(corners, lowest[0], {}, [](const Vec<2>& c) { return c[0]; });
          at != corners.end() && (*at)[0] <= p[0] + tolerance; ++at)

@@ -11,13 +11,13 @@
 namespace pyroclast::specimen {
 namespace {
 
-void measure_edges(const Cells<2>& tessellation, Metrics<2>& metrics) {
-  const std::vector<Facet<2>> all = facets(tessellation);
+void measure_edges(const Cells<2>& cells, Metrics<2>& metrics) {
+  const std::vector<Facet<2>> all = facets(cells);
   metrics.shortest_edge = std::numeric_limits<double>::infinity();
   double sum = 0.0;
   for (const Facet<2>& edge : all) {
-    const Vec<2>& a = tessellation.vertices[static_cast<std::size_t>(edge.corners[0])];
-    const Vec<2>& b = tessellation.vertices[static_cast<std::size_t>(edge.corners[1])];
+    const Vec<2>& a = cells.vertices[static_cast<std::size_t>(edge.corners[0])];
+    const Vec<2>& b = cells.vertices[static_cast<std::size_t>(edge.corners[1])];
     const double length = norm(b - a);
     sum += length;
     if (length < metrics.shortest_edge) {

@@ -31,8 +31,8 @@ struct Hanging {
 
 /// Finds the vertices of edges that lie nearer than a distance to another of the edges. Returns them in the
 /// order of the edges and along each.
-std::vector<Hanging> hanging(const Cells<2>& tessellation, std::span<const Facet<2>> edges, double distance) {
-  const auto& at = tessellation.vertices;
+std::vector<Hanging> hanging(const Cells<2>& cells, std::span<const Facet<2>> edges, double distance) {
+  const auto& at = cells.vertices;
   std::vector<int> vertices;
   for (const Facet<2>& e : edges) vertices.push_back(e.corners[0]);
   sort_unique(vertices);
@@ -177,12 +177,12 @@ std::string describe_pieces(const Cells<Dim>& cells, std::span<const Facet<Dim>>
 template std::string describe_pieces<2>(const Cells<2>&, std::span<const Facet<2>>, const Numbering&);
 template std::string describe_pieces<3>(const Cells<3>&, std::span<const Facet<3>>, const Numbering&);
 
-std::string describe_joinable(const Cells<2>& tessellation) {
-  const double near = coincidence_of(tessellation.vertices);
+std::string describe_joinable(const Cells<2>& cells) {
+  const double near = coincidence_of(cells.vertices);
   if (!(near > 0.0)) return {};
-  const std::vector<int> first = first_near<2>(tessellation.vertices, near);
+  const std::vector<int> first = first_near<2>(cells.vertices, near);
   const std::ptrdiff_t coincide = repeats(first);
-  Cells<2> merged = tessellation;
+  Cells<2> merged = cells;
   for (auto& cell : merged.cells)
     for (int& v : cell) v = first[v];
   const std::size_t hang = hanging(merged, free_edges(merged), near).size();

@@ -30,7 +30,7 @@ std::string describe_pieces(const Cells<Dim>& cells, std::span<const Facet<Dim>>
 
 /// Says how many vertices coincide and how many lie in edges of cells that do not have them as corners, and
 /// by which distance `joined` joins them. The text goes behind another sentence.
-std::string describe_joinable(const Cells<2>& tessellation);
+std::string describe_joinable(const Cells<2>& cells);
 
 /// Joins cells that lie beside each other and do not share vertices.
 ///
@@ -43,8 +43,9 @@ GivenCells<2> joined(GivenCells<2> cells, double distance);
 /// Joins cells: vertices nearer to each other than `distance` (m) become the first of them, and faces that
 /// then have the same corners in turn, in either sense, the first of them. Vertices and faces that no cell
 /// has any more are dropped. Throws Error, naming the face, where two corners of a face are as near to each
-/// other. \param complex  cells whose faces have corners, and no neighbours yet \return the number that each
-/// face had
+/// other. Returns the number that each face had.
+///
+/// \param cells  cells whose faces have corners, and no neighbours yet
 std::vector<int> join(Cells<3>& cells, double distance);
 
 /// Says how many vertices coincide, how many faces then have the corners of another, and by which distance

@@ -33,17 +33,17 @@ Shape shape_of(Corners polygon) {
 
 class Regulariser {
  public:
-  Regulariser(Cells<2>& tessellation, const Region& region, double shortest_edge, const BlockSizes& sizes)
-      : tessellation_(tessellation),
+  Regulariser(Cells<2>& cells, const Region& region, double shortest_edge, const BlockSizes& sizes)
+      : cells_(cells),
         share_(shortest_edge),
         sizes_(sizes),
-        edges_(facets(tessellation)),
-        kept_(tessellation.vertices.size()),
-        around_(tessellation.vertices.size()) {
+        edges_(facets(cells)),
+        kept_(cells.vertices.size()),
+        around_(cells.vertices.size()) {
     std::iota(kept_.begin(), kept_.end(), 0);
-    for (const Vec<2>& p : tessellation_.vertices) lines_.push_back(region.lines_at(p));
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
-      for (const int v : tessellation_.cells[c]) cells_around(v).push_back(static_cast<int>(c));
+    for (const Vec<2>& p : cells_.vertices) lines_.push_back(region.lines_at(p));
+    for (std::size_t c = 0; c < cells_.cells.size(); ++c) {
+      for (const int v : cells_.cells[c]) cells_around(v).push_back(static_cast<int>(c));
     }
   }
 
@@ -59,15 +59,15 @@ class Regulariser {
       if (removed > before) left = short_edges();
     }
     std::vector<int> unfit = unfit_cells(left);
-    drop_unused(tessellation_);
+    drop_unused(cells_);
     return {removed, static_cast<int>(left.size()), std::move(unfit)};
   }
 
  private:
-  Vec<2>& at(int v) { return tessellation_.vertices[v]; }
+  Vec<2>& at(int v) { return cells_.vertices[v]; }
   const LineSet& lines_of(int v) const { return lines_[v]; }
   std::vector<int>& cells_around(int v) { return around_[v]; }
-  std::vector<int>& cell(int c) { return tessellation_.cells[c]; }
+  std::vector<int>& cell(int c) { return cells_.cells[c]; }
   bool merged_away(int v) { return cells_around(v).empty(); }
 
   /// Returns the size of blocks in the middle of an edge over the mean size.
@@ -148,7 +148,7 @@ class Regulariser {
     sort_unique(touched_);
     before_.clear();
     for (const int c : touched_) {
-      corners(tessellation_, c, polygon_);
+      corners(cells_, c, polygon_);
       before_.push_back(shape_of(polygon_));
     }
   }
@@ -195,8 +195,8 @@ class Regulariser {
     areas_.clear();
     std::vector<int> unfit;
     std::vector<std::size_t> flat;
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
-      corners(tessellation_, c, polygon_);
+    for (std::size_t c = 0; c < cells_.cells.size(); ++c) {
+      corners(cells_, c, polygon_);
       areas_.push_back(area(polygon_));
       const Shape shape = shape_of(polygon_);
       if (shape.thinnest_zone <= thinnest_ * sizes_.relative(polygon_.front()))
@@ -214,9 +214,9 @@ class Regulariser {
 
   std::vector<int> flat_corners(std::size_t c) {
     std::vector<int> flat;
-    corners(tessellation_, c, polygon_);
+    corners(cells_, c, polygon_);
     for (std::size_t i = 0; i < polygon_.size(); ++i)
-      if (interior_angle(polygon_, i) > largest_angle_allowed) flat.push_back(tessellation_.cells[c][i]);
+      if (interior_angle(polygon_, i) > largest_angle_allowed) flat.push_back(cells_.cells[c][i]);
     return flat;
   }
 
@@ -229,7 +229,7 @@ class Regulariser {
     return smallest;
   }
 
-  Cells<2>& tessellation_;
+  Cells<2>& cells_;
   double share_;
   const BlockSizes& sizes_;
   double shortest_ = 0.0, thinnest_ = 0.0;  ///< limits where blocks have their mean size, m
@@ -245,9 +245,9 @@ class Regulariser {
 
 }  // namespace
 
-RegularisedCells regularise(Cells<2>& tessellation, const Region& region, const RegularCells& asked,
+RegularisedCells regularise(Cells<2>& cells, const Region& region, const RegularCells& asked,
                             const BlockSizes& sizes) {
-  return Regulariser(tessellation, region, asked.shortest_edge, sizes).run();
+  return Regulariser(cells, region, asked.shortest_edge, sizes).run();
 }
 
 }  // namespace pyroclast::specimen

@@ -43,7 +43,7 @@ class CellRegulariser {
  public:
   CellRegulariser(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
                   const RegularCells& asked, const BlockSizes& sizes, std::span<const int> stone)
-      : complex_(cells),
+      : cells_(cells),
         body_(body),
         asked_(asked),
         size_(std::cbrt(body.extent() / static_cast<double>(cells.cells.size()))),
@@ -71,12 +71,12 @@ class CellRegulariser {
     for (int round = 0; round < kRounds; ++round) {
       done.vertices_merged += merge_all();
       for (int i = 0; i < kMoves; ++i) {
-        for (std::size_t f = 0; f < complex_.faces.size(); ++f) turn(complex_.faces[f]);
+        for (std::size_t f = 0; f < cells_.faces.size(); ++f) turn(cells_.faces[f]);
         for (int v = 0; v < static_cast<int>(faces_at_.size()); ++v) move(v);
       }
     }
     done.edges_left_short = static_cast<int>(short_edges().size());
-    drop_unused(complex_);
+    drop_unused(cells_);
     return done;
   }
 
@@ -84,10 +84,10 @@ class CellRegulariser {
   /// Lets vertices between cells of different stones lie on the surfaces of these, which count behind the
   /// planes of the body. An edge of a surface counts once more.
   void find_surfaces(std::span<const int> stone) {
-    surface_of_face_.assign(complex_.faces.size(), -1);
+    surface_of_face_.assign(cells_.faces.size(), -1);
     const int first = static_cast<int>(body_.planes().size());
-    for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
-      const Facet<3>& face = complex_.faces[f];
+    for (std::size_t f = 0; f < cells_.faces.size(); ++f) {
+      const Facet<3>& face = cells_.faces[f];
       if (face.outer < 0 || stone[face.inner] == stone[face.outer]) continue;
       surface_of_face_[f] = first + 2 * std::max(stone[face.inner], stone[face.outer]);
       for (const int v : face.corners) planes_[v].push_back(surface_of_face_[f]);
@@ -102,7 +102,7 @@ class CellRegulariser {
 
   /// Returns the vector of a face's area that points out of the stone, or out of the cell with the lower
   /// number between two stones.
-  Vec<3> area_on_surface(int face) const { return area_vector(complex_, complex_.faces[face]); }
+  Vec<3> area_on_surface(int face) const { return area_vector(cells_, cells_.faces[face]); }
 
   /// Returns the normal of a surface at a vertex, of any sense.
   Vec<3> normal_at(int vertex, int surface) const {
@@ -133,7 +133,7 @@ class CellRegulariser {
       const int before = gone;
       for (const ShortEdge& edge : short_edges())
         if (merge({edge.ends.begin(), edge.ends.end()})) ++gone;
-      for (const Facet<3>& face : complex_.faces) {
+      for (const Facet<3>& face : cells_.faces) {
         if (!is_small(face.corners)) continue;
         const std::vector<int> corners = face.corners;
         if (merge(corners)) gone += static_cast<int>(corners.size()) - 1;
@@ -147,7 +147,7 @@ class CellRegulariser {
   /// shortest first.
   std::vector<ShortEdge> short_edges() {
     std::vector<std::array<int, 2>> edges;
-    for (const Facet<3>& face : complex_.faces)
+    for (const Facet<3>& face : cells_.faces)
       for (std::size_t i = 0; i < face.corners.size(); ++i) {
         const auto [low, high] = std::minmax(face.corners[i], face.corners[(i + 1) % face.corners.size()]);
         edges.push_back({low, high});
@@ -195,16 +195,16 @@ class CellRegulariser {
     const Vec<3> place_before = at(kept);
     if (!contract(group, faces) || !std::ranges::all_of(cells, [this](int cell) { return is_ball(cell); }) ||
         !put_best(kept, places, faces, cells)) {
-      complex_.vertices[kept] = place_before;
+      cells_.vertices[kept] = place_before;
       put(faces, before);
       return false;
     }
     planes_[kept] = planes;
     for (const int v : group) faces_at_[v].clear();
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (const Facet<3>& face = complex_.faces[faces[i]]; face.corners.empty()) {
-        std::erase(complex_.cells[face.inner], faces[i]);
-        if (face.outer >= 0) std::erase(complex_.cells[face.outer], faces[i]);
+      if (const Facet<3>& face = cells_.faces[faces[i]]; face.corners.empty()) {
+        std::erase(cells_.cells[face.inner], faces[i]);
+        if (face.outer >= 0) std::erase(cells_.cells[face.outer], faces[i]);
         for (const int v : before[i]) std::erase(faces_at_[v], faces[i]);
       } else {
         faces_at_[kept].push_back(faces[i]);
@@ -235,7 +235,7 @@ class CellRegulariser {
   bool contract(const std::vector<int>& group, const std::vector<int>& faces) {
     const int kept = group.front();
     for (const int f : faces) {
-      auto& loop = complex_.faces[f].corners;
+      auto& loop = cells_.faces[f].corners;
       for (int& v : loop)
         if (std::ranges::find(group, v) != group.end()) v = kept;
       loop.erase(std::unique(loop.begin(), loop.end()), loop.end());  // Clang 14 cannot do ranges::unique
@@ -251,8 +251,8 @@ class CellRegulariser {
     auto& edges = edges_;
     edges.clear();
     int faces = 0;
-    for (const int f : complex_.cells[cell]) {
-      const auto& [loop, inner, outer, side] = complex_.faces[f];
+    for (const int f : cells_.cells[cell]) {
+      const auto& [loop, inner, outer, side] = cells_.faces[f];
       if (!loop.empty()) ++faces;
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const int from = loop[i], to = loop[(i + 1) % loop.size()];
@@ -279,9 +279,9 @@ class CellRegulariser {
     std::vector<std::vector<int>> best_loops;
     double least = known_flatness(cells);
     for (const Vec<3>& place : places) {
-      complex_.vertices[vertex] = place;
+      cells_.vertices[vertex] = place;
       put(faces, contracted);
-      if (!std::ranges::all_of(faces, [this](int f) { return turn_to_fan_allowed(complex_.faces[f]); }))
+      if (!std::ranges::all_of(faces, [this](int f) { return turn_to_fan_allowed(cells_.faces[f]); }))
         continue;
       if (const double flat = flatness_up_to(least, cells); flat < least) {
         least = flat;
@@ -290,19 +290,19 @@ class CellRegulariser {
       }
     }
     if (!best) return false;
-    complex_.vertices[vertex] = *best;
+    cells_.vertices[vertex] = *best;
     put(faces, best_loops);
     return true;
   }
 
   bool turn_to_fan_allowed(Facet<3>& face) const {
     if (face.corners.empty()) return true;
-    return turn_to_best_fan(complex_.vertices, face.corners,
+    return turn_to_best_fan(cells_.vertices, face.corners,
                             face.outer < 0 ? std::numeric_limits<double>::infinity() : asked_.largest_bend);
   }
 
   bool is_bent_too_far(const Facet<3>& face) const {
-    return face.outer >= 0 && bend(complex_.vertices, face.corners) > asked_.largest_bend;
+    return face.outer >= 0 && bend(cells_.vertices, face.corners) > asked_.largest_bend;
   }
 
   /// Turns a face to the fan that makes zones roundest.
@@ -336,14 +336,14 @@ class CellRegulariser {
     for (const Vec<3>& along : ways_of(vertex))
       for (const double way : {way_[vertex], -way_[vertex]}) {
         const Vec<3> place = at(vertex);
-        complex_.vertices[vertex] = place + along * way;
+        cells_.vertices[vertex] = place + along * way;
         const bool is_allowed = std::ranges::none_of(
-            faces_at_[vertex], [this](int f) { return is_bent_too_far(complex_.faces[f]); });
+            faces_at_[vertex], [this](int f) { return is_bent_too_far(cells_.faces[f]); });
         if (const double flat = is_allowed ? flatness_up_to(least, cells) : least; flat < least) {
           least = flat;
           break;
         }
-        complex_.vertices[vertex] = place;
+        cells_.vertices[vertex] = place;
       }
     if (least > (1.0 - kLittle) * before) way_[vertex] *= 0.5;
     if (least < before)
@@ -378,7 +378,7 @@ class CellRegulariser {
   std::vector<int> cells_of(const std::vector<int>& faces) const {
     std::vector<int> cells;
     for (const int f : faces)
-      for (const int cell : {complex_.faces[f].inner, complex_.faces[f].outer})
+      for (const int cell : {cells_.faces[f].inner, cells_.faces[f].outer})
         if (cell >= 0) cells.push_back(cell);
     sort_unique(cells);
     return cells;
@@ -388,7 +388,7 @@ class CellRegulariser {
   double mean_relative(const std::vector<int>& faces) const {
     double sum = 0.0, corners = 0.0;
     for (const int f : faces)
-      for (const int v : complex_.faces[f].corners) {
+      for (const int v : cells_.faces[f].corners) {
         sum += relative_[v];
         corners += 1.0;
       }
@@ -396,7 +396,7 @@ class CellRegulariser {
   }
 
   double flatness_of(int cell) const {
-    return flatness(complex_, static_cast<std::size_t>(cell), size_of_cell_[cell]);
+    return flatness(cells_, static_cast<std::size_t>(cell), size_of_cell_[cell]);
   }
 
   double known_flatness(const std::vector<int>& cells) const {
@@ -415,16 +415,16 @@ class CellRegulariser {
 
   std::vector<std::vector<int>> loops_of(const std::vector<int>& faces) const {
     std::vector<std::vector<int>> loops;
-    for (const int f : faces) loops.push_back(complex_.faces[f].corners);
+    for (const int f : faces) loops.push_back(cells_.faces[f].corners);
     return loops;
   }
   void put(const std::vector<int>& faces, const std::vector<std::vector<int>>& loops) {
-    for (std::size_t i = 0; i < faces.size(); ++i) complex_.faces[faces[i]].corners = loops[i];
+    for (std::size_t i = 0; i < faces.size(); ++i) cells_.faces[faces[i]].corners = loops[i];
   }
 
-  const Vec<3>& at(int v) const { return complex_.vertices[v]; }
+  const Vec<3>& at(int v) const { return cells_.vertices[v]; }
 
-  Cells<3>& complex_;
+  Cells<3>& cells_;
   const Prism& body_;
   RegularCells asked_;
   double size_;                             ///< mean of the blocks, m

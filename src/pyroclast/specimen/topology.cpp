@@ -32,9 +32,9 @@ bool bends_inwards(const std::vector<Vec<2>>& polygon, double slack) {
 }
 
 /// Calls f(from, to, cell) for the edges of each cell in turn.
-void for_each_edge(const Cells<2>& tessellation, auto f) {
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    const auto& cell = tessellation.cells[c];
+void for_each_edge(const Cells<2>& cells, auto f) {
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    const auto& cell = cells.cells[c];
     for (std::size_t i = 0; i < cell.size(); ++i)
       f(cell[i], cell[i + 1 < cell.size() ? i + 1 : 0], static_cast<int>(c));
   }
@@ -49,8 +49,8 @@ struct DirectedEdge {
 /// Edges of all cells, in the order of their ends.
 class DirectedEdges {
  public:
-  explicit DirectedEdges(const Cells<2>& tessellation) {
-    for_each_edge(tessellation, [this](int from, int to, int cell) { edges_.push_back({{from, to}, cell}); });
+  explicit DirectedEdges(const Cells<2>& cells) {
+    for_each_edge(cells, [this](int from, int to, int cell) { edges_.push_back({{from, to}, cell}); });
     std::ranges::stable_sort(edges_, {}, &DirectedEdge::ends);
   }
 
@@ -94,10 +94,9 @@ std::string Numbering::cell(std::size_t number) const {
                          : fmt::format("cell {} (from 1)", in_file[number]);
 }
 
-void corners(const Cells<2>& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
+void corners(const Cells<2>& cells, std::size_t cell, std::vector<Vec<2>>& result) {
   result.clear();
-  for (const int v : tessellation.cells[cell])
-    result.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
+  for (const int v : cells.cells[cell]) result.push_back(cells.vertices[static_cast<std::size_t>(v)]);
 }
 
 void drop_unused(Cells<2>& cells) {
@@ -125,13 +124,13 @@ Vec<2> centroid(const Cells<2>& cells, std::size_t cell) {
   return centroid(polygon);
 }
 
-std::vector<Facet<2>> facets(const Cells<2>& tessellation, const Numbering& numbering) {
-  const DirectedEdges directed(tessellation);
+std::vector<Facet<2>> facets(const Cells<2>& cells, const Numbering& numbering) {
+  const DirectedEdges directed(cells);
   std::vector<Facet<2>> result;
-  for_each_edge(tessellation, [&](int v0, int v1, int cell) {
+  for_each_edge(cells, [&](int v0, int v1, int cell) {
     const auto [partners, other] = directed.find(v1, v0);
     if (partners > 1 || directed.find(v0, v1).first > 1) {
-      const Vec<2>&from = tessellation.vertices[v0], &to = tessellation.vertices[v1];
+      const Vec<2>&from = cells.vertices[v0], &to = cells.vertices[v1];
       throw Error(fmt::format(
           "{} overlaps another: both have the edge from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m, in the "
           "same sense",
@@ -142,22 +141,22 @@ std::vector<Facet<2>> facets(const Cells<2>& tessellation, const Numbering& numb
   return result;
 }
 
-std::vector<Facet<2>> free_edges(const Cells<2>& tessellation) {
-  const DirectedEdges directed(tessellation);
+std::vector<Facet<2>> free_edges(const Cells<2>& cells) {
+  const DirectedEdges directed(cells);
   std::vector<Facet<2>> edges;
-  for_each_edge(tessellation, [&](int a, int b, int cell) {
+  for_each_edge(cells, [&](int a, int b, int cell) {
     if (directed.find(a, b).first + directed.find(b, a).first == 1) edges.push_back({{a, b}, cell});
   });
   return edges;
 }
 
-std::vector<int> mismatched_cells(const Cells<2>& tessellation, const Region& region) {
-  const DirectedEdges directed(tessellation);
+std::vector<int> mismatched_cells(const Cells<2>& cells, const Region& region) {
+  const DirectedEdges directed(cells);
   std::vector<LineSet> on;
-  for (const Vec<2>& p : tessellation.vertices) on.push_back(region.lines_at(p));
+  for (const Vec<2>& p : cells.vertices) on.push_back(region.lines_at(p));
   std::vector<char> is_matched;
-  for (const auto& cell : tessellation.cells) is_matched.push_back(cell.size() >= 3);
-  for_each_edge(tessellation, [&](int v0, int v1, int cell) {
+  for (const auto& cell : cells.cells) is_matched.push_back(cell.size() >= 3);
+  for_each_edge(cells, [&](int v0, int v1, int cell) {
     const int partners = region.is_outline(on[v0], on[v1]) ? 0 : 1;
     if (directed.find(v0, v1).first != 1 || directed.find(v1, v0).first != partners) is_matched[cell] = 0;
   });
@@ -167,22 +166,21 @@ std::vector<int> mismatched_cells(const Cells<2>& tessellation, const Region& re
   return result;
 }
 
-void require_valid(const Cells<2>& tessellation, const Region& region, const std::string& origin,
+void require_valid(const Cells<2>& cells, const Region& region, const std::string& origin,
                    const Numbering& numbering) {
-  const std::vector<int> mismatched = mismatched_cells(tessellation, region);
+  const std::vector<int> mismatched = mismatched_cells(cells, region);
   if (!mismatched.empty()) {
-    const Vec<2>& at = tessellation.vertices[tessellation.cells[mismatched.front()].front()];
-    throw Error(
-        fmt::format("{}: {} of {} cells do not fit together with their neighbours, the first is {} near "
-                    "({:.6g}, {:.6g}) m.",
-                    origin, mismatched.size(), tessellation.cells.size(), numbering.cell(mismatched.front()),
-                    at[0], at[1]));
+    const Vec<2>& at = cells.vertices[cells.cells[mismatched.front()].front()];
+    throw Error(fmt::format(
+        "{}: {} of {} cells do not fit together with their neighbours, the first is {} near "
+        "({:.6g}, {:.6g}) m.",
+        origin, mismatched.size(), cells.cells.size(), numbering.cell(mismatched.front()), at[0], at[1]));
   }
   double total = 0.0;
-  const double slack = kOffSide * std::sqrt(region.extent() / static_cast<double>(tessellation.cells.size()));
+  const double slack = kOffSide * std::sqrt(region.extent() / static_cast<double>(cells.cells.size()));
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    corners(cells, c, polygon);
     const double cell_area = area(polygon);
     total += cell_area;
     if (!(cell_area > 0.0) || bends_inwards(polygon, slack) || !(thinnest_zone(polygon) > 0.0)) {

@@ -17,10 +17,9 @@ using Cell = std::vector<int>;  // vertices, counter-clockwise
 
 class Uniter {
  public:
-  explicit Uniter(Cells<2>& tessellation)
-      : tessellation_(tessellation), around_(tessellation.vertices.size()) {
-    for (std::size_t c = 0; c < tessellation.cells.size(); ++c)
-      for (const int v : tessellation.cells[c]) around_[v].insert(static_cast<int>(c));
+  explicit Uniter(Cells<2>& cells) : cells_(cells), around_(cells.vertices.size()) {
+    for (std::size_t c = 0; c < cells.cells.size(); ++c)
+      for (const int v : cells.cells[c]) around_[v].insert(static_cast<int>(c));
   }
 
   /// Unites a group into its first cell, whose others become empty; leaves it as it is where that cannot be
@@ -41,31 +40,31 @@ class Uniter {
         }
       const bool goes = outside == 1 && !is_on_outline(v);
       if (!goes) kept.push_back(v);
-      if (goes && !others.contains(other)) others[other] = tessellation_.cells[other];
+      if (goes && !others.contains(other)) others[other] = cells_.cells[other];
       if (goes) std::erase(others[other], v);
     }
     if (!is_convex(kept)) return;
     for (const auto& [number, cell] : others)
       if (!is_convex(cell)) return;
     for (const int c : group)
-      for (const int v : tessellation_.cells[c]) around_[v].erase(c);
-    for (const int c : group) tessellation_.cells[c].clear();
+      for (const int v : cells_.cells[c]) around_[v].erase(c);
+    for (const int c : group) cells_.cells[c].clear();
     for (auto& [number, cell] : others) {
-      for (const int v : tessellation_.cells[number]) around_[v].erase(number);
+      for (const int v : cells_.cells[number]) around_[v].erase(number);
       for (const int v : cell) around_[v].insert(number);
-      tessellation_.cells[number] = std::move(cell);
+      cells_.cells[number] = std::move(cell);
     }
     for (const int v : kept) around_[v].insert(group.front());
-    tessellation_.cells[group.front()] = std::move(kept);
+    cells_.cells[group.front()] = std::move(kept);
   }
 
   /// Leaves out empty cells and vertices without a cell. Returns the former number of each cell.
   std::vector<int> tidy() {
     std::vector<int> former;
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c)
-      if (!tessellation_.cells[c].empty()) former.push_back(static_cast<int>(c));
-    std::erase_if(tessellation_.cells, [](const Cell& cell) { return cell.empty(); });
-    drop_unused(tessellation_);
+    for (std::size_t c = 0; c < cells_.cells.size(); ++c)
+      if (!cells_.cells[c].empty()) former.push_back(static_cast<int>(c));
+    std::erase_if(cells_.cells, [](const Cell& cell) { return cell.empty(); });
+    drop_unused(cells_);
     return former;
   }
 
@@ -74,7 +73,7 @@ class Uniter {
   Cell outline_of(const std::vector<int>& group) const {
     std::set<std::pair<int, int>> edges;
     for (const int c : group) {
-      const Cell& cell = tessellation_.cells[c];
+      const Cell& cell = cells_.cells[c];
       for (std::size_t i = 0; i < cell.size(); ++i) {
         const int from = cell[i], to = cell[(i + 1) % cell.size()];
         if (!edges.erase({to, from})) edges.insert({from, to});
@@ -99,7 +98,7 @@ class Uniter {
   bool is_on_outline(int v) const {
     std::map<int, int> ends;  // vertices beside v, and how many cells have the edge to them
     for (const int c : around_[v]) {
-      const Cell& cell = tessellation_.cells[c];
+      const Cell& cell = cells_.cells[c];
       const auto at = std::ranges::find(cell, v) - cell.begin();
       const auto size = static_cast<std::ptrdiff_t>(cell.size());
       ++ends[cell[(at + 1) % size]];
@@ -111,18 +110,18 @@ class Uniter {
   bool is_convex(const Cell& cell) const {
     if (cell.size() < 3) return false;
     std::vector<Vec<2>> polygon;
-    for (const int v : cell) polygon.push_back(tessellation_.vertices[v]);
+    for (const int v : cell) polygon.push_back(cells_.vertices[v]);
     return area(polygon) > 0.0 && largest_angle(polygon) <= largest_block_angle * std::numbers::pi / 180.0;
   }
 
-  Cells<2>& tessellation_;
+  Cells<2>& cells_;
   std::vector<std::set<int>> around_;  ///< cells of each vertex
 };
 
 }  // namespace
 
-std::vector<int> unite(Cells<2>& tessellation, const std::vector<std::vector<int>>& groups) {
-  Uniter uniter(tessellation);
+std::vector<int> unite(Cells<2>& cells, const std::vector<std::vector<int>>& groups) {
+  Uniter uniter(cells);
   for (const auto& group : groups)
     if (group.size() > 1) uniter.unite(group);
   return uniter.tidy();

@@ -10,6 +10,6 @@ namespace pyroclast::specimen {
 /// the edge between both is straight. A group whose cell would not be convex, has a hole or is in pieces, or
 /// whose vertices hold another cell together stays as it is. \param groups  numbers of cells, ascending
 /// \return for each cell left the number that it had, or that the first of its group had
-std::vector<int> unite(Cells<2>& tessellation, const std::vector<std::vector<int>>& groups);
+std::vector<int> unite(Cells<2>& cells, const std::vector<std::vector<int>>& groups);
 
 }  // namespace pyroclast::specimen
