@@ -15,9 +15,9 @@ a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png
 tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png; one with water in its pores
-water.png and, with fields, water_profile.png; one that pieces may leave spalling.png, with fields. A run that keeps
-no fields gets those of them that are drawn from its history. Of a solid that moves, cracks_inside.png stands beside
-fracture.png, unless no law of its contacts has a damage.
+water.png and, with fields, water_profile.png and water_maps.png; one that pieces may leave spalling.png, with fields.
+A run that keeps no fields gets those of them that are drawn from its history. Of a solid that moves,
+cracks_inside.png stands beside fracture.png, unless no law of its contacts has a damage.
 
 Prints the path of each figure. Ends with 1 and a line on stderr for each thing that is missing or malformed; figures
 that need none of these are drawn.
@@ -51,6 +51,7 @@ from .draw.solid_sections import COLOURS, cracks_inside, plane_section
 from .draw.style import page_of, save
 from .draw.spalling import spalling
 from .draw.water import water, water_profile
+from .draw.water_maps import water_maps
 from .errors import Error
 from .programs import complain, run_program, say
 from .stored.compressed import Compressed
@@ -155,6 +156,7 @@ def _of_conduction(run: Results) -> Iterator[Picture]:
         yield Picture("water", lambda: water(run))
         if run.has_fields:
             yield Picture("water_profile", lambda: water_profile(run))
+            yield Picture("water_maps", lambda: water_maps(run))
     if run.facts.of_role(SPALLING) and run.has_fields:
         yield Picture("spalling", lambda: spalling(run))
     if profile is not None:

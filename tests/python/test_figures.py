@@ -780,10 +780,11 @@ FIGURES = {
     AFTER: ["total_strain", "heating_cracks", "heating_energy", "heating_fracture", "stress_strain", "cracks", "energy",
             "fracture"],
     WALL: ["temperature_history", "temperature", "temperature_profile", "isotherm"],
-    "kalifa_m100": ["temperature_history", "temperature", "water", "water_profile", "temperature_profile"],
+    "kalifa_m100": ["temperature_history", "temperature", "water", "water_profile", "water_maps",
+                    "temperature_profile"],
     "spalling_slab": ["total_strain", "heating_cracks", "heating_energy", "convergence", "temperature_history",
-                      "temperature", "water", "water_profile", "spalling", "temperature_profile", "isotherm",
-                      "heating_fracture"],
+                      "temperature", "water", "water_profile", "water_maps", "spalling", "temperature_profile",
+                      "isotherm", "heating_fracture"],
 }
 
 
@@ -806,7 +807,7 @@ class HeatedRunsMakePictures(CommandTest):
                 self.assertEqual((code, err), (0, ""))
                 self.assertEqual([Path(path).stem for path in printed],
                                  [name for name in names if not name.endswith("fracture")
-                                  and name not in ("temperature", "water_profile", "spalling")])
+                                  and name not in ("temperature", "water_profile", "water_maps", "spalling")])
                 with writing_alone():
                     self.assert_fails(["run", folder, "--temperatures", "300"], "keeps no fields, so --temperatures")
 

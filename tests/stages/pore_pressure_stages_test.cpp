@@ -51,6 +51,26 @@ TEST(PorePressureOfDecks, ActsOnTheBodyWhoseCracksDrainIt) {
   EXPECT_GT(all.run.history().row_count(), idle.run.history().row_count());
 }
 
+// Promise: the history tells where pressure comes to the strength of an intact contact, by the share of the
+// pressure that the contact bears and the strength that is left at its temperature.
+TEST(PorePressureOfDecks, IsToldOverTheStrengthOfIntactContacts) {
+  const Finished idle(wet_deck("acts = \"no\"\n"));
+  EXPECT_FALSE(idle.run.history().has("pore_pressure_over_strength_max"));
+  constexpr double kBiot = 0.3;
+  const Finished run(wet_deck("biot = 0.3\n"));
+  const Simulation& s = *run.simulation;
+  double largest = 0.0;
+  for (int c = 0; c < s.model().contact_count(); ++c) {
+    const double pressure = s.moisture()->contact_pressure(c);
+    if (pressure == 0.0 || s.motion().read().remembered(c, Remembers::tension_damage) > 0.0) continue;
+    const ContactMaterial& contact = s.materials().contacts[s.model().joint(c).interface];
+    if (contact.law->name == std::string_view("elastic")) continue;  // blocks of stones that touch
+    largest = std::max(largest, kBiot * pressure / contact["f_t"](s.field().contacts()[c]));
+  }
+  EXPECT_GT(largest, 0.01);
+  EXPECT_DOUBLE_EQ(run.last("pore_pressure_over_strength_max"), largest);
+}
+
 TEST(PorePressureOfDecks, ChangesNoBitOfTheMotionWhereItDoesNotAct) {
   const Finished dry(hot_deck("")), idle(wet_deck("acts = \"no\"\n"));
   const auto columns = columns_of(dry.run.history());

@@ -69,7 +69,7 @@ def heating_fracture(run: Results, temperatures: Sequence[float] | None = None) 
     frames = hot.frames
     if temperatures is None:
         failed = hot.critical_temperature is not None
-        selected = select_heated_frames(frames, failed) if hot.uniform else _spread(frames)
+        selected = select_heated_frames(frames, failed) if hot.uniform else spread_frames(frames)
     else:
         selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
     panels = [_panel(run, frame) for frame in selected]
@@ -146,7 +146,7 @@ def _panel(run: Results, frame: Frame) -> Panel:
 def temperature_field(run: Results) -> Figure:
     """Draws temperatures of the specimen at up to four times while heated, one scale for all, with isotherms."""
     blocks, page = run.mesh.blocks, style.page()
-    frames = page.chosen(_spread(Heated(run).frames))
+    frames = page.chosen(spread_frames(Heated(run).frames))
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     parts = [blocks_at(run, frame) for frame in frames]
     within = [field[np.unique(part.zones[~part.of_bearing])] for part, field in zip(parts, fields)]
@@ -186,7 +186,7 @@ def draw_temperature(axes: Axes, run: Results, frame: Frame) -> ScalarMappable:
     return colours
 
 
-def _spread(frames: Sequence[Frame]) -> list[Frame]:
+def spread_frames(frames: Sequence[Frame]) -> list[Frame]:
     """Chooses up to four of the frames, evenly among those of different temperature, the last among them."""
     different = [frame for before, frame in zip([None, *frames], frames)
                  if before is None or frame.temperature != before.temperature]

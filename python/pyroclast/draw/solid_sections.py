@@ -123,14 +123,19 @@ def _fill(axes: Axes, corners: np.ndarray, colours: np.ndarray) -> None:
                                        rasterized=True))
 
 
+def fill_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, rgb: np.ndarray, view: View = VIEW) -> None:
+    """Fills the zones of the body, each with its colour (Z, 3), without the quarter towards the eye."""
+    polygons, shade = _seen(blocks, view, points)
+    _fill(axes, view.flat(polygons.corners), shade[:, None] * rgb[polygons.owner])
+
+
 def draw_cut_open(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None,
                   view: View = VIEW) -> None:
     """Draws the body by material, without the quarter towards the eye.
 
     points: (N, 3), places of the gridpoints, m.
     """
-    polygons, shade = _seen(blocks, view, points)
-    _fill(axes, view.flat(polygons.corners), shade[:, None] * _fills(blocks)[blocks.material[polygons.owner]])
+    fill_cut_open(axes, blocks, points, _fills(blocks)[blocks.material], view)
     if edge is not None:
         lines = np.concatenate([_outer_edges(blocks, points, view), *_seams(blocks, points, view)])
         axes.add_collection(LineCollection(style.MILLI * view.flat(lines), colors=edge, linewidths=0.2,

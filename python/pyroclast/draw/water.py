@@ -88,11 +88,16 @@ def water_profile(run: Results) -> Figure:
     return figure
 
 
+def of_zones(run: Results, frame: Frame, name: str) -> np.ndarray:
+    """Returns a field (Z,) of zones, by its name with unit."""
+    return read_array(run.folder / "fields" / f"blocks_{frame.number:04d}.hdf", f"VTKHDF/CellData/{name}",
+                      (len(run.mesh.blocks.zones),))
+
+
 def _means_over_depth(run: Results, frame: Frame, name: str, face: str) -> tuple[np.ndarray, np.ndarray]:
     """Returns the middles (n,) of slabs below a face, m, and the mean of a field of zones in each, NaN in none."""
     blocks = run.mesh.blocks
-    values = read_array(run.folder / "fields" / f"blocks_{frame.number:04d}.hdf", f"VTKHDF/CellData/{name}",
-                        (len(blocks.zones),))
+    values = of_zones(run, frame, name)
     axis, is_upper = _AXES[face]
     low, high = specimen_box(blocks)
     place = blocks.points[blocks.zones, axis].mean(axis=1)

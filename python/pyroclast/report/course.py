@@ -26,7 +26,9 @@ OVER_LOAD = "strain_of_load"
 _MOST_CELLS = 40_000  # of the history that a page keeps
 _MOST_ROWS_OF_PARENT = 400
 _WATER = {"largest_pressure": "largest pore pressure [MPa]",
-          "largest_pressure_ratio": "largest vapour pressure over saturation [–]", "held": "water in the pores [kg]",
+          "largest_pressure_ratio": "largest vapour pressure over saturation [–]",
+          "largest_pressure_over_strength": "largest pore pressure over tensile strength, intact contacts [–]",
+          "held": "water in the pores [kg]",
           "left": "water that left [kg]", "released": "water that hydrates gave back [kg]"}
 """Labels of columns on water, by their meaning."""
 _SPALLING = {"pieces": ("pieces that left", 1.0), "mass": ("mass that left [kg]", 1.0),

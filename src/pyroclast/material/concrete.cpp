@@ -168,11 +168,22 @@ ContactProperties ContactMaterial::at(double temperature, double property_temper
 }
 
 void ContactMaterial::write_at(double temperature, double property_temperature, std::span<double> to) const {
+  for (std::size_t i = 0; i < numbers.size(); ++i) to[i] = value_at(i, temperature, property_temperature);
+}
+
+double ContactMaterial::value_at(std::size_t number, double temperature, double property_temperature) const {
+  return is_apart_from_temperature(law->properties[number].role)
+             ? numbers[number](temperature)
+             : numbers[number](property_temperature) *
+                   share_left(residual_ratios[number], temperature, property_temperature);
+}
+
+std::optional<double> ContactMaterial::tensile_strength(double temperature,
+                                                        double property_temperature) const {
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    to[i] = is_apart_from_temperature(law->properties[i].role)
-                ? numbers[i](temperature)
-                : numbers[i](property_temperature) *
-                      share_left(residual_ratios[i], temperature, property_temperature);
+    if (law->properties[i].key == std::string_view(info::tensile_strength.key))
+      return value_at(i, temperature, property_temperature);
+  return std::nullopt;
 }
 
 double BlockMaterial::free_strain(double temperature, double hottest) const {

@@ -110,6 +110,8 @@ struct ContactMaterial {
   ContactProperties at(double temperature, double property_temperature) const;
   /// Writes the numbers of the parameters, in the order of LawTable::properties.
   void write_at(double temperature, double property_temperature, std::span<double> to) const;
+  /// Returns the tensile strength at a temperature, Pa, as write_at() gives it; none where the law has none.
+  std::optional<double> tensile_strength(double temperature, double property_temperature) const;
   /// Returns the stiffness between blocks of a size over that of `numbers`.
   /// \param size  block size, m; 0: as that of `numbers`
   double stiffness_between(double size) const {
@@ -118,6 +120,9 @@ struct ContactMaterial {
   /// Turns numbers of the law into those between blocks of another size, whose stiffnesses differ by a
   /// factor.
   void scale_to_size(double factor, std::span<double> among) const;
+
+ private:
+  double value_at(std::size_t number, double temperature, double property_temperature) const;
 };
 
 /// Interface between blocks of two phases, as a deck states it.

@@ -253,11 +253,7 @@ std::optional<PorePressures> MoistureField::pressures(const Motion* motion) cons
     for (int c = 0; motion && c < model_.contact_count(); ++c)
       found.at_openings[c] = motion->read().opening(c);
   }
-  for (int f = 0; f < std::ssize(face_of_); ++f)
-    for (int c = face_contacts_[face_of_[f]]; c < face_contacts_[face_of_[f] + 1]; ++c) {
-      const double damage = motion ? damage_in_tension(*motion, c) : 0.0;
-      found.of_contacts[c] = (coupling_.biot + (1.0 - coupling_.biot) * damage) * face_pressure_[f];
-    }
+  for (int c = 0; c < model_.contact_count(); ++c) found.of_contacts[c] = borne_pressure(motion, c);
   return found;
 }
 
@@ -286,6 +282,13 @@ double MoistureField::pore_pressure(int block) const {
 double MoistureField::contact_pressure(int contact) const {
   const int face = mesh().cell_face[model_.joint(contact).face];
   return face < 0 ? 0.0 : face_pressure_[face];
+}
+
+double MoistureField::borne_pressure(const Motion* motion, int contact) const {
+  const double pressure = contact_pressure(contact);
+  if (pressure == 0.0) return 0.0;
+  const double damage = motion ? damage_in_tension(*motion, contact) : 0.0;
+  return (coupling_.biot + (1.0 - coupling_.biot) * damage) * pressure;
 }
 
 double MoistureField::largest_pore_pressure() const {

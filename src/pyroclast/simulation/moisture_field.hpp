@@ -63,6 +63,11 @@ class MoistureField {
   /// Returns the pressure of the vapour at a contact less that of the atmosphere, at least 0, Pa; 0 at
   /// bearings.
   double contact_pressure(int contact) const;
+  /// Tells whether contacts bear the pressure.
+  bool acts_on_contacts() const { return coupling_.acts == PressureActs::all; }
+  /// Returns the share of that pressure which a contact bears where it acts, times it, Pa.
+  /// \param motion  its contacts; null: they are intact
+  double borne_pressure(const Motion* motion, int contact) const;
   /// Returns how many blocks of phases with the concrete's pores have no way to a face that is not sealed but
   /// through other phases.
   int pocket_blocks() const;

@@ -10,6 +10,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/simulation/body_on_ranks.hpp"
+#include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/simulation/skeleton.hpp"
 #include "pyroclast/simulation/watching/items.hpp"
 
@@ -295,6 +296,17 @@ void Simulation::hand_over(const ConcreteMaterials& materials) {
   earlier_ = motion_->set_properties(
       properties_at(*model_, materials, field_, hottest_, water, std::exchange(earlier_, {})));
   hottest_.note_exchange(field_);
+}
+
+double Simulation::pressure_over_strength(int contact) const {
+  const double pressure = moisture_ ? moisture_->borne_pressure(nullptr, contact) : 0.0;
+  if (pressure == 0.0 || is_gone(model_->block_of(model_->joint(contact).a)) ||
+      damage_in_tension(*motion_, contact) > 0.0)
+    return 0.0;
+  const double now = field_.contacts()[contact];
+  const auto strength = materials_.contacts[model_->joint(contact).interface].tensile_strength(
+      now, materials_.property_temperature(now, hottest_.of_contact(contact, now)));
+  return strength > 0.0 ? pressure / *strength : 0.0;
 }
 
 void Simulation::set_materials(ConcreteMaterials materials) {

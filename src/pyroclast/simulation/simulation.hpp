@@ -164,6 +164,10 @@ class Simulation {
   void see_temperatures() { hottest_.note_field(field_); }
   /// Returns the highest temperatures of the mechanics so far, °C.
   const HottestTemperatures& hottest() const { return hottest_; }
+  /// Returns the pore pressure that an intact contact bears over its tensile strength at its temperatures; 0
+  /// where it is damaged, where its law has no such strength, and without water. Above 1 a contact that bears
+  /// nothing else tears.
+  double pressure_over_strength(int contact) const;
   /// Counts a new exchange of temperatures and returns its number, from 1.
   std::int64_t count_exchange() { return ++exchanges_; }
 

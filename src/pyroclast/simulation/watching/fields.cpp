@@ -36,6 +36,9 @@ bool creeps(const S& s) {
 bool is_moist(const S& s) {
   return s.moisture() != nullptr;
 }
+bool bears_water(const S& s) {
+  return s.moves() && is_moist(s) && s.moisture()->acts_on_contacts();
+}
 bool loses_pieces(const S& s) {
   return s.spalling() != nullptr;
 }
@@ -196,6 +199,13 @@ constexpr auto kOfContacts = std::to_array<KnownField>({
      [](R& r, int i, double* to) { *to = r.simulation().moisture()->contact_pressure(i); },
      "pressure of the vapour between the two blocks, or in the crack there, less that of the atmosphere, at "
      "least 0; only with [water in pores](../understand/moisture.md)"},
+    {"pressure_over_strength", unit::dimensionless, Item::contact, ValueKind::number, true, bears_water,
+     [](R& r, int i, double* to) { *to = r.simulation().pressure_over_strength(i); },
+     "pore pressure that an intact contact bears, `biot` times that at the face, over its tensile strength "
+     "at "
+     "its temperatures; 0 where the contact is damaged. Above 1 a contact that bears nothing else tears; "
+     "only "
+     "with [water in pores](../understand/moisture.md)"},
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack(r, i); },
      "the largest damage by any mode, 0 intact, 1 broken; 0 at bearings, whose contacts are no cracks"},

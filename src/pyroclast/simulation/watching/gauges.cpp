@@ -153,6 +153,18 @@ constexpr auto kWater = std::to_array<ColumnOf<W>>({
      [](const W& w) { return w.largest_pressure_ratio(); }},
 });
 
+constexpr auto kOfPressedContacts = std::to_array<ColumnOf<S>>({
+    {"pore_pressure_over_strength_max", "1", ColumnRole::water, "largest_pressure_over_strength",
+     "largest pore pressure that an intact contact bears over its tensile strength, see the field "
+     "pressure_over_strength",
+     [](const S& s) {
+       double largest = 0.0;
+       for (int c = 0; c < s.model().contact_count(); ++c)
+         largest = std::max(largest, s.pressure_over_strength(c));
+       return largest;
+     }},
+});
+
 using Sp = Spalling;
 constexpr auto kSpalling = std::to_array<ColumnOf<Sp>>({
     {"spalled_pieces", "1", ColumnRole::spalling, "pieces", "pieces that have left the body",
@@ -500,6 +512,9 @@ std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.moisture())
     gauges.push_back(make_gauge(
         kWater, [](const Simulation& s) -> const MoistureField& { return *s.moisture(); }, false));
+  if (simulation.moves() && simulation.moisture() && simulation.moisture()->acts_on_contacts())
+    gauges.push_back(make_gauge(
+        kOfPressedContacts, [](const Simulation& s) -> const Simulation& { return s; }, false));
   return gauges;
 }
 
@@ -549,6 +564,7 @@ std::vector<Column> possible_gauge_columns() {
   append(columns, heat_columns(all_heat));
   append(columns, columns_of(kGaps));
   append(columns, columns_of(kWater));
+  append(columns, columns_of(kOfPressedContacts));
   append(columns, columns_of(kSpalling));
   columns.push_back(bar_column("NAME"));
   columns.push_back(unspalled_bar_column("NAME"));

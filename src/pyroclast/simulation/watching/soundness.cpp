@@ -96,10 +96,8 @@ std::optional<double> heat_error(const History& history) {
 std::optional<double> least_tensile_strength(const ConcreteMaterials& materials, double temperature) {
   std::optional<double> least;
   for (const ContactMaterial& contact : materials.contacts)
-    for (std::size_t p = 0; p < contact.numbers.size(); ++p)
-      if (contact.law->properties[p].key == std::string_view(info::tensile_strength.key))
-        if (const double strength = contact.numbers[p](temperature); strength > 0.0)
-          least = std::min(least.value_or(strength), strength);
+    if (const auto strength = contact.tensile_strength(temperature, temperature); strength > 0.0)
+      least = std::min(least.value_or(*strength), *strength);
   return least;
 }
 
