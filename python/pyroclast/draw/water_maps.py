@@ -18,7 +18,7 @@ from ..stored.spalled import blocks_at
 from . import style
 from .crack_styles import cracked, cracks_of
 from .heated_sections import spread_frames
-from .sections import draw_blocks, draw_scale_bar, frame_section, height_over_width
+from .sections import cover_by_bearings, draw_blocks, draw_scale_bar, frame_section, height_over_width
 from .solid_sections import View, crack_lines, fill_cut_open, flat, view_of
 from .water import of_zones
 
@@ -33,8 +33,8 @@ _FIELDS = (("pore_pressure [Pa]", 1e-6, "Pore pressure [MPa]", "YlGnBu"),
 
 @style.in_style
 def water_maps(run: Results) -> Figure:
-    """Draws pore pressure and saturation of the blocks and, where contacts bear the pressure, these by the pressure over
-    their tensile strength, with the broken ones, at up to four times; each row has one scale."""
+    """Draws pore pressure and saturation of the blocks and, where contacts bear the pressure, the contacts by the
+    pressure over their tensile strength, with the broken ones, at up to four times; each row has one scale."""
     page, view = style.page(), view_of(run)
     frames = page.chosen(spread_frames(Heated(run).frames))
     if page.is_column:
@@ -78,6 +78,7 @@ def _fill(axes: Axes, blocks: BlockMesh, rgb: np.ndarray, view: View) -> None:
     else:
         axes.add_collection(PolyCollection(style.MILLI * blocks.points[blocks.zones], facecolors=rgb, edgecolors=rgb,
                                            linewidths=0.3, rasterized=True))
+        cover_by_bearings(axes, blocks, blocks.points)
 
 
 def _draw_strengths(row: np.ndarray, run: Results, frames: list[Frame], view: View) -> None:
