@@ -15,6 +15,7 @@
 #include "pyroclast/base/disjoint_sets.hpp"
 #include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/simulation/watching/items.hpp"
+#include "pyroclast/specimen/cells.hpp"
 
 namespace pyroclast {
 
@@ -22,6 +23,9 @@ namespace {
 
 /// Share of gravity above which a piece falls as it should.
 constexpr double kFalls = 0.99;
+
+/// Depth over the size of a block that rounding may give to a corner on its surface.
+constexpr double kOnSurface = 1e-9;
 
 using PairOfBlocks = std::array<int, 2>;
 
@@ -74,104 +78,150 @@ void each_gridpoint(const Simulation& simulation, int width, Read read, Take tak
       });
 }
 
-/// Block of a plane body where it lies now.
+/// Block where it lies now.
+template <int Dim>
 struct PlacedBlock {
-  std::vector<std::array<int, 2>> edges;  // gridpoints, counter-clockwise round the block
-  Vec<2> low, high;                       // of its box
-  double size = 0.0;                      // root of its area, m
+  std::vector<std::array<int, Dim>> facets;  // gridpoints of its surface, seen from outside counter-clockwise
+  std::vector<std::array<int, Dim + 1>> zones;  // gridpoints, positively oriented
+  std::vector<int> gridpoints;                  // of its surface
+  Vec<Dim> low, high;                           // of its box
+  double size = 0.0;                            // root of its area, cube root of its volume, m
 };
 
-/// Blocks of a plane body where they lie now: all of them on the first rank, none on others.
+/// Blocks where they lie now: all of them on the first rank, none on others.
+template <int Dim>
 class PlacedBlocks {
  public:
   explicit PlacedBlocks(const Simulation& simulation) {
     const Model& model = simulation.model();
-    std::vector<Vec<2>> start;
+    std::vector<Vec<Dim>> start;
     std::vector<int> block_of;
     each_gridpoint(
-        simulation, 4,
+        simulation, 2 * Dim,
         [&](int g, double* row) {
           const Vec<3> x = model.place(g), u = simulation.motion().read().displacement(g);
-          for (int i = 0; i < 2; ++i) row[i] = x[i], row[2 + i] = x[i] + u[i];
+          for (int i = 0; i < Dim; ++i) row[i] = x[i], row[Dim + i] = x[i] + u[i];
         },
         [&](int block, const double* row) {
           block_of.push_back(block);
-          start.push_back({{row[0], row[1]}});
-          place_.push_back({{row[2], row[3]}});
+          std::copy_n(row, Dim, start.emplace_back().c.begin());
+          std::copy_n(row + Dim, Dim, place_.emplace_back().c.begin());
         });
-    std::vector<std::array<int, 3>> zones;
+    std::vector<std::array<int, Dim + 1>> zones;
     in_slices(
-        Item::zone, model, 3,
+        Item::zone, model, Dim + 1,
         [&](int zone, double* row) {
           for (const int g : model.gridpoints_of_zone(zone))
             *row++ = model.part ? model.part->gridpoint[g] : g;
         },
         [&](std::int64_t, const std::vector<double>& rows) {
-          for (auto row = rows.begin(); row != rows.end(); row += 3)
-            zones.push_back({static_cast<int>(row[0]), static_cast<int>(row[1]), static_cast<int>(row[2])});
+          for (auto row = rows.begin(); row != rows.end(); row += Dim + 1)
+            std::copy_n(row, Dim + 1, zones.emplace_back().begin());
         });
     if (block_of.empty()) return;
     blocks_.resize(static_cast<std::size_t>(std::ranges::max(block_of)) + 1);
-    std::set<std::array<int, 2>> edges;
     for (auto& zone : zones) {
-      const double twice = cross(start[zone[1]] - start[zone[0]], start[zone[2]] - start[zone[0]]);
-      if (twice < 0.0) std::swap(zone[1], zone[2]);
-      blocks_[block_of[zone[0]]].size += 0.5 * std::abs(twice);
-      for (std::size_t i = 0; i < 3; ++i) edges.insert({zone[i], zone[(i + 1) % 3]});
+      const double size = size_of(zone, start);
+      if (size < 0.0) std::swap(zone[0], zone[1]);
+      PlacedBlock<Dim>& block = blocks_[block_of[zone[0]]];
+      block.size += std::abs(size);
+      block.zones.push_back(zone);
     }
-    for (const auto& edge : edges)
-      if (!edges.contains({edge[1], edge[0]})) blocks_[block_of[edge[0]]].edges.push_back(edge);
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    for (PlacedBlock& block : blocks_) {
-      block.size = std::sqrt(block.size);
-      block.low = {{kFar, kFar}};
-      block.high = {{-kFar, -kFar}};
-      for (const auto& edge : block.edges)
-        for (int i = 0; i < 2; ++i) {
-          block.low[i] = std::min(block.low[i], place_[edge[0]][i]);
-          block.high[i] = std::max(block.high[i], place_[edge[0]][i]);
-        }
+    for (PlacedBlock<Dim>& block : blocks_) {
+      block.size = specimen::side_of<Dim>(block.size);
+      find_surface(block);
     }
   }
 
-  const PlacedBlock& operator[](int block) const { return blocks_[block]; }
+  const PlacedBlock<Dim>& operator[](int block) const { return blocks_[block]; }
   int count() const { return static_cast<int>(blocks_.size()); }
 
-  /// Returns how deep a gridpoint lies in a block, m; 0 outside.
+  /// Returns how deep a gridpoint lies in a block, m, by the nearest line or plane of its facets; 0 outside.
   double depth(int gridpoint, int in) const {
-    const PlacedBlock& block = blocks_[in];
-    const Vec<2>& at = place_[gridpoint];
-    for (int i = 0; i < 2; ++i)
+    const PlacedBlock<Dim>& block = blocks_[in];
+    const Vec<Dim>& at = place_[gridpoint];
+    for (int i = 0; i < Dim; ++i)
       if (at[i] < block.low[i] || at[i] > block.high[i]) return 0.0;
-    bool is_inside = false;
+    if (std::ranges::none_of(block.zones, [&](const auto& zone) { return holds(zone, at); })) return 0.0;
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& edge : block.edges) {
-      const Vec<2> from = place_[edge[0]], way = place_[edge[1]] - from, to = at - from;
-      if ((from[1] > at[1]) != (from[1] + way[1] > at[1]) && to[0] < way[0] * to[1] / way[1])
-        is_inside = !is_inside;
-      const double along = std::clamp(dot(to, way) / dot(way, way), 0.0, 1.0);
-      least = std::min(least, norm(to - way * along));
+    for (const auto& facet : block.facets) {
+      const Vec<Dim> normal = normal_of(facet);
+      least = std::min(least, std::abs(dot(at - place_[facet[0]], normal)) / norm(normal));
     }
-    return is_inside ? least : 0.0;
+    return least > kOnSurface * block.size ? least : 0.0;
   }
 
  private:
-  std::vector<Vec<2>> place_;
-  std::vector<PlacedBlock> blocks_;
+  /// Returns the area or volume of a zone, with its sign.
+  static double size_of(const std::array<int, Dim + 1>& zone, const std::vector<Vec<Dim>>& place) {
+    const Vec<Dim>& at = place[zone[0]];
+    if constexpr (Dim == 2)
+      return 0.5 * cross(place[zone[1]] - at, place[zone[2]] - at);
+    else
+      return dot(place[zone[1]] - at, cross(place[zone[2]] - at, place[zone[3]] - at)) / 6.0;
+  }
+
+  Vec<Dim> normal_of(const std::array<int, Dim>& facet) const {
+    const Vec<Dim> way = place_[facet[1]] - place_[facet[0]];
+    if constexpr (Dim == 2)
+      return {{way[1], -way[0]}};
+    else
+      return cross(way, place_[facet[2]] - place_[facet[0]]);
+  }
+
+  /// Tells whether a point lies in a zone.
+  bool holds(const std::array<int, Dim + 1>& zone, const Vec<Dim>& at) const {
+    for (int left_out = 0; left_out <= Dim; ++left_out) {
+      const auto facet = facet_of(zone, left_out);
+      if (dot(at - place_[facet[0]], normal_of(facet)) > 0.0) return false;
+    }
+    return true;
+  }
+
+  /// Returns the facet of a zone opposite to one of its gridpoints, seen from outside counter-clockwise.
+  static std::array<int, Dim> facet_of(const std::array<int, Dim + 1>& zone, int left_out) {
+    std::array<int, Dim> facet{};
+    for (int i = 0, to = 0; i <= Dim; ++i)
+      if (i != left_out) facet[to++] = zone[i];
+    if (left_out % 2 == 1) std::swap(facet[0], facet[1]);
+    return facet;
+  }
+
+  void find_surface(PlacedBlock<Dim>& block) const {
+    std::map<std::array<int, Dim>, std::pair<std::array<int, Dim>, int>> seen;  // facets by their gridpoints
+    for (const auto& zone : block.zones)
+      for (int left_out = 0; left_out <= Dim; ++left_out) {
+        const auto facet = facet_of(zone, left_out);
+        auto key = facet;
+        std::ranges::sort(key);
+        auto& [first, times] = seen[key];
+        first = facet;
+        ++times;
+      }
+    block.low.c.fill(std::numeric_limits<double>::infinity());
+    block.high.c.fill(-std::numeric_limits<double>::infinity());
+    std::set<int> gridpoints;
+    for (const auto& [key, facet] : seen) {
+      if (facet.second > 1) continue;
+      block.facets.push_back(facet.first);
+      gridpoints.insert(key.begin(), key.end());
+      for (const int g : key)
+        for (int i = 0; i < Dim; ++i) {
+          block.low[i] = std::min(block.low[i], place_[g][i]);
+          block.high[i] = std::max(block.high[i], place_[g][i]);
+        }
+    }
+    block.gridpoints.assign(gridpoints.begin(), gridpoints.end());
+  }
+
+  std::vector<Vec<Dim>> place_;
+  std::vector<PlacedBlock<Dim>> blocks_;
 };
 
-/// Sums over a block.
-struct BlockSums {
-  bool is_held = false;
-  double real_mass = 0.0, moving_mass = 0.0;  // kg
-};
-
-}  // namespace
-
-PassedThrough passed_through(const Simulation& simulation) {
+template <int Dim>
+PassedThrough find_passed_through(const Simulation& simulation) {
   PassedThrough passed;
-  if (!simulation.moves() || simulation.model().dimension() != 2) return passed;
-  const PlacedBlocks blocks(simulation);
+  const PlacedBlocks<Dim> blocks(simulation);
   std::set<PairOfBlocks> joined;
   each_contact(simulation, false, [&](int a, int b, bool) {
     joined.insert({std::min(a, b), std::max(a, b)});
@@ -183,21 +233,24 @@ PassedThrough passed_through(const Simulation& simulation) {
   std::map<int, int> deep;  // gridpoints that lie in others, and their blocks
   const auto look_into = [&](int block, int other) {
     const double most = PassedThrough::kDeep * std::min(blocks[block].size, blocks[other].size);
-    for (const auto& edge : blocks[block].edges) {
-      const double depth = blocks.depth(edge[0], other);
+    for (const int g : blocks[block].gridpoints) {
+      const double depth = blocks.depth(g, other);
       if (depth > passed.depth) {
         passed.depth = depth;
         passed.block = block;
         passed.other = other;
       }
-      if (depth > most) deep[edge[0]] = block;
+      if (depth > most) deep[g] = block;
     }
   };
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const int a = order[i], b = order[j];
       if (blocks[b].low[0] > blocks[a].high[0]) break;
-      if (blocks[b].low[1] > blocks[a].high[1] || blocks[a].low[1] > blocks[b].high[1]) continue;
+      bool meet = true;
+      for (int k = 1; k < Dim; ++k)
+        meet = meet && blocks[b].low[k] <= blocks[a].high[k] && blocks[a].low[k] <= blocks[b].high[k];
+      if (!meet) continue;
       if (joined.contains({std::min(a, b), std::max(a, b)})) continue;
       look_into(a, b);
       look_into(b, a);
@@ -207,6 +260,20 @@ PassedThrough passed_through(const Simulation& simulation) {
   passed.gridpoints = static_cast<int>(deep.size());
   passed.blocks = static_cast<int>(of_blocks.size());
   return passed;
+}
+
+/// Sums over a block.
+struct BlockSums {
+  bool is_held = false;
+  double real_mass = 0.0, moving_mass = 0.0;  // kg
+};
+
+}  // namespace
+
+PassedThrough passed_through(const Simulation& simulation) {
+  if (!simulation.moves()) return {};
+  return simulation.model().dimension() == 2 ? find_passed_through<2>(simulation)
+                                             : find_passed_through<3>(simulation);
 }
 
 std::vector<FallingPiece> falling_pieces(const Simulation& simulation) {

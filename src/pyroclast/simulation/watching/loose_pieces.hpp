@@ -6,8 +6,8 @@
 
 namespace pyroclast {
 
-/// Gridpoints of a plane body that lie in blocks with which theirs has no contact: pieces that passed through
-/// others, because contacts join the faces of the start alone.
+/// Gridpoints that lie in blocks with which theirs has no contact: pieces that passed through others, because
+/// contacts join the faces of the start alone.
 struct PassedThrough {
   int gridpoints = 0;  ///< gridpoints deeper than kDeep of the size of the smaller block
   int blocks = 0;      ///< blocks that they belong to
@@ -16,8 +16,8 @@ struct PassedThrough {
   double depth = 0.0;  ///< depth of that gridpoint, m
   static constexpr double kDeep = 0.01;
 };
-/// Finds what passed through, at the present displacements: a collective. Nothing in a solid, and on ranks
-/// but the first.
+/// Finds what passed through, at the present displacements: a collective. Nothing on ranks but the
+/// first.
 PassedThrough passed_through(const Simulation& simulation);
 
 /// Piece of a body that falls: blocks that contacts hold together, none of which is held or pressed by
