@@ -29,8 +29,8 @@ ModelOf<Dim> body_of_chunks() {
     return laguerre_cells(12, kCrushedSize, 3);
 }
 
-/// Steps until the state is copied, of the copy, and of it with other properties.
-constexpr int kBefore = 800, kCopied = 50, kSoftened = 50;
+/// Steps until the properties change, after each such change, and of the copy between two of them.
+constexpr int kBefore = 750, kSoftened = 50, kCopied = 50;
 
 /// Properties of a body that has become softer: each contact has its own.
 template <int Dim>
@@ -62,11 +62,13 @@ Mechanics<Dim> made(const ModelOf<Dim>& model, int threads) {
   return m;
 }
 
-/// Crushes a body, copies its state into another one of several threads, and softens this.
+/// Crushes and softens a body, copies its state into another one of several threads, and softens this.
 template <int Dim>
 Mechanics<Dim> crushed(const ModelOf<Dim>& model, int threads) {
   auto first = made(model, 1), m = made(model, threads);
   for (int left = kBefore; left > 0; left -= 150) first.advance(std::min(150, left));
+  first.set_properties(softened(model));
+  first.advance(kSoftened);
   m.advance(1);
   copy_state(first, m);
   m.advance(kCopied);
