@@ -225,34 +225,39 @@ class Ranks(InAFolder):
 
     @NEEDS_MPI
     def test_a_run_that_lost_a_rank_goes_on_on_another_number(self):
-        """Killed on two ranks, stopped on three, and ended by two: files and checkpoints are those of one process."""
+        """Killed on two ranks, stopped on three, and ended by two: files and checkpoints are those of one process.
+
+        Blocks that drop find contacts between ranks.
+        """
         def start(ranks: int, *words) -> subprocess.Popen:
             return subprocess.Popen(["mpirun", "-n", str(ranks), PROGRAM, *map(str, words), "-t", "1", "--mpi", "--quiet",
                                      "--no-figures", "--checkpoint", "0s"], cwd=self.folder, env={**os.environ, **MPI},
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
-        def wait_for(rows: int, mpirun: subprocess.Popen) -> None:
-            history = self.folder / "broken/history.csv"
+        def wait_for(rows: int, history: pathlib.Path, mpirun: subprocess.Popen) -> None:
             while not (history.exists() and len(history.read_text().splitlines()) > rows):
                 self.assertIsNone(mpirun.poll(), "the run ended too early")
                 time.sleep(0.02)
 
-        self.pyroclast("run", CASE, *SMALL, *PRESS, "-t", "1", "--out", "whole",
-                       env={**os.environ, "PYROCLAST_CHUNK_BLOCKS": "16"})
-        with start(2, "run", CASE, *SMALL, *PRESS, "--out", "broken") as mpirun:
-            wait_for(4, mpirun)
-            subprocess.run(["pkill", "-KILL", "--parent", str(mpirun.pid)], check=True)
-        with start(3, "resume", "broken") as mpirun:
-            wait_for(10, mpirun)
-            mpirun.send_signal(signal.SIGUSR1)
-        self.assertEqual(mpirun.returncode, 130)
-        with start(2, "resume", "broken") as mpirun:
-            pass
-        self.assertEqual(mpirun.returncode, 0)
-        self.assertEqual(validation_ranks.differences(self.folder / "whole", self.folder / "broken"), [])
+        drop = ["--set", "blocks.count=100", "--set", "stages[0].duration=0.6 ms", "--no-figures"]
+        for case, words in ((CASE, [*SMALL, *PRESS]), (case_file("drop"), drop)):
+            whole, broken = (self.folder / f"{how} {pathlib.Path(case).stem}" for how in ("whole", "broken"))
+            self.pyroclast("run", case, *words, "-t", "1", "--out", whole,
+                           env={**os.environ, "PYROCLAST_CHUNK_BLOCKS": "16"})
+            with start(2, "run", case, *words, "--out", broken) as mpirun:
+                wait_for(4, broken / "history.csv", mpirun)
+                subprocess.run(["pkill", "-KILL", "--parent", str(mpirun.pid)], check=True)
+            with start(3, "resume", broken) as mpirun:
+                wait_for(9, broken / "history.csv", mpirun)
+                mpirun.send_signal(signal.SIGUSR1)
+            self.assertEqual(mpirun.returncode, 130)
+            with start(2, "resume", broken) as mpirun:
+                pass
+            self.assertEqual(mpirun.returncode, 0)
+            self.assertEqual(validation_ranks.differences(whole, broken), [])
         with self.subTest("other chunks"):
             self.assertIn("chunks of 16 blocks, and this run has chunks of 1024",
-                          self.pyroclast("resume", "whole", code=1).stderr)
+                          self.pyroclast("resume", whole, code=1).stderr)
 
     @NEEDS_MPI
     def test_a_file_that_one_rank_cannot_write_ends_all(self):

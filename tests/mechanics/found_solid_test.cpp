@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "copy_state.hpp"
+#include "crushing.hpp"
 #include "loose_blocks.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
@@ -232,39 +233,22 @@ TEST(FoundContacts, FaceOfASolidThatIsHandedOverPressesOn) {
 }
 
 /// A cube of blocks that two plates of prescribed gridpoints crush.
-Mechanics<3> crushed(const ModelOf<3>& model, const MechanicsParameters& parameters, double size, int steps,
-                     int threads) {
-  auto contact = mortar_contact();
-  contact.mode_1_energy = 3.0;
-  contact.mode_2_energy = 12.0;
-  contact.residual_friction_angle = 0.3;
-  auto m = mechanics<3>(model, contact, parameters, 29.4e9, 0.2,
+Mechanics<3> crushed(const ModelOf<3>& model, const MechanicsParameters& parameters, int steps, int threads) {
+  auto m = mechanics<3>(model, brittle(), parameters, 29.4e9, 0.2,
                         std::make_shared<Team>(threads, WhenCrowded::stay));
-  const double speed = 0.01 * size / (1000 * m.time_step());
-  for (int g = 0; g < model.gridpoint_count(); ++g) {
-    const double z = model.position[g][2];
-    for (const double end : {0.0, size})
-      if (std::abs(z - end) < 1e-9) {
-        for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
-        m.constraints().prescribe_velocity(g, 2, end > 0.0 ? -speed : 0.0);
-      }
-  }
+  crush(m);
   m.advance(steps);
   return m;
 }
 
 // Promise: a solid that is crushed while its faces are handed over has the same bits for any number of
-// threads and width of lists, and where its state is copied. Its ledger closes, though edges cross steeply and
-// overlaps of faces that rest change.
+// threads and width of lists, and where its state is copied. Its ledger closes, though edges cross steeply
+// and overlaps of faces that rest change.
 TEST(FoundContacts, CrushedSolidKeepsItsEnergyAndItsBits) {
-  constexpr double kSize = 0.1;
   constexpr int kSteps = 1000, kCopied = 700;
-  const ModelOf<3> model = laguerre_cells(12, kSize, 3);
-  auto parameters = quasi_static<3>(0.5);
-  parameters.time_step = 1e-6;
-  parameters.found.is_on = true;
-  parameters.zones_for_a_thread = 1;
-  const auto expected = crushed(model, parameters, kSize, kSteps, 1);
+  const ModelOf<3> model = laguerre_cells(12, kCrushedSize, 3);
+  const auto parameters = crushing<3>();
+  const auto expected = crushed(model, parameters, kSteps, 1);
   const auto& found = *expected.body().found;
   int pressed = 0;
   for (const auto& pair : found.pairs)
@@ -276,8 +260,8 @@ TEST(FoundContacts, CrushedSolidKeepsItsEnergyAndItsBits) {
   EXPECT_LT(std::abs(e.error()), 1e-4 * turnover(e));
   auto wide = parameters;
   wide.found.skin = wide.found.reach = 0.5;
-  expect_equal(crushed(model, wide, kSize, kSteps, 2), expected, "2 threads, wide lists");
-  auto half = crushed(model, parameters, kSize, kCopied, 1), other = crushed(model, parameters, kSize, 1, 1);
+  expect_equal(crushed(model, wide, kSteps, 2), expected, "2 threads, wide lists");
+  auto half = crushed(model, parameters, kCopied, 1), other = crushed(model, parameters, 1, 1);
   copy_state(half, other);
   other.advance(kSteps - kCopied);
   expect_equal(other, expected, "copied");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "copy_state.hpp"
+#include "crushing.hpp"
 #include "loose_blocks.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
@@ -197,29 +198,11 @@ TEST(FoundContacts, HandOverKeepsEnergyAndForces) {
 /// A specimen that is crushed between its held lower and its driven upper side, until pieces part.
 Mechanics<2> crushed(const ModelOf<2>& model, MechanicsParameters parameters, int threads, int batch,
                      int steps) {
-  auto contact = mortar_contact();
-  contact.mode_1_energy = 3.0;
-  contact.mode_2_energy = 12.0;
-  contact.residual_friction_angle = 0.3;
-  auto m = mechanics<2>(model, contact, parameters, 29.4e9, 0.2,
+  auto m = mechanics<2>(model, brittle(), parameters, 29.4e9, 0.2,
                         std::make_shared<Team>(threads, WhenCrowded::stay));
-  for (int g = 0; g < model.gridpoint_count(); ++g) {
-    if (model.position[g][1] < 1e-9)
-      for (int i = 0; i < 2; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
-    if (model.position[g][1] > 0.1 - 1e-9) m.constraints().prescribe_velocity(g, 1, -0.5);
-  }
+  crush(m);
   for (int left = steps; left > 0; left -= batch) m.advance(std::min(batch, left));
   return m;
-}
-
-MechanicsParameters crushing() {
-  auto p = quasi_static<2>(0.5);
-  p.time_step = 1e-6;
-  p.kinematics = Kinematics::finite;
-  p.found.is_on = true;
-  p.found.damping = 0.1;
-  p.zones_for_a_thread = 1;
-  return p;
 }
 
 void expect_equal(const Mechanics<2>& m, const Mechanics<2>& expected, const std::string& what) {
@@ -248,7 +231,7 @@ constexpr int kCrushingSteps = 1200;
 // width of a search.
 TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
   const ModelOf<2> model = tessellated(40, 0.1, 0.1, 3);
-  const auto expected = crushed(model, crushing(), 1, kCrushingSteps, kCrushingSteps);
+  const auto expected = crushed(model, crushing<2>(), 1, kCrushingSteps, kCrushingSteps);
   int handed_over = 0, pressed = 0;
   for (const bool face : expected.body().found->is_handed_over) handed_over += face ? 1 : 0;
   for (const auto& pair : expected.body().found->pairs)
@@ -256,32 +239,32 @@ TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
                expected.body().found->arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes] > 0.0;
   EXPECT_GT(handed_over, 5);
   EXPECT_GT(pressed, 3);
-  auto never = crushing();
+  auto never = crushing<2>();
   never.found.is_on = false;
   const EnergyLedger e = expected.totals().energy();
   const EnergyLedger first = crushed(model, never, 1, kCrushingSteps, kCrushingSteps).totals().energy();
   EXPECT_LT(std::abs(e.error()), 1.1 * std::abs(first.error()));
   EXPECT_GT(e.dissipated.of("contact_area"), 0.0);
   for (const int threads : {2, 3})
-    expect_equal(crushed(model, crushing(), threads, kCrushingSteps, kCrushingSteps), expected,
+    expect_equal(crushed(model, crushing<2>(), threads, kCrushingSteps, kCrushingSteps), expected,
                  std::to_string(threads) + " threads");
   for (const int batch : {1, 50})
-    expect_equal(crushed(model, crushing(), 1, batch, kCrushingSteps), expected,
+    expect_equal(crushed(model, crushing<2>(), 1, batch, kCrushingSteps), expected,
                  "batches of " + std::to_string(batch));
   for (const InstructionSet set : usable_instruction_sets()) {
-    auto parameters = crushing();
+    auto parameters = crushing<2>();
     parameters.instructions = set;
     expect_equal(crushed(model, parameters, 2, 100, kCrushingSteps), expected, name(set));
   }
   for (const double steps : {20.0, 2000.0}) {
-    auto parameters = crushing();
+    auto parameters = crushing<2>();
     parameters.found.steps = steps;
     const auto m = crushed(model, parameters, 1, 100, kCrushingSteps);
     EXPECT_EQ(m.body().found->searches > expected.body().found->searches, steps < 250.0);
     expect_equal(m, expected, std::to_string(steps) + " steps to the next search");
   }
   for (const double width : {0.1, 0.5, 16.0}) {
-    auto parameters = crushing();
+    auto parameters = crushing<2>();
     parameters.found.skin = parameters.found.reach = width;
     const auto m = crushed(model, parameters, 1, 100, kCrushingSteps);
     expect_equal(m, expected, "lists as wide as " + std::to_string(width) + " edges");
@@ -291,11 +274,11 @@ TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
     const SmallChunks few(7);
     const ModelOf<2> cut = tessellated(40, 0.1, 0.1, 3);
     ASSERT_GT(cut.chunks().count(), 1);
-    const auto m = crushed(cut, crushing(), 2, 100, kCrushingSteps);  // its sums have other last digits
+    const auto m = crushed(cut, crushing<2>(), 2, 100, kCrushingSteps);  // its sums have other last digits
     EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
     EXPECT_TRUE(m.read().forces() == expected.read().forces());
   }
-  auto parameters = crushing();
+  auto parameters = crushing<2>();
   parameters.layout.fewest_blocks = 2;
   const auto m = crushed(model, parameters, 1, 100, kCrushingSteps);  // its sums have other last digits
   EXPECT_TRUE(m.read().displacements() == expected.read().displacements());
@@ -305,10 +288,10 @@ TEST(FoundContacts, BitsDependOnPairsThatPressAlone) {
 // Promise: a state that is copied at any step goes on with the same bits.
 TEST(FoundContacts, CopiedStatesGoOnWithTheSameBits) {
   const ModelOf<2> model = tessellated(40, 0.1, 0.1, 3);
-  const auto expected = crushed(model, crushing(), 1, kCrushingSteps, kCrushingSteps);
+  const auto expected = crushed(model, crushing<2>(), 1, kCrushingSteps, kCrushingSteps);
   for (const int step : {63, 64, 65, 700, 1023, 1024, 1025}) {
-    auto half = crushed(model, crushing(), 1, step, step);
-    auto other = crushed(model, crushing(), 1, 1, 1);
+    auto half = crushed(model, crushing<2>(), 1, step, step);
+    auto other = crushed(model, crushing<2>(), 1, 1, 1);
     copy_state(half, other);
     EXPECT_EQ(other.totals().energy().contacts, half.totals().energy().contacts);
     other.advance(kCrushingSteps - step);
@@ -336,7 +319,7 @@ TEST(FoundContacts, FollowAChangeOfProperties) {
     p.of_interface = {model.contact_count()};
     m.set_properties(std::move(p));
   };
-  auto m = crushed(model, crushing(), 1, 900, 900);
+  auto m = crushed(model, crushing<2>(), 1, 900, 900);
   const EnergyLedger before = m.totals().energy();
   heat(m);
   const EnergyLedger after = m.totals().energy();
@@ -344,7 +327,7 @@ TEST(FoundContacts, FollowAChangeOfProperties) {
   EXPECT_GE(after.dissipated.total(), before.dissipated.total());
   EXPECT_NEAR(after.error(), before.error(), 1e-9 * turnover(after));
   m.advance(500);
-  auto other = crushed(model, crushing(), 2, 1, 1);
+  auto other = crushed(model, crushing<2>(), 2, 1, 1);
   copy_state(m, other);
   EXPECT_EQ(other.totals().energy().contacts, m.totals().energy().contacts);
   const double error = m.totals().energy().error();

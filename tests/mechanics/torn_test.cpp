@@ -9,6 +9,9 @@
 #include "loose_blocks.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/part.hpp"
+#include "ranks_in_threads.hpp"
+#include "small_chunks.hpp"
 
 /// Faces whose sides turn against each other until they are torn.
 namespace pyroclast::torn_test {
@@ -190,6 +193,41 @@ TEST(TornFaces, BitsDependNeitherOnBatchesNorOnCopies) {
   for (const bool are_found : {false, true}) {
     expect_bits<2>(are_found);
     expect_bits<3>(are_found);
+  }
+}
+
+/// Lets each block be of another rank, and the face tear.
+template <int Dim>
+void expect_bits_on_ranks(bool are_found) {
+  SCOPED_TRACE(std::to_string(Dim) + (are_found ? " dimensions, found" : " dimensions, first"));
+  const SmallChunks chunks(1);
+  const ModelOf<Dim> model = two_blocks<Dim>();
+  Hinge<Dim> expected(model, strong(), free_flight<Dim>(are_found));
+  int steps = 0;
+  for (; !expected.is_torn(); steps += 64) expected.m.advance(64);
+  constexpr int kAfter = 100, kCopied = 200;  // the copy is made before the face is torn
+  expected.m.advance(kAfter);
+  RanksInThreads::run(2, [&](const std::shared_ptr<Ranks>& ranks) {
+    const ModelOf<Dim> part = part_of(model, ranks, {0, 1}, {}, ForeignBlocks::all);
+    Hinge<Dim> half(part, strong(), free_flight<Dim>(are_found)),
+        hinge(part, strong(), free_flight<Dim>(are_found));
+    half.m.advance(steps + kAfter - kCopied);
+    hinge.m.advance(1);
+    copy_state(half.m, hinge.m);
+    hinge.m.advance(kCopied);
+    EXPECT_EQ(hinge.is_torn(), expected.is_torn());
+    EXPECT_EQ(hinge.m.totals().energy().dissipated.energies,
+              expected.m.totals().energy().dissipated.energies);
+    for (auto [g, last] = part.gridpoint_chunks().own(); g < last; ++g)
+      ASSERT_EQ(hinge.m.read().displacement(g), expected.m.read().displacement(g));
+  });
+}
+
+// Promise: faces between two ranks are torn at the same steps as on one.
+TEST(TornFaces, BitsDoNotDependOnRanks) {
+  for (const bool are_found : {false, true}) {
+    expect_bits_on_ranks<2>(are_found);
+    expect_bits_on_ranks<3>(are_found);
   }
 }
 

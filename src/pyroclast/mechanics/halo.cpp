@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
-
-#include "pyroclast/model/part.hpp"
+#include <utility>
 
 namespace pyroclast {
 
@@ -34,22 +33,36 @@ void for_each_that_travels(StateArrays<Dim, FlatArray>& arrays, Travels travels,
 }  // namespace
 
 template <int Dim>
-Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout) : ranks_(model.ranks()) {
+Halo<Dim>::Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout)
+    : layout_(layout), ranks_(model.ranks()) {
   if (ranks_.count() == 1) return;
-  for (const auto& [rank, gridpoints] : shared_gridpoints(model)) {
-    Neighbour& neighbour = neighbours_.emplace_back();
-    for (const int g : gridpoints.own) neighbour.sent.push_back(layout.gridpoint_slot[g]);
-    for (const int g : gridpoints.foreign) neighbour.received.push_back(layout.gridpoint_slot[g]);
-    messages_.push_back({rank, {}, {}});
-  }
-  for (const Neighbour& neighbour : neighbours_)
-    for (const int slot : neighbour.sent) bundles_sent_.push_back(layout.bundle_of_pack[slot / kLanes]);
-  std::ranges::sort(bundles_sent_);
-  bundles_sent_.erase(std::unique(bundles_sent_.begin(), bundles_sent_.end()), bundles_sent_.end());
+  of_faces_ = shared_gridpoints(model);
+  join({});
   if (!ranks_.spoil_foreign()) return;
   const ChunkList::Items own = model.gridpoint_chunks().own();
   for (int g = 0; g < model.gridpoint_count(); ++g)
     if (!own.contain(g)) spoilt_.push_back(layout.gridpoint_slot[g]);
+}
+
+template <int Dim>
+void Halo<Dim>::join(std::map<int, SharedGridpoints> found) {
+  for (const auto& [rank, gridpoints] : of_faces_) {
+    found[rank].own.insert(gridpoints.own.begin(), gridpoints.own.end());
+    found[rank].foreign.insert(gridpoints.foreign.begin(), gridpoints.foreign.end());
+  }
+  neighbours_.clear();
+  messages_.clear();
+  bundles_sent_.clear();
+  for (const auto& [rank, gridpoints] : found) {
+    Neighbour& neighbour = neighbours_.emplace_back();
+    for (const int g : gridpoints.own) neighbour.sent.push_back(layout_.gridpoint_slot[g]);
+    for (const int g : gridpoints.foreign) neighbour.received.push_back(layout_.gridpoint_slot[g]);
+    messages_.push_back({rank, {}, {}});
+  }
+  for (const Neighbour& neighbour : neighbours_)
+    for (const int slot : neighbour.sent) bundles_sent_.push_back(layout_.bundle_of_pack[slot / kLanes]);
+  std::ranges::sort(bundles_sent_);
+  bundles_sent_.erase(std::unique(bundles_sent_.begin(), bundles_sent_.end()), bundles_sent_.end());
 }
 
 template <int Dim>

@@ -1,21 +1,25 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "pyroclast/base/ranks.hpp"
 #include "pyroclast/mechanics/state.hpp"
-#include "pyroclast/model/model.hpp"
+#include "pyroclast/model/part.hpp"
 
 namespace pyroclast {
 
-/// Halo of a part of a body: the gridpoints that faces join to gridpoints of other ranks. What contacts read
-/// of them travels: each rank sends its own, and receives those of its neighbours.
+/// Halo of a part of a body: the gridpoints that faces, and found pairs, join to gridpoints of other ranks.
+/// What contacts read of them travels: each rank sends its own, and receives those of its neighbours.
 template <int Dim>
 class Halo {
  public:
   Halo(const ModelOf<Dim>& model, const Layout<Dim>& layout);
 
-  /// Tells whether no face joins the part to another rank.
+  /// Takes the gridpoints that found pairs join in, in the place of those before.
+  void join(std::map<int, SharedGridpoints> found);
+
+  /// Tells whether nothing joins the part to another rank.
   bool is_empty() const { return neighbours_.empty(); }
   /// Gives foreign gridpoints the numbers that their owners have.
   /// \param travels  kind of the arrays that travel now
@@ -39,7 +43,9 @@ class Halo {
     std::vector<int> sent, received;
   };
 
+  const Layout<Dim>& layout_;
   Ranks& ranks_;
+  std::map<int, SharedGridpoints> of_faces_;
   std::vector<Neighbour> neighbours_;
   std::vector<Message> messages_;  ///< messages by neighbour
   std::vector<int> bundles_sent_;

@@ -84,6 +84,11 @@ MassSums Masses<Dim>::sums(const std::vector<double>& before) const {
   const ChunkList& gridpoints = body_.layout.chunks.gridpoints;
   MassSums all;
   all.stiffness = chunked_sum(gridpoints, [&](int g) { return body_.stiffness[g]; });
+  if (Ranks& ranks = body_.model.ranks(); body_.found && ranks.count() > 1) {
+    const auto [first, last] = gridpoints.own();
+    all.of_owners =
+        ranks.collect(std::vector<double>(body_.stiffness.begin() + first, body_.stiffness.begin() + last));
+  }
   if (!are_scaled()) return all;
   all.moving = chunked_sum(gridpoints, [&](int g) { return body_.mass[g]; });
   all.scaling = chunked_sum(gridpoints, [&](int g) {
@@ -96,6 +101,10 @@ MassSums Masses<Dim>::sums(const std::vector<double>& before) const {
 template <int Dim>
 void Masses<Dim>::take(const MassSums& sums) {
   body_.least_force = kNoStrain * body_.mean_height * sums.stiffness;
+  if (!sums.of_owners.empty()) {
+    body_.stiffness = sums.of_owners;
+    scale();
+  }
   if (are_scaled()) {
     body_.moving_mass = sums.moving;
     // the half step already begun had the old mass; nothing moves yet when the first masses are made

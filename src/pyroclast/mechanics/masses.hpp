@@ -17,6 +17,9 @@ struct MassSums {
   double stiffness = 0.0;
   double moving = 0.0;   ///< scaled masses, kg
   double scaling = 0.0;  ///< kinetic energy that the change of the masses brings, J
+  /// Stiffness of all gridpoints by their owners, where contacts are found on several ranks: the mass of a
+  /// block counts in the damping of its pairs on every rank that has one.
+  std::vector<double> of_owners = {};
 };
 
 /// Masses of a body, and the stiffness on which scaled masses and stable steps rest.

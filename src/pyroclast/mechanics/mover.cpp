@@ -39,11 +39,31 @@ ShareOfFound share_of_found(const State<Dim>& s, const IndexRange& bundles, int 
 }  // namespace
 
 template <int Dim>
+void Mover<Dim>::take_from_owners() {
+  if (body_->found) return FoundContacts<Dim>(*body_).take_from_owners();
+  if (halo_.is_empty()) return;
+  halo_.exchange(body_->arrays, Travels::each_step);
+  halo_.exchange(body_->arrays, Travels::each_call);
+}
+
+/// Lets found contacts search where they need to, and the halo follow their rows.
+template <int Dim>
+void Mover<Dim>::follow_found() {
+  FoundContacts<Dim> found(*body_);
+  found.search_where_needed();
+  if (body_->model.ranks().count() == 1 || !std::exchange(body_->found->has_new_rows, false)) return;
+  halo_.join(found.shared_gridpoints());
+  workers_.clear();  // other bundles lead
+}
+
+template <int Dim>
 void Mover<Dim>::sweep(int steps, Pass pass) {
   Body<Dim>& body = *body_;
   const StepPasses<Dim>& passes = body.step.passes;
   const bool measure = pass != Pass::move;
-  const bool moves_with_others = pass != Pass::measure && !halo_.is_empty();
+  Ranks& ranks = body.model.ranks();
+  const bool finds_with_others = body.found && ranks.count() > 1;
+  const bool moves_with_others = pass != Pass::measure && (finds_with_others || !halo_.is_empty());
   const auto update_faces = [&](State<Dim>& s, int first, int last, bool measured) {
     for_each_law(s, first, last, [&](const PackFunctions<Dim>& law, int begin, int end) {
       law.update(s, begin, end, measured);
@@ -64,6 +84,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
   // A call ends before its last step where other work took the cores, and fewer threads go on; and where
   // found contacts need a search.
   for (int left = steps, moved = 0; left > 0; left -= moved) {
+    if (body.found) follow_found();
     const int threads =
         std::clamp(body.model.zone_count() / body.parameters.zones_for_a_thread, 1, body.team->offered());
     if (static_cast<int>(workers_.size()) != threads) {
@@ -71,7 +92,6 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       for (Share& share : share_out(body.layout, threads, halo_.bundles_sent()))
         workers_.push_back({std::move(share), body.make_scratch(), 0.0});
     }
-    if (body.found) FoundContacts<Dim>(body).search_where_needed();
     const bool ties_join_parts = body.ties_join_parts();
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
@@ -104,17 +124,27 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
           sweep_through(s, worker, share.strides[i]);
           if (exchanges && i % kStridesPerLook == 0) halo_.go_on();
         }
-        if (exchanges) halo_.end_exchange(body.arrays, Travels::each_step);
+        if (exchanges) {
+          halo_.end_exchange(body.arrays, Travels::each_step);
+          // the damping of found contacts reads velocities
+          if (s.found && s.found->is_damped) halo_.exchange(body.arrays, Travels::each_call);
+        }
         if (s.found) worker.way_of_found = passes.way_of_found(s, found.watched.first, found.watched.last);
         // ranks take as many steps as the others
         ends = body.team->barrier() && !moves_with_others;
         if (s.found) {
           rows.way = way_of_found();
+          if (finds_with_others && moves_with_others) {
+            if (thread == 0) way_of_all_ = ranks.largest(rows.way);
+            body.team->barrier();
+            rows.way = way_of_all_;
+          }
           ends = ends || !(rows.way <= 1.0);
         }
       }
       if (thread == 0) moved = taken;
     });
+    if (finds_with_others && moves_with_others) body.found->knows_all = false;
   }
   if (moves_with_others && measure) halo_.exchange(body.arrays, Travels::each_call);
 }

@@ -18,11 +18,7 @@ class Mover {
   /// Takes a number of sweeps over faces and bundles, of one kind.
   void sweep(int steps, Pass pass);
   /// Gives foreign gridpoints the displacements and velocities that their owners have.
-  void take_from_owners() {
-    if (halo_.is_empty()) return;
-    halo_.exchange(body_->arrays, Travels::each_step);
-    halo_.exchange(body_->arrays, Travels::each_call);
-  }
+  void take_from_owners();
 
  private:
   /// Share and memory of a thread in a step.
@@ -32,9 +28,12 @@ class Mover {
     double way_of_found = 0.0;  ///< see StepPasses
   };
 
+  void follow_found();
+
   Body<Dim>* body_;
   Halo<Dim> halo_;
   std::vector<Worker> workers_;  ///< workers by thread
+  double way_of_all_ = 0.0;      ///< longest way of found contacts on all ranks
 };
 
 extern template class Mover<2>;

@@ -64,8 +64,11 @@ std::vector<int> TornFaces<Dim>::turned() const {
   std::vector<bool> can_tear;
   for (const LawTable* law : body_.laws) can_tear.push_back(first_energy(*law) >= 0);
   std::vector<int> faces;
+  const ChunkList::Items own = body_.model.gridpoint_chunks().own();
   for (int face = 0; face < body_.model.face_count(); ++face) {
     const int contact = body_.model.face_contacts[face];
+    const Joint& first = body_.model.contacts[contact];
+    if (!own.contain(first.a) && !own.contain(first.b)) continue;  // its owners tear it
     const int pack = body_.layout.face_pack_of_point[body_.layout.contact_slot[contact] / kLanes];
     if (!can_tear[body_.arrays.law_of_faces[pack]] || body_.is_torn(face)) continue;
     const auto [a, b] = sides(face);

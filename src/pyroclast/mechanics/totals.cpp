@@ -94,14 +94,13 @@ Dissipation Totals<Dim>::dissipated() const {
       return static_cast<std::size_t>(std::ranges::find(all.names, name) - all.names.begin());
     };
     const std::size_t of_area = place_of_name(kContactArea), of_damping = place_of_name(kContactDamping);
-    for_each_loss(*body_.found,
-                  [&](int law, const std::vector<double>& losses, double lost_area, double lost_damping) {
-                    for (std::size_t i = 0; i < losses.size(); ++i)
-                      if (const int place = places[law][i]; place >= 0)
-                        all.energies[static_cast<std::size_t>(place)] += losses[i];
-                    all.energies[of_area] += lost_area;
-                    if (lost_damping != 0.0) all.energies[of_damping] += lost_damping;
-                  });
+    for (const LossesOfPair& lost : losses_of_pairs(body_)) {
+      for (std::size_t i = 0; i < places[lost.law].size(); ++i)
+        if (const int place = places[lost.law][i]; place >= 0)
+          all.energies[static_cast<std::size_t>(place)] += lost.of_law[i];
+      all.energies[of_area] += lost.area;
+      if (lost.damping != 0.0) all.energies[of_damping] += lost.damping;
+    }
   }
   return all;
 }
@@ -152,7 +151,7 @@ EnergyLedger Totals<Dim>::energies() const {
   e.loading = sums.loading + body_.books.start;
   e.contacts = chunked_sum(body_.layout.chunks.face_packs,
                            [&](int pack) { return body_.state.face_sums[pack].stored; });
-  if (body_.found) e.contacts += stored_by(*body_.found);
+  if (body_.found) e.contacts += stored_by(body_);
   e.dissipated = dissipated();
   // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
@@ -189,7 +188,7 @@ double Totals<Dim>::unbalanced_ratio() const {
         chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].unbalanced; });
     double all = chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].applied; }) +
                  chunked_sum(chunks.face_packs, [&](int pack) { return state.face_sums[pack].applied; });
-    if (body_.found) all += applied_by(*body_.found);
+    if (body_.found) all += applied_by(body_);
     return unbalanced / std::max(all, body_.least_force);
   });
 }

@@ -76,14 +76,16 @@ std::vector<std::vector<int>> neighbours_of_chunks(const Model& whole) {
 
 template <int Dim>
 ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
-                     const std::vector<int>& rank_of_chunk, const std::vector<int>& nodes) {
+                     const std::vector<int>& rank_of_chunk, const std::vector<int>& nodes,
+                     ForeignBlocks foreign) {
   const int me = ranks->me(), blocks = whole.block_count();
   const std::vector<int> chunk_of = whole.chunks().of_items();
   const std::vector<int> block_of = gridpoint_blocks(whole);
   const auto is_own = [&](int gridpoint) { return rank_of_chunk[chunk_of[block_of[gridpoint]]] == me; };
 
+  const bool holds_all = foreign == ForeignBlocks::all;
   std::vector<bool> is_in(static_cast<std::size_t>(blocks));
-  for (int b = 0; b < blocks; ++b) is_in[b] = rank_of_chunk[chunk_of[b]] == me;
+  for (int b = 0; b < blocks; ++b) is_in[b] = holds_all || rank_of_chunk[chunk_of[b]] == me;
   for (const Contact<Dim>& contact : whole.contacts)
     if (is_own(contact.a) || is_own(contact.b))
       is_in[block_of[contact.a]] = is_in[block_of[contact.b]] = true;
@@ -131,7 +133,8 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
 
   const auto has_face = [&](int face) {
     const Contact<Dim>& first = whole.contacts[whole.face_contacts[face]];
-    return here[first.a] >= 0 && here[first.b] >= 0 && (!nodes.empty() || is_own(first.a) || is_own(first.b));
+    return here[first.a] >= 0 && here[first.b] >= 0 &&
+           (holds_all || !nodes.empty() || is_own(first.a) || is_own(first.b));
   };
   std::size_t contacts = 0;
   for (int f = 0; f < whole.face_count(); ++f)
@@ -168,10 +171,10 @@ ModelOf<Dim> part_of(const ModelOf<Dim>& whole, std::shared_ptr<Ranks> ranks,
 }
 
 std::unique_ptr<Model> part_of(const Model& whole, std::shared_ptr<Ranks> ranks,
-                               const std::vector<int>& nodes) {
+                               const std::vector<int>& nodes, ForeignBlocks foreign) {
   const auto rank_of_chunk = whole.part ? whole.part->rank_of_chunk : ranks_of_chunks(whole, ranks->count());
   return with_dimension(whole, [&]<int Dim>(const ModelOf<Dim>& of_dimension) -> std::unique_ptr<Model> {
-    return std::make_unique<ModelOf<Dim>>(part_of(of_dimension, ranks, rank_of_chunk, nodes));
+    return std::make_unique<ModelOf<Dim>>(part_of(of_dimension, ranks, rank_of_chunk, nodes, foreign));
   });
 }
 
@@ -195,8 +198,8 @@ std::map<int, SharedGridpoints> shared_gridpoints(const Model& part) {
 }
 
 template ModelOf<2> part_of(const ModelOf<2>&, std::shared_ptr<Ranks>, const std::vector<int>&,
-                            const std::vector<int>&);
+                            const std::vector<int>&, ForeignBlocks);
 template ModelOf<3> part_of(const ModelOf<3>&, std::shared_ptr<Ranks>, const std::vector<int>&,
-                            const std::vector<int>&);
+                            const std::vector<int>&, ForeignBlocks);
 
 }  // namespace pyroclast

@@ -440,7 +440,7 @@ std::unique_ptr<Model> BodyFile::model(const std::vector<int>& chunks,
   return model;
 }
 
-SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks) const {
+SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks, ForeignBlocks foreign) const {
   SpecimenBody body;
   const auto all = up_to(table_.at("neighbours").size());
   if (!ranks || ranks->count() == 1) {
@@ -454,6 +454,7 @@ SpecimenBody BodyFile::read(const std::shared_ptr<Ranks>& ranks) const {
         needed.insert(c);
         for (const int other : table_.at("neighbours").at(c)) needed.insert(other);
       }
+    if (foreign == ForeignBlocks::all) needed.insert(all.begin(), all.end());
     body.model = model({needed.begin(), needed.end()}, ranks);
   }
   const Json& numbers = table_.at("numbers");

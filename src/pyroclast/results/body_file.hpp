@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pyroclast/model/part.hpp"
 #include "pyroclast/setup/setup.hpp"
 
 namespace pyroclast {
@@ -42,8 +43,9 @@ class BodyFile {
   const std::string& hash() const { return hash_; }
   /// Throws Error, naming what differs, where the body is not of these inputs.
   void require(const BodyInputs& inputs) const;
-  /// Reads the body: all of it, for one of several ranks its own chunks and their neighbours alone.
-  SpecimenBody read(const std::shared_ptr<Ranks>& ranks) const;
+  /// Reads the body: all of it, or for one of several ranks its own chunks and those of the foreign blocks
+  /// that it needs.
+  SpecimenBody read(const std::shared_ptr<Ranks>& ranks, ForeignBlocks foreign) const;
 
  private:
   template <class T>

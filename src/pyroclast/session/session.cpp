@@ -11,6 +11,7 @@
 #include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/later.hpp"
+#include "pyroclast/simulation/body_on_ranks.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/stages/drive.hpp"
 #include "pyroclast/version.hpp"
@@ -23,8 +24,9 @@ std::unique_ptr<Simulation> make_simulation_of(const DeckOfRun& opened,
                                                std::optional<MadeSpecimen> specimen) {
   if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team, opened.choices.ranks);
   if (opened.body)
-    return make_simulation(opened.setup, opened.body->read(opened.choices.ranks), opened.team,
-                           opened.choices.ranks);
+    return make_simulation(opened.setup,
+                           opened.body->read(opened.choices.ranks, foreign_blocks(opened.setup.moving)),
+                           opened.team, opened.choices.ranks);
   opened.choices.before_making(opened);
   return make_simulation(opened.setup, opened.team, opened.choices.ranks);
 }

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pyroclast/model/part.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 
@@ -55,11 +54,16 @@ double message_bytes(const std::map<int, int>& messages, int numbers_of_an_item)
 
 }  // namespace
 
+ForeignBlocks foreign_blocks(const std::optional<MovingBody>& moving) {
+  return moving && moving->mechanics.found.is_on ? ForeignBlocks::all : ForeignBlocks::touching;
+}
+
 std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model> whole, const std::shared_ptr<Ranks>& ranks,
                                     const HeatConditions& heat,
-                                    const std::vector<BlockMaterial>& block_materials) {
+                                    const std::vector<BlockMaterial>& block_materials,
+                                    ForeignBlocks foreign) {
   if (!ranks || ranks->count() == 1) return whole;
-  return part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint);
+  return part_of(*whole, ranks, joined_nodes(*whole, heat, block_materials).of_gridpoint, foreign);
 }
 
 int HeldByRank::neighbours() const {
@@ -83,9 +87,11 @@ std::vector<HeldByRank> held_by_ranks(const Simulation& whole, int ranks) {
   const std::vector<int> rank_of_chunk = ranks_of_chunks(model, ranks);
   const ThermalNodes nodes = joined_nodes(model, whole.heat(), block_materials);
   const std::vector<int> chunk_of = model.gridpoint_chunks().of_items();
+  const bool finds = whole.moves() && whole.motion().parameters().found.is_on;
+  const ForeignBlocks foreign = finds ? ForeignBlocks::all : ForeignBlocks::touching;
   std::vector<HeldByRank> held(static_cast<std::size_t>(ranks));
   for (int me = 0; me < ranks; ++me) {
-    const auto made = part_of(model, std::make_shared<Imagined>(me, ranks), nodes.of_gridpoint);
+    const auto made = part_of(model, std::make_shared<Imagined>(me, ranks), nodes.of_gridpoint, foreign);
     HeldByRank& here = held[static_cast<std::size_t>(me)];
     const auto blocks = made->chunks().own(), zones = made->zone_chunks().own();
     here.chunks = static_cast<int>(std::ranges::count(rank_of_chunk, me));

@@ -2,21 +2,27 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pyroclast/material/concrete.hpp"
-#include "pyroclast/model/model.hpp"
+#include "pyroclast/model/part.hpp"
 #include "pyroclast/simulation/acting/heat_conditions.hpp"
+#include "pyroclast/simulation/moving_body.hpp"
 
 namespace pyroclast {
 
 class Simulation;
 
+/// Returns the blocks of other ranks that a part of a body needs.
+/// \param moving  empty where nothing moves
+ForeignBlocks foreign_blocks(const std::optional<MovingBody>& moving);
+
 /// Returns the part of a body that this rank holds; the whole body where there is one rank.
 /// \param whole  whole body, or the chunks that this rank needs of it, see part_of
 std::unique_ptr<Model> part_of_rank(std::unique_ptr<Model> whole, const std::shared_ptr<Ranks>& ranks,
                                     const HeatConditions& heat,
-                                    const std::vector<BlockMaterial>& block_materials);
+                                    const std::vector<BlockMaterial>& block_materials, ForeignBlocks foreign);
 
 /// What a rank holds of a body, and what it sends to others.
 struct HeldByRank {

@@ -120,7 +120,8 @@ Simulation::Simulation(SpecimenBody body, const std::vector<BlockMaterial>& bloc
                        std::shared_ptr<Team> team, std::shared_ptr<Ranks> ranks)
     : team_(std::move(team)),
       told_(std::move(body.told)),
-      model_(part_of_rank(required(std::move(body.model)), ranks, heat, block_materials)),
+      model_(part_of_rank(required(std::move(body.model)), ranks, heat, block_materials,
+                          foreign_blocks(moving))),
       numbers_(required(std::move(body.numbers), block_materials)),
       heat_(with_specimen(heat, block_materials, numbers_.fraction, numbers_.mean_size)),
       field_(make_field(*model_, block_materials, heat_, moving && moving->spalling, team_)) {

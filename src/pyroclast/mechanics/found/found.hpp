@@ -148,7 +148,13 @@ struct FoundData {
   std::vector<ConstantsOfSet> constants;   ///< by set of parameters
   bool has_far = false, has_near = false;  ///< true for lists that hold
   bool has_rows = false;                   ///< true where the near pairs stand in rows
-  std::int64_t searches = 0;               ///< number of searches for near pairs
+  bool has_new_rows = false;               ///< true until the halo follows the rows
+
+  // Where several ranks hold the body, each has all blocks and all facets. It lists the pairs that touch one
+  // of its own blocks, so a pair of blocks of two ranks goes through the step on both.
+  std::vector<int> rank_of_block;  ///< empty where one process holds the body
+  bool knows_all = true;           ///< true where foreign gridpoints are where their owners have them
+  std::int64_t searches = 0;       ///< number of searches for near pairs
 };
 
 }  // namespace pyroclast

@@ -119,7 +119,8 @@ void FoundContacts<Dim>::make(Body<Dim>& body) {
   if (!body.parameters.found.is_on) return;
   if (Dim == 2 && body.parameters.kinematics != Kinematics::finite)
     throw Error("contacts = found: blocks that meet others turn, which needs kinematics = finite");
-  if (body.model.part) throw Error("contacts = found: one rank alone must hold the body");
+  if (body.model.part && body.model.part->zones_of_whole != body.model.zone_count())
+    throw Error("contacts = found: each rank must hold all blocks");  // a fault of the program
   body.found = std::make_unique<FoundData<Dim>>();
   FoundData<Dim>& found = *body.found;
   found.parameters = body.parameters.found;
@@ -183,6 +184,9 @@ void FoundContacts<Dim>::make(Body<Dim>& body) {
 
   found.at_gridpoint = gridpoint_contacts(model);
   const auto blocks = static_cast<std::size_t>(model.block_count());
+  if (model.part)
+    for (const int chunk : model.chunks().of_items())
+      found.rank_of_block.push_back(model.part->rank_of_chunk[chunk]);
   std::vector<double> longest(blocks);
   double sum = 0.0;
   for (const BlockFacet<Dim>& facet : found.facets) {
@@ -473,9 +477,55 @@ void FoundContacts<Dim>::begin() {
 }
 
 template <int Dim>
+void FoundContacts<Dim>::take_from_owners() {
+  Ranks& ranks = body_.model.ranks();
+  if (ranks.count() == 1 || found_.knows_all) return;
+  struct Moved {
+    Vec<Dim> displacement, velocity;
+  };
+  const auto [first, last] = body_.layout.chunks.gridpoints.own();
+  const Reader<Dim> read(body_);
+  std::vector<Moved> own;
+  for (int g = first; g < last; ++g) own.push_back({read.displacement(g), read.velocity(g)});
+  const std::vector<Moved> all = ranks.collect(own);
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
+    const int slot = body_.layout.gridpoint_slot[g];
+    body_.arrays.displacement[slot] = all[g].displacement;
+    set_vector<Dim>(body_.state.velocity, slot, all[g].velocity);
+  }
+  found_.knows_all = true;
+}
+
+template <int Dim>
+std::map<int, SharedGridpoints> FoundContacts<Dim>::shared_gridpoints() const {
+  std::map<int, SharedGridpoints> shared;
+  const int me = body_.model.ranks().me();
+  for (const Pair& pair : found_.pairs) {
+    if (pair.slot < 0) continue;
+    const BlockFacet<Dim>&a = found_.facets[pair.facets[0]], &b = found_.facets[pair.facets[1]];
+    const int of_a = found_.rank_of_block[a.block], of_b = found_.rank_of_block[b.block];
+    if (of_a == of_b) continue;
+    SharedGridpoints& with = shared[of_a == me ? of_b : of_a];
+    (of_a == me ? with.own : with.foreign).insert(a.gridpoints.begin(), a.gridpoints.end());
+    (of_b == me ? with.own : with.foreign).insert(b.gridpoints.begin(), b.gridpoints.end());
+  }
+  return shared;
+}
+
+/// Tells whether a pair touches a block of this rank.
+template <int Dim>
+bool FoundContacts<Dim>::is_own(const Key& key) const {
+  if (found_.rank_of_block.empty()) return true;
+  const int me = body_.model.ranks().me();
+  return found_.rank_of_block[found_.facets[key[0]].block] == me ||
+         found_.rank_of_block[found_.facets[key[1]].block] == me;
+}
+
+template <int Dim>
 void FoundContacts<Dim>::search_where_needed() {
   const auto watched = static_cast<int>(found_.arrays.watched.size());
   found_.seen.way = found_.has_near ? body_.step.passes.way_of_found(body_.state, 0, watched) : 0.0;
+  if (found_.has_near) found_.seen.way = body_.model.ranks().largest(found_.seen.way);
   if (!found_.has_near || !(found_.seen.way <= 1.0)) {
     search();
     found_.seen.way = 0.0;
@@ -488,6 +538,7 @@ void FoundContacts<Dim>::search_where_needed() {
 template <int Dim>
 void FoundContacts<Dim>::search() {
   take_back();
+  take_from_owners();
   for (std::size_t f = 0; found_.has_far && f < found_.facets.size(); ++f)
     for (const int g : found_.facets[f].gridpoints) {
       if (!found_.is_listed[f]) break;
@@ -546,7 +597,7 @@ std::optional<typename FoundContacts<Dim>::Box> FoundContacts<Dim>::box_of(int i
 /// Lists a pair of free facets as far where their boxes meet and it may press before the next such search.
 template <int Dim>
 void FoundContacts<Dim>::list_if_far(int a, const Box& box_a, int b, const Box& box_b) {
-  if (found_.facets[a].block == found_.facets[b].block) return;
+  if (found_.facets[a].block == found_.facets[b].block || !is_own({a, b})) return;
   for (int k = 0; k < Dim; ++k)
     if (box_a.low[k] > box_b.high[k] || box_b.low[k] > box_a.high[k]) return;
   const Key key{std::min(a, b), std::max(a, b)};
@@ -642,7 +693,12 @@ void FoundContacts<Dim>::watch() {
   for (std::size_t f = 0; f < found_.facets.size(); ++f)
     if (found_.is_listed[f])
       for (const int g : found_.facets[f].gridpoints) is_watched[body_.layout.gridpoint_slot[g]] = true;
-  for (int pack = 0; pack < body_.layout.gridpoint_packs; ++pack) {
+  const auto [first, last] = body_.layout.chunks.bundles.own();
+  const auto begin = [&](int bundle) {
+    return bundle < std::ssize(body_.layout.bundles) ? body_.layout.bundles[bundle].first_pack
+                                                     : body_.layout.gridpoint_packs;
+  };
+  for (int pack = begin(first); pack < begin(last); ++pack) {
     WatchedPack of_pack{{}, pack};
     bool any = false;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -777,6 +833,8 @@ bool FoundContacts<Dim>::find_near() {
     }
   }
   while (old != found_.pairs.end()) keep_old(false);
+  // All ranks make rows anew at the same time, so that two of them have the same pairs in rows.
+  if (found_.has_rows) others = body_.model.ranks().any(others);
   // while no pair is to come into a row, those that are near no more sleep in theirs
   if (others)
     std::erase_if(next,
@@ -869,7 +927,7 @@ void FoundContacts<Dim>::make_rows() {
   let_sleep();
   see(found_.seen, arrays);
   found_.seen.is_damped = found_.parameters.damping > 0.0;
-  found_.has_rows = true;
+  found_.has_rows = found_.has_new_rows = true;
 }
 
 /// Returns the constants of a set of parameters, derived when they are first asked for.
@@ -1008,6 +1066,7 @@ void FoundContacts<Dim>::follow_masses() {
 
 // Faces that are handed over
 
+/// Returns the faces of the whole body that are to be handed over: a collective.
 template <int Dim>
 std::vector<int> FoundContacts<Dim>::broken_faces() const {
   std::vector<int> faces;
@@ -1033,6 +1092,7 @@ std::vector<int> FoundContacts<Dim>::broken_faces() const {
   }
   for (int face = 0; face < std::ssize(body_.torn); ++face)
     if (body_.torn[face] && !found_.is_handed_over[face]) faces.push_back(face);
+  faces = body_.model.ranks().collect(faces);
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
@@ -1159,12 +1219,14 @@ void FoundContacts<Dim>::hand_over() {
   const std::vector<int> faces = broken_faces();
   if (faces.empty()) return;
   take_back();
+  take_from_owners();
   // facets beside the face are fresh too: where it held them together they may press from now on
   std::vector<bool> ends(body_.model.position.size()), fresh(found_.facets.size());
   const std::ptrdiff_t known = std::ssize(found_.pairs);
   for (const int face : faces) {
-    for (Pair& pair : pairs_of_face(face))
-      if (Dim == 2 || pair.is_handed_over || pair.has_lost()) found_.pairs.push_back(std::move(pair));
+    if (is_own({found_.first_of_face[face], found_.first_of_face[face + 1] - 1}))
+      for (Pair& pair : pairs_of_face(face))
+        if (Dim == 2 || pair.is_handed_over || pair.has_lost()) found_.pairs.push_back(std::move(pair));
     for (int contact = body_.model.face_contacts[face]; contact < body_.model.face_contacts[face + 1];
          ++contact)
       ends[body_.model.contacts[contact].a] = ends[body_.model.contacts[contact].b] = true;
@@ -1277,22 +1339,48 @@ void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair) {
   if (was_handed_over && !pair.is_handed_over) pair.ratio = 1.0;
 }
 
+/// Returns the sum of a number of pairs over the whole body: a collective.
+/// \param in_pair, in_row  places of the number
 template <int Dim>
-double stored_by(const FoundData<Dim>& found) {
+double sum_of_pairs(const Body<Dim>& body, double FoundPair<Dim>::*in_pair, Line FoundRow<Dim>::*in_row) {
+  const auto give = [&](const FoundPair<Dim>& pair, auto add) {
+    const double number =
+        pair.slot < 0 ? pair.*in_pair
+                      : (body.found->arrays.rows[pair.slot / kLanes].*in_row).number[pair.slot % kLanes];
+    if (number != 0.0) add(number);
+  };
   double sum = 0.0;
-  for (const FoundPair<Dim>& pair : found.pairs)
-    sum +=
-        pair.slot < 0 ? pair.stored : found.arrays.rows[pair.slot / kLanes].stored.number[pair.slot % kLanes];
+  for (const double number : of_all_pairs<double>(body, give)) sum += number;
   return sum;
 }
 
 template <int Dim>
-double applied_by(const FoundData<Dim>& found) {
-  double sum = 0.0;
-  for (const FoundPair<Dim>& pair : found.pairs)
-    sum += pair.slot < 0 ? pair.applied
-                         : found.arrays.rows[pair.slot / kLanes].applied.number[pair.slot % kLanes];
-  return sum;
+double stored_by(const Body<Dim>& body) {
+  return sum_of_pairs(body, &FoundPair<Dim>::stored, &FoundRow<Dim>::stored);
+}
+
+template <int Dim>
+double applied_by(const Body<Dim>& body) {
+  return sum_of_pairs(body, &FoundPair<Dim>::applied, &FoundRow<Dim>::applied);
+}
+
+template <int Dim>
+std::vector<LossesOfPair> losses_of_pairs(const Body<Dim>& body) {
+  const auto& arrays = body.found->arrays;
+  return of_all_pairs<LossesOfPair>(body, [&](const FoundPair<Dim>& pair, auto add) {
+    LossesOfPair lost{pair.law, {}, pair.lost_area, pair.lost_damping};
+    std::ranges::copy(pair.lost, lost.of_law.begin());
+    if (pair.slot >= 0) {
+      const FoundRow<Dim>& row = arrays.rows[pair.slot / kLanes];
+      const int lane = pair.slot % kLanes;
+      for (std::size_t i = 0; i < pair.lost.size(); ++i)
+        lost.of_law[i] = arrays.lost[row.first_loss + static_cast<int>(i)].number[lane];
+      lost.area = row.lost_area.number[lane];
+      lost.damping = row.lost_damping.number[lane];
+    }
+    const auto is_lost = [](double energy) { return energy != 0.0; };
+    if (is_lost(lost.area) || is_lost(lost.damping) || std::ranges::any_of(lost.of_law, is_lost)) add(lost);
+  });
 }
 
 template <int Dim>
@@ -1300,29 +1388,33 @@ void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
   const StateVisitor::Scope scope(visitor, "found");
   std::vector<int> faces, keys;
   std::vector<double> numbers;
-  const auto each_number = [](Pair& pair, auto f) {
+  const auto each_number = [](auto& pair, auto f) {
     f(pair.ratio), f(pair.not_counted), f(pair.stored), f(pair.applied), f(pair.lost_area),
         f(pair.lost_damping);
-    for (PairPoint<Dim>& point : pair.points) {
+    for (auto& point : pair.points) {
       f(point.area);
-      for (double& number : point.held.c) f(number);
-      for (double& number : point.shift.c) f(number);
+      for (auto& number : point.held.c) f(number);
+      for (auto& number : point.shift.c) f(number);
       f(point.offset), f(point.rest), f(point.damped);
     }
-    for (Vec<Dim>& corner : pair.pressed_at)
-      for (double& number : corner.c) f(number);
-    for (double& number : pair.internals) f(number);
-    for (double& number : pair.lost) f(number);
+    for (auto& corner : pair.pressed_at)
+      for (auto& number : corner.c) f(number);
+    for (auto& number : pair.internals) f(number);
+    for (auto& number : pair.lost) f(number);
   };
+  const auto is_kept = [](const Pair& pair) { return pair.remembers() || pair.has_lost(); };
   if (!visitor.replaces()) {
     take_back();
     for (int face = 0; face < std::ssize(found_.is_handed_over); ++face)
       if (found_.is_handed_over[face]) faces.push_back(face);
-    for (Pair& pair : found_.pairs) {
-      if (!pair.remembers() && !pair.has_lost()) continue;
-      keys.insert(keys.end(), {pair.facets[0], pair.facets[1], pair.is_handed_over ? 1 : 0});
-      each_number(pair, [&](double& number) { numbers.push_back(number); });
-    }
+    keys = of_all_pairs<int>(body_, [&](const Pair& pair, auto add) {
+      if (!is_kept(pair)) return;
+      for (const int part_of_key : {pair.facets[0], pair.facets[1], pair.is_handed_over ? 1 : 0})
+        add(part_of_key);
+    });
+    numbers = of_all_pairs<double>(body_, [&](const Pair& pair, auto add) {
+      if (is_kept(pair)) each_number(pair, add);
+    });
   }
   visitor.visit("handed_over", faces, state::index(found_.is_handed_over.size()));
   visitor.visit("pairs", keys, state::index(found_.facets.size()));
@@ -1337,7 +1429,7 @@ void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
   std::size_t taken = 0;
   for (std::size_t i = 0; i + 2 < keys.size(); i += 3) {
     const Key key{keys[i], keys[i + 1]};
-    visitor.require(key[0] < key[1] && (found_.pairs.empty() || found_.pairs.back().facets < key), "pairs",
+    visitor.require(key[0] < key[1] && (i == 0 || Key{keys[i - 3], keys[i - 2]} < key), "pairs",
                     "are not in order");
     visitor.require(found_.facets[key[0]].block != found_.facets[key[1]].block, "pairs", "are of one block");
     visitor.require(found_.facets[key[0]].is_free && found_.facets[key[1]].is_free, "pairs",
@@ -1350,20 +1442,23 @@ void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
       visitor.require(taken < numbers.size(), "numbers", "are fewer than the pairs have");
       number = numbers[taken++];
     });
-    found_.pairs.push_back(std::move(pair));
+    if (is_own(key)) found_.pairs.push_back(std::move(pair));
   }
   visitor.require(taken == numbers.size(), "numbers", "are more than the pairs have");
   bury_gone();
   forget_lists();
+  found_.knows_all = false;
 }
 
 template class FoundContacts<2>;
 template class FoundContacts<3>;
 template void take_from_row(const FoundData<2>&, FoundPair<2>&);
 template void take_from_row(const FoundData<3>&, FoundPair<3>&);
-template double stored_by(const FoundData<2>&);
-template double stored_by(const FoundData<3>&);
-template double applied_by(const FoundData<2>&);
-template double applied_by(const FoundData<3>&);
+template double stored_by(const Body<2>&);
+template double stored_by(const Body<3>&);
+template double applied_by(const Body<2>&);
+template double applied_by(const Body<3>&);
+template std::vector<LossesOfPair> losses_of_pairs(const Body<2>&);
+template std::vector<LossesOfPair> losses_of_pairs(const Body<3>&);
 
 }  // namespace pyroclast

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
+#include "pyroclast/model/part.hpp"
 
 namespace pyroclast {
 
@@ -16,15 +20,20 @@ class FoundContacts {
  public:
   explicit FoundContacts(Body<Dim>& body) : body_(body), found_(*body.found) {}
 
-  /// Makes the data of a body whose parameters say so. Throws Error where its kinematics, its ranks or the
-  /// laws of its interfaces do not allow it.
+  /// Makes the data of a body whose parameters say so. Throws Error where its kinematics or the laws of its
+  /// interfaces do not allow it.
   static void make(Body<Dim>& body);
 
   /// Searches for the pairs at the beginning of a run; where blocks lie in each other already, that part of
   /// their overlap does not count.
   void begin();
-  /// Searches for pairs where gridpoints have gone too far since the last search.
+  /// Searches for pairs where gridpoints have gone too far since the last search: a collective, but where
+  /// the properties have just changed and `take_from_owners` came before.
   void search_where_needed();
+  /// Gives all foreign gridpoints the displacements and velocities that their owners have: a collective.
+  void take_from_owners();
+  /// Returns the gridpoints that pairs in rows share with each of the other ranks.
+  std::map<int, SharedGridpoints> shared_gridpoints() const;
   /// Hands faces over to pairs whose contact points are all broken, with all that the points remember.
   void hand_over();
   /// Forgets the pairs of blocks that are gone, but for what they lost, and frees what such blocks covered.
@@ -61,6 +70,8 @@ class FoundContacts {
   double damping_of(const Pair& pair, double stiffness) const;
   const ConstantsOfSet& constants_of(int set) const;
   Pair new_pair(const Key& key) const;
+
+  bool is_own(const Key& key) const;
 
   struct Box {
     Vec<Dim> low, high;
@@ -101,30 +112,51 @@ extern template class FoundContacts<3>;
 /// Gives a pair the numbers that it has in its row; does nothing where it stands in none.
 template <int Dim>
 void take_from_row(const FoundData<Dim>& found, FoundPair<Dim>& pair);
-/// Returns the energy that found pairs store, J.
-template <int Dim>
-double stored_by(const FoundData<Dim>& found);
-/// Returns the sum of the magnitudes of the forces of found pairs, N.
-template <int Dim>
-double applied_by(const FoundData<Dim>& found);
-/// Calls `f(law, losses, lost_area, lost_damping)` for the energies, J, that each pair has lost: those of its
-/// law, those that a changing area takes, and those of damping.
-template <int Dim, class F>
-void for_each_loss(const FoundData<Dim>& found, F f) {
-  std::vector<double> losses;
-  for (const FoundPair<Dim>& pair : found.pairs) {
-    losses = pair.lost;
-    double lost_area = pair.lost_area, lost_damping = pair.lost_damping;
-    if (pair.slot >= 0) {
-      const FoundRow<Dim>& row = found.arrays.rows[pair.slot / kLanes];
-      const int lane = pair.slot % kLanes;
-      for (std::size_t i = 0; i < losses.size(); ++i)
-        losses[i] = found.arrays.lost[row.first_loss + static_cast<int>(i)].number[lane];
-      lost_area = row.lost_area.number[lane];
-      lost_damping = row.lost_damping.number[lane];
-    }
-    f(pair.law, losses, lost_area, lost_damping);
-  }
+/// Returns what pairs of the whole body give, in the order of their keys: a collective. So sums over pairs
+/// depend neither on ranks nor on chunks. A pair counts for the owner of the block of its first facet.
+/// \tparam Given  plain data
+/// \param give     `give(pair, add)` calls `add` with what an own pair gives, any number of times
+/// \param to_all  false: the first rank alone gets it
+template <class Given, int Dim, class Give>
+std::vector<Given> of_all_pairs(const Body<Dim>& body, Give give, bool to_all = true,
+                                CallPlace at = CallPlace::here()) {
+  struct OfPair {
+    std::array<int, 2> key;
+    Given given;
+  };
+  const FoundData<Dim>& found = *body.found;
+  Ranks& ranks = body.model.ranks();
+  const auto own = [&] {
+    std::vector<OfPair> given;
+    for (const FoundPair<Dim>& pair : found.pairs)
+      if (found.rank_of_block.empty() ||
+          found.rank_of_block[found.facets[pair.facets[0]].block] == ranks.me())
+        give(pair, [&](const Given& one) { given.push_back({pair.facets, one}); });
+    return given;
+  };
+  auto all = to_all ? ranks.collect_made<OfPair>(own, at) : ranks.collect_at_first(own(), at);
+  if (ranks.count() > 1) std::ranges::stable_sort(all, {}, &OfPair::key);
+  std::vector<Given> result;
+  result.reserve(all.size());
+  for (const OfPair& one : all) result.push_back(one.given);
+  return result;
 }
+
+/// Returns the energy that found pairs store, J: a collective.
+template <int Dim>
+double stored_by(const Body<Dim>& body);
+/// Returns the sum of the magnitudes of the forces of found pairs, N: a collective.
+template <int Dim>
+double applied_by(const Body<Dim>& body);
+
+/// Energies that a pair has lost, J.
+struct LossesOfPair {
+  int law;                                      ///< entry of State::laws
+  std::array<double, LawOfRows::kMost> of_law;  ///< those of its law, in the law's order
+  double area, damping;                         ///< lost where the area changes, and to damping
+};
+/// Returns the losses of the pairs that have lost something, in the order of their keys: a collective.
+template <int Dim>
+std::vector<LossesOfPair> losses_of_pairs(const Body<Dim>& body);
 
 }  // namespace pyroclast

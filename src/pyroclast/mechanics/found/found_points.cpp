@@ -112,18 +112,17 @@ PointResponse response_of(const Body<Dim>& body, const FoundPair<Dim>& pair, int
 
 template <int Dim>
 std::vector<FoundPoint> found_points(const Body<Dim>& body) {
-  std::vector<FoundPoint> points;
-  if (!body.found) return points;
+  if (!body.found) return {};
   const FoundData<Dim>& found = *body.found;
-  for (FoundPair<Dim> pair : found.pairs) {
+  const auto give = [&](FoundPair<Dim> pair, auto add) {
     take_from_row(found, pair);
-    if (!pair.bears()) continue;
+    if (!pair.bears()) return;
     const std::conditional_t<Dim == 2, PressedEdges, PressedTriangles> pressed(body, pair);
     const BlockFacet<Dim>&first = found.facets[pair.facets[0]], &second = found.facets[pair.facets[1]];
     for (int k = 0; k < kPointsOfPair<Dim>; ++k) {
       const PairPoint<Dim>& of_pair = pair.points[k];
       if (!(of_pair.area > 0.0)) continue;
-      FoundPoint& point = points.emplace_back();
+      FoundPoint point;
       point.blocks = {first.block, second.block};
       point.face = pair.is_handed_over ? first.face : -1;
       point.interface = pair.interface;
@@ -137,9 +136,10 @@ std::vector<FoundPoint> found_points(const Body<Dim>& body) {
       point.normal_traction = response.normal_traction + of_pair.damped / of_pair.area;
       point.stored = response.stored;
       pressed.put(k, along, response, point);
+      add(point);
     }
-  }
-  return points;
+  };
+  return of_all_pairs<FoundPoint>(body, give, false);
 }
 
 template std::vector<FoundPoint> found_points(const Body<2>&);

@@ -26,7 +26,8 @@ struct FoundPoint {
   double stored = 0.0;           ///< J/m²
 };
 
-/// Returns the points that press, in the order of the pairs' keys; none where nothing is found.
+/// Returns the points that press, in the order of the pairs' keys; none where nothing is found. Where several
+/// ranks hold the body, a collective: the first has all points, the others none.
 template <int Dim>
 std::vector<FoundPoint> found_points(const Body<Dim>& body);
 
