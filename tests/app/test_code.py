@@ -1,4 +1,4 @@
-"""Code that came with a deck or a study runs after the user's word, by whatever command. PYROCLAST names the program."""
+"""Code of a deck or a study runs with the user's permission, by whatever command. PYROCLAST names the program."""
 
 import csv
 import json
@@ -114,7 +114,7 @@ class CodeOfADeck(CodeTest):
         (self.folder / "wrong.toml").write_text((self.folder / deck).read_text().replace("count = 40", "count = -1"))
         wrong = self.assert_done("check", "wrong.toml", runs=False, codes=(1,))
         self.assertIn("blocks.count", wrong.stderr)
-        # the user's word, once, for this code wherever it lies
+        # the user's permission, once, for this code wherever it lies
         self.assert_done("check", deck, "--allow-code", runs=True)
         for words in self.commands(deck).values():
             self.assert_done(*words, runs=True)
@@ -202,7 +202,7 @@ class CodeOfADeck(CodeTest):
 @needs_studies
 class CodeOfAStudy(CodeTest):
     def try_study(self, runner: str, change, then: tuple = ()) -> None:
-        """`then` are commands that run no code after the user's word either."""
+        """`then` are commands that run no code with the user's permission either."""
         (self.folder / "study.toml").write_text(STUDY.format(runner=runner))
         self.assert_refused("study", "run", "study.toml")
         self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
@@ -413,7 +413,7 @@ class HashOfAStudy(CodeTest):
                 self.write_command(command)
                 self.run_it("study", "run", "study.toml", "--allow-code")
                 said = self.assert_refused("study", "run", "study.toml", says=why).stderr
-                self.assertIn("It needs your word each time, because ", said)
+                self.assertIn("It needs your permission each time, because ", said)
         self.assert_refused("study", "run", "study.toml", PYROCLAST_CODE="never", says="never")
 
     def test_code_that_changes_while_a_study_runs_ends_it(self):
@@ -429,7 +429,7 @@ class HashOfAStudy(CodeTest):
 
 @needs_studies
 class OptionsOfSlurm(CodeTest):
-    """What sbatch gets from a study runs nothing without the user's word."""
+    """What sbatch gets from a study runs nothing without the user's permission."""
 
     def setUp(self):
         super().setUp()

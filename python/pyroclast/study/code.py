@@ -1,4 +1,4 @@
-"""Code that runs for a study: its hash, by which runs and the user's word are known."""
+"""Code that runs for a study: its hash, by which runs and the user's permission are known."""
 
 from __future__ import annotations
 

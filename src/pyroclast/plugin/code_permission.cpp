@@ -102,8 +102,8 @@ void CodePermission::require(const Code& code, bool named) const {
     if (allow || named) return;
     throw CodeNotAllowed(
         fmt::format(
-            "{}: is code, and runs only after your word: read it, then say --allow-code. It needs your "
-            "word each time, because {}",
+            "{}: is code, and runs only with your permission: read it, then say --allow-code. It needs your "
+            "permission each time, because {}",
             code.what, code.unknown),
         code);
   }
@@ -116,7 +116,7 @@ void CodePermission::require(const Code& code, bool named) const {
   if (!named)
     throw CodeNotAllowed(
         fmt::format(
-            "{}: is code, and runs only after your word: read it, then say --allow-code once. Until it "
+            "{}: is code, and runs only with your permission: read it, then say --allow-code once. Until it "
             "changes it is known by its hash, {:.12}",
             code.what, code.hash),
         code);

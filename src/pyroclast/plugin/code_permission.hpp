@@ -15,7 +15,8 @@ struct Code {
   std::string what;                          ///< name for messages and for the list; of a law its file
   std::string hash;                          ///< SHA-256 of all its texts
   std::vector<std::filesystem::path> files;  ///< files of a law, the first that which the deck names
-  /// Reason why the hash does not cover all that runs; such code needs the user's word each time. Else empty.
+  /// Reason why the hash does not cover all that runs; such code needs the user's permission each time. Else
+  /// empty.
   std::string unknown;
 };
 

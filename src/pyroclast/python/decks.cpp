@@ -108,7 +108,7 @@ void bind_decks(py::module_& m) {
       py::arg("what"), py::arg("hash"), py::arg("unknown"), py::arg("named"),
       "Returns where code may run; raises CodeNotAllowed elsewhere. unknown: reason why the hash does not "
       "cover "
-      "all that runs, or \"\"; such code needs the user's word each time.");
+      "all that runs, or \"\"; such code needs the user's permission each time.");
   m.def(
       "written", [](const DeckText& text) { return parse(text).text(); }, py::arg("deck"),
       "The text of a deck with its changes in place.");
