@@ -83,6 +83,23 @@ TEST(SolidDeck, BlocksFollowStonesOfAShape) {
   }
 }
 
+// Promise: where vertices that lie nearly in one place are joined, so that a cell meets a corner twice or
+// cannot be cut into zones, its seed is drawn anew.
+TEST(SolidDeck, SeedsOfCellsThatCannotBeBlocksAreDrawnAnew) {
+  std::string deck = with(shipped_case("cube_3d"), "rule = \"each\"", "rule = \"follow\"");
+  for (const char* const side : {"width", "height", "depth"})
+    deck = with(deck, std::string(side) + " = \"100 mm\"", std::string(side) + " = \"60 mm\"");
+  deck = with(deck, "d_min = \"16 mm\"", "d_min = \"22 mm\"");
+  deck = with(deck, "sieves = [\"20 mm\"]", "sieves = []");
+  deck = with(deck, "count = 1900", "count = 400");
+  for (const int seed : {35, 37}) {
+    const auto simulation = make_simulation(read(with(deck, "seed = 1", "seed = " + std::to_string(seed))));
+    const auto& made = std::get<specimen::Specimen<3>>(*simulation->specimen());
+    EXPECT_GE(made.metrics.seeds_redrawn, 1) << seed;
+    EXPECT_NEAR(made.fraction_of_stones, made.fraction_placed, 0.03 * made.fraction_placed) << seed;
+  }
+}
+
 TEST(SolidDeck, OneLineMakesASolidOfADeckWithoutPlaces) {
   for (const char* const name : {"starter", "compression", "hot_compression", "hot_strength"}) {
     const std::string deck = shipped_case(name);

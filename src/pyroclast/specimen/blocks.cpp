@@ -549,6 +549,14 @@ class FollowingSeeds {
   std::optional<std::tuple<Seeds<3>, std::vector<int>, std::vector<char>>> before_;  ///< the last correction
 };
 
+/// Returns the cells that cannot be blocks: vertices that lie nearly in one place were joined.
+std::vector<int> faulty_cells(const Cells<3>& cells) {
+  std::vector<int> faulty;
+  for (std::size_t cell = 0; cell < cells.cells.size(); ++cell)
+    if (fault_of(cells, cell)) faulty.push_back(static_cast<int>(cell));
+  return faulty;
+}
+
 /// Adds the sizes that blocks were to have, where they are not alike.
 template <int Dim>
 void add_sizes(const BlockSizes& sizes, Blocks<Dim>& blocks) {
@@ -600,6 +608,7 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
   int corrections = 0, regularisations = 0, most_corrections = stones.empty() ? 0 : kCorrections;
   for (int failed = 0; failed < kMostRoundsInSpace; ++blocks.rounds) {
     Laguerre<3> result = laguerre_cells(seeds, body, team);
+    if (result.broken.empty()) result.broken = faulty_cells(result.cells);
     if (!result.broken.empty()) {
       blocks.done.seeds_redrawn += static_cast<int>(result.broken.size());
       if (++failed > kRoundsOfCorrection && following && following->take_back())
@@ -611,7 +620,6 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
       continue;
     }
     failed = 0;
-    require_valid(result.cells, body, what);
     if (following && corrections < most_corrections && following->correct(result.cells, false)) {
       ++corrections;
       continue;
@@ -623,12 +631,12 @@ Blocks<3> make_blocks(const BlockParameters& parameters, const Prism& body, Rand
                      sizes, blocks.stone);
       blocks.done.vertices_merged = regular.vertices_merged;
       blocks.done.edges_left_short = regular.edges_left_short;
-      require_valid(result.cells, body, what);
-      if (following && ++regularisations < kRegularisations && most_corrections > corrections &&
-          following->correct(result.cells, true)) {
-        most_corrections += kCorrections;
-        continue;
-      }
+    }
+    require_valid(result.cells, body, what);
+    if (parameters.shortest_edge > 0.0 && following && ++regularisations < kRegularisations &&
+        most_corrections > corrections && following->correct(result.cells, true)) {
+      most_corrections += kCorrections;
+      continue;
     }
     blocks.cells = std::move(result.cells);
     if (has_walls) {

@@ -170,35 +170,36 @@ double common_volume(const Cells<3>& cells, std::size_t cell, const Vec<3>& cent
   return volume < kRounding * ball ? 0.0 : volume;
 }
 
+const char* fault_of(const Cells<3>& cells, std::size_t cell) {
+  std::unordered_set<int> vertices;
+  std::unordered_map<std::uint64_t, int> edges;  // how often its faces walk an edge up, less how often down
+  for (const int f : cells.cells[cell]) {
+    const Facet<3>& face = cells.faces[f];
+    const bool is_inner = face.inner == static_cast<int>(cell);
+    std::unordered_set<int> of_face;
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+      const int from = face.corners[i], to = face.corners[(i + 1) % face.corners.size()];
+      if (!of_face.insert(from).second) return "has a face that meets a corner twice";
+      vertices.insert(from);
+      const auto [low, high] = std::minmax(from, to);
+      edges[static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high)] +=
+          (from < to) == is_inner ? 1 : -1;
+    }
+  }
+  if (std::ranges::any_of(edges, [](const auto& edge) { return edge.second != 0; })) return "is not closed";
+  if (vertices.size() + cells.cells[cell].size() != edges.size() + 2) return "is not simple";
+  if (!(extent(cells, cell) > 0.0)) return "has no volume";
+  if (!std::isfinite(flatness(cells, cell, 1.0)))
+    return "turns a triangle of a face away from its centroid, so that it cannot be cut into zones";
+  return nullptr;
+}
+
 void require_valid(const Cells<3>& cells, const Prism& body, const std::string& what) {
-  const auto fail = [&](std::size_t cell, const char* why) {
-    throw Error(fmt::format("{}: cell {} (from 0) {}", what, cell, why));
-  };
   double filled = 0.0;
   for (std::size_t cell = 0; cell < cells.cells.size(); ++cell) {
-    std::unordered_set<int> vertices;
-    std::unordered_map<std::uint64_t, int> edges;  // how often its faces walk an edge up, less how often down
-    for (const int f : cells.cells[cell]) {
-      const Facet<3>& face = cells.faces[f];
-      const bool is_inner = face.inner == static_cast<int>(cell);
-      std::unordered_set<int> of_face;
-      for (std::size_t i = 0; i < face.corners.size(); ++i) {
-        const int from = face.corners[i], to = face.corners[(i + 1) % face.corners.size()];
-        if (!of_face.insert(from).second) fail(cell, "has a face that meets a corner twice");
-        vertices.insert(from);
-        const auto [low, high] = std::minmax(from, to);
-        edges[static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high)] +=
-            (from < to) == is_inner ? 1 : -1;
-      }
-    }
-    if (std::ranges::any_of(edges, [](const auto& edge) { return edge.second != 0; }))
-      fail(cell, "is not closed");
-    if (vertices.size() + cells.cells[cell].size() != edges.size() + 2) fail(cell, "is not simple");
-    const double its = extent(cells, cell);
-    if (!(its > 0.0)) fail(cell, "has no volume");
-    if (!std::isfinite(flatness(cells, cell, 1.0)))
-      fail(cell, "turns a triangle of a face away from its centroid, so that it cannot be cut into zones");
-    filled += its;
+    if (const char* const fault = fault_of(cells, cell))
+      throw Error(fmt::format("{}: cell {} (from 0) {}", what, cell, fault));
+    filled += extent(cells, cell);
   }
   const double whole = body.extent_before_cuts();
   if (!(std::abs(filled - whole) <= kVolumeError * whole))

@@ -44,9 +44,12 @@ double flatness(const Cells<3>& cells, std::size_t cell, double size);
 /// Returns the volume that a cell has in common with a ball, m³. Exact up to rounding.
 double common_volume(const Cells<3>& cells, std::size_t cell, const Vec<3>& centre, double radius);
 
-/// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
-/// each vertex of a face stands once on it, each zone of a cell has a volume, and the volumes of all cells
-/// fill that of the body, before holes and notches are taken out, to 1e-9.
+/// Returns why a cell cannot be a block; null where it can: it is closed and has the Euler number of a ball,
+/// each vertex of a face stands once on it, and each of its zones has a volume.
+const char* fault_of(const Cells<3>& cells, std::size_t cell);
+
+/// Throws Error, which begins with `what`, unless each cell can be a block, and the volumes of all cells fill
+/// that of the body, before holes and notches are taken out, to 1e-9.
 void require_valid(const Cells<3>& cells, const Prism& body, const std::string& what);
 
 }  // namespace pyroclast::specimen
