@@ -50,7 +50,7 @@ BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
     throw Error("a body made of materials that do not creep cannot begin to creep");
   GoneBlocks<Dim>(body).leave_out_of(properties);
   TornFaces<Dim>(body).drain(properties);
-  if (body.found) mover_.take_from_owners();  // the search for pairs reads them
+  if (body.found) mover_.take_from_owners();  // within `together` a search for pairs has no message
   Ranks& ranks = body.model.ranks();
   const auto seen = ranks.together([&] {
     return std::pair(before_change(),
@@ -116,7 +116,7 @@ void Mechanics<Dim>::commit_creep(const std::function<void()>& look) {
   Body<Dim>& body = *body_;
   Ranks& ranks = body.model.ranks();
   if (body.creep_under_way.empty()) return ranks.together(look);
-  if (body.found) mover_.take_from_owners();  // the search for pairs reads them
+  if (body.found) mover_.take_from_owners();  // within `together` a search for pairs has no message
   Properties<Dim> of_body(body);
   const auto end = of_body.end_of_creep();
   UnderChange under_change;

@@ -151,9 +151,9 @@ double applied_by(const Body<Dim>& body);
 
 /// Energies that a pair has lost, J.
 struct LossesOfPair {
-  int law;                                      ///< entry of State::laws
-  std::array<double, LawOfRows::kMost> of_law;  ///< those of its law, in the law's order
-  double area, damping;                         ///< lost where the area changes, and to damping
+  int law = 0;                                       ///< entry of State::laws
+  std::array<double, LawOfRows::kMost> of_law = {};  ///< those of its law, in the law's order
+  double area = 0.0, damping = 0.0;                  ///< lost where the area changes, and to damping
 };
 /// Returns the losses of the pairs that have lost something, in the order of their keys: a collective.
 template <int Dim>
