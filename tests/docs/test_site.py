@@ -112,7 +112,7 @@ class Site(Built):
         text = (self.html / "index.html").read_text("utf-8")
         self.assertIn("do/install.html", self.pages[(self.html / "index.html").resolve()].links)
         citation = (ROOT / "CITATION.cff").read_text("utf-8")
-        self.assertIn(f"of version {re.search(r'^version: (.+)$', citation, re.MULTILINE)[1]}.", text)
+        self.assertIn(f"describe version {re.search(r'^version: (.+)$', citation, re.MULTILINE)[1]}.", text)
         home = re.search(r"^repository-code: (.+)$", citation, re.MULTILINE)
         self.assertIn(home[1] if home else "names no public address", text)
 
