@@ -65,7 +65,7 @@ class MoistureField {
   double contact_pressure(int contact) const;
   /// Tells whether contacts bear the pressure.
   bool acts_on_contacts() const { return coupling_.acts == PressureActs::all; }
-  /// Returns the share of that pressure which a contact bears where it acts, times it, Pa.
+  /// Returns the part of the pressure at a contact that the contact bears where it acts, Pa.
   /// \param motion  its contacts; null: they are intact
   double borne_pressure(const Motion* motion, int contact) const;
   /// Returns how many blocks of phases with the concrete's pores have no way to a face that is not sealed but

@@ -201,11 +201,9 @@ constexpr auto kOfContacts = std::to_array<KnownField>({
      "least 0; only with [water in pores](../understand/moisture.md)"},
     {"pressure_over_strength", unit::dimensionless, Item::contact, ValueKind::number, true, bears_water,
      [](R& r, int i, double* to) { *to = r.simulation().pressure_over_strength(i); },
-     "pore pressure that an intact contact bears, `biot` times that at the face, over its tensile strength "
-     "at "
-     "its temperatures; 0 where the contact is damaged. Above 1 a contact that bears nothing else tears; "
-     "only "
-     "with [water in pores](../understand/moisture.md)"},
+     "pore pressure that an intact contact bears, `biot` times that at the face, over its tensile "
+     "strength at its temperatures; 0 where the contact is damaged. Above 1 a contact that bears nothing "
+     "else tears; only with [water in pores](../understand/moisture.md)"},
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = crack(r, i); },
      "the largest damage by any mode, 0 intact, 1 broken; 0 at bearings, whose contacts are no cracks"},
