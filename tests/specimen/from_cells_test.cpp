@@ -8,7 +8,9 @@
 #include "examples.hpp"
 #include "pyroclast/specimen/blocks.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/polyhedron.hpp"
 #include "pyroclast/specimen/topology.hpp"
+#include "solid_bodies.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -100,6 +102,37 @@ TEST(SpecimenFromCells, ADentedCellIsToldByItsNumberFromZero) {
                      specimen_from(completed({t, {"mortar"}, std::vector<int>(8, 0)}));
                    }),
                    "cell 0 .from 0. near .* is not convex"));
+}
+
+/// A box of 60 mm: a lower half under two blocks side by side, as in a tessellation of tessellations. Two
+/// corners of the upper blocks stand on edges of the lower one's sides.
+/// \param first  corner with which those sides begin
+GivenCells<3> two_blocks_on_one(std::size_t first) {
+  constexpr double a = 0.06, h = 0.03;
+  const std::vector<Vec<3>> at = {
+      {{0, 0, 0}}, {{a, 0, 0}}, {{a, a, 0}}, {{0, a, 0}}, {{0, 0, h}}, {{h, 0, h}}, {{a, 0, h}}, {{0, a, h}},
+      {{h, a, h}}, {{a, a, h}}, {{0, 0, a}}, {{h, 0, a}}, {{a, 0, a}}, {{0, a, a}}, {{h, a, a}}, {{a, a, a}}};
+  std::vector<std::vector<int>> faces = {
+      {0, 1, 6, 5, 4}, {2, 3, 7, 8, 9}, {0, 3, 2, 1},     {0, 4, 7, 3},    {1, 2, 9, 6},   {4, 5, 8, 7},
+      {5, 6, 9, 8},    {5, 11, 14, 8},  {4, 5, 11, 10},   {5, 6, 12, 11},  {7, 13, 14, 8}, {8, 14, 15, 9},
+      {4, 10, 13, 7},  {6, 9, 15, 12},  {10, 11, 14, 13}, {11, 12, 15, 14}};
+  for (const std::size_t side : {0, 1})
+    std::rotate(faces[side].begin(), faces[side].begin() + static_cast<std::ptrdiff_t>(first),
+                faces[side].end());
+  Cells<3> cells{.vertices = at, .faces = {}, .cells = {}};
+  for (const auto& corners : faces) cells.faces.push_back({corners});
+  cells.cells = {{0, 1, 2, 3, 4, 5, 6}, {5, 7, 8, 10, 12, 14}, {6, 7, 9, 11, 13, 15}};
+  return {.cells = cells, .phases = {"mortar"}, .phase = {0, 0, 0}, .outline = cuboid(a, a, a)};
+}
+
+// Promise: a corner on an edge of a face makes no zone without a volume, whichever corner the face begins
+// with.
+TEST(SpecimenFromCells, CornersMayStandOnEdgesOfFacesInSpace) {
+  for (std::size_t first = 0; first < 5; ++first) {
+    const Specimen<3> made = specimen_from(completed(two_blocks_on_one(first)));
+    EXPECT_NEAR(made.fraction[0], 1.0, 1e-12);
+    for (std::size_t cell = 0; cell < 3; ++cell) EXPECT_LT(flatness(made.cells, cell, 0.03), 1e4);
+  }
 }
 
 TEST(SpecimenFromCells, AFileSaysTheUnitOfItsVertices) {

@@ -24,6 +24,8 @@ namespace {
 constexpr double kParallel = 1e-4;
 /// Farthest way onto the line or point where planes meet, over the largest distance from one of them.
 constexpr double kFarthest = 10.0;
+/// Height of a triangle, over the length of a face, below which three of its corners lie on one line.
+constexpr double kOnOneLine = 1e-6;
 
 /// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
 /// are not one piece, or parts of the outline meet in one point.
@@ -275,6 +277,14 @@ void find_neighbours(Cells<3>& cells, const std::vector<int>& number) {
   }
 }
 
+/// Turns the fans of faces whose corners stand on their edges too, where smaller cells meet a larger one: in
+/// a triangle of three corners on one line a zone would have no volume.
+void turn_flat_fans(Cells<3>& cells) {
+  for (Facet<3>& face : cells.faces)
+    if (lowest_of_fan(cells.vertices, face.corners) < kOnOneLine * std::sqrt(norm(area_vector(cells, face))))
+      turn_to_best_fan(cells.vertices, face.corners, std::numeric_limits<double>::infinity());
+}
+
 /// Finds the plane of the body nearest to all corners of a face. Returns it, and the corner farthest from it.
 std::pair<const Plane*, int> plane_of(const Facet<3>& face, const Cells<3>& cells, const Prism& body) {
   std::pair<const Plane*, int> found{};
@@ -415,6 +425,7 @@ GivenCells<3> completed(GivenCells<3> given, double join) {
     if (const std::string pieces = describe_pieces<3>(cells, cells.faces); !pieces.empty())
       throw Error(pieces);
     lay_on_sides(cells, given.outline, number);
+    turn_flat_fans(cells);
   } catch (const Error& error) {
     throw Error(error.what() + describe_joinable(cells));
   }

@@ -98,6 +98,16 @@ double bend(const std::vector<Vec<3>>& at, const std::vector<int>& corners) {
   return largest;
 }
 
+double lowest_of_fan(const std::vector<Vec<3>>& at, const std::vector<int>& corners) {
+  double low = std::numeric_limits<double>::max();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vec<3>&a = at[corners[0]], &b = at[corners[i]], &c = at[corners[i + 1]];
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    low = std::min(low, norm(cross(b - a, c - a)) / longest);
+  }
+  return low;
+}
+
 bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, double largest_bend) {
   const auto begins_at = [&](std::size_t first) {
     return corners.begin() + static_cast<std::ptrdiff_t>(first);
@@ -105,12 +115,7 @@ bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, 
   std::size_t best = corners.size();
   double highest = -1.0;
   for (std::size_t first = 0; first < corners.size(); ++first) {
-    double low = std::numeric_limits<double>::max();
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-      const Vec<3>&a = at[corners[0]], &b = at[corners[i]], &c = at[corners[i + 1]];
-      const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-      low = std::min(low, norm(cross(b - a, c - a)) / longest);
-    }
+    const double low = lowest_of_fan(at, corners);
     if (low > highest && bend(at, corners) <= largest_bend) {
       highest = low;
       best = first;

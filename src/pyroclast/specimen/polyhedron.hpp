@@ -31,6 +31,9 @@ Vec<3> area_vector(const Cells<3>& cells, const Facet<3>& face);
 /// \param corners  vertices of the face
 double bend(const std::vector<Vec<3>>& at, const std::vector<int>& corners);
 
+/// Returns the height of the lowest triangle of a face's fan over its longest edge, m.
+double lowest_of_fan(const std::vector<Vec<3>>& at, const std::vector<int>& corners);
+
 /// Lets a face begin with the corner whose fan has the highest lowest triangle. Returns false where each fan
 /// is bent by more than `largest_bend`, rad.
 bool turn_to_best_fan(const std::vector<Vec<3>>& at, std::vector<int>& corners, double largest_bend);
