@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
-#include <vector>
+#include <span>
 
 namespace pyroclast {
 
@@ -47,6 +46,33 @@ struct PointNumbers {
   std::array<double, LawOfRows::kMost> internals{};
 };
 
+/// From which points of an earlier overlap those of a new one take over: each earlier point goes to the
+/// nearest new one; a new point to which none goes is like the nearest earlier one.
+struct Heirs {
+  std::array<std::array<int, Overlap::kMost>, Overlap::kMost> from{};  ///< earlier points of each new one
+  std::array<int, Overlap::kMost> count{};     ///< number of them; 0 where none goes to it
+  std::array<int, Overlap::kMost> like{};      ///< the nearest, where none goes to it
+  std::array<double, Overlap::kMost> share{};  ///< weight of an earlier point in the mean of its new one
+
+  std::span<const int> of(int k) const { return {from[k].data(), static_cast<std::size_t>(count[k])}; }
+};
+
+struct OffsetAndRest {
+  double offset = 0.0, rest = 0.0;
+};
+
+/// Returns the offset and the rest of a new point.
+OffsetAndRest rest_of(const FoundRow<3>& row, int lane, const Heirs& heirs, int k) {
+  if (heirs.count[k] == 0)
+    return {row.offset[heirs.like[k]].number[lane], row.rest[heirs.like[k]].number[lane]};
+  OffsetAndRest mean;
+  for (const int from : heirs.of(k)) {
+    mean.offset += row.offset[from].number[lane] * heirs.share[from];
+    mean.rest = std::max(mean.rest, row.rest[from].number[lane]);
+  }
+  return mean;
+}
+
 /// Points of one lane of a row.
 class LanePoints {
  public:
@@ -71,25 +97,28 @@ class LanePoints {
   double held_energy(const PointNumbers& p) const {
     return 0.5 * row_.shear_stiffness[0].number[lane_] * dot(p.held, p.held) * p.area;
   }
-  /// Returns the mean of points by weights, with the sum of their areas and forces of damping.
-  PointNumbers mean(const std::vector<std::pair<PointNumbers, double>>& points) const {
-    double all = 0.0, area = 0.0;
-    for (const auto& [point, weight] : points) {
-      all += weight;
-      area += point.area;
+  /// Returns what a new point takes over: the mean of earlier ones, with the sum of their areas and forces of
+  /// damping, or all but the damping of the one that it is like.
+  PointNumbers carried(const Heirs& heirs, int k) const {
+    if (heirs.count[k] == 0) {
+      PointNumbers p = take(heirs.like[k]);
+      p.damped = 0.0;
+      return p;
     }
     PointNumbers p;
-    for (const auto& [point, weight] : points) {
-      const double share = weight / all;
+    for (const int from : heirs.of(k)) {
+      const PointNumbers point = take(from);
+      const double share = heirs.share[from];
+      p.area += point.area;
       p.held += point.held * share;
       p.shift += point.shift * share;
-      p.offset += point.offset * share;
-      p.rest = std::max(p.rest, point.rest);
       p.damped += point.damped;
       for (int i = 0; i < law_.internals; ++i) p.internals[i] += point.internals[i] * share;
     }
+    const auto [offset, rest] = rest_of(row_, lane_, heirs, k);
+    p.offset = offset;
+    p.rest = rest;
     if (law_.held_jump >= 0) p.internals[law_.held_jump] = norm(p.held);
-    p.area = area;
     return p;
   }
 
@@ -125,40 +154,26 @@ int nearest(const Vec<3>& to, const std::array<Vec<3>, Overlap::kMost>& places, 
   return best;
 }
 
-using NumbersOfPoints = std::array<PointNumbers, Overlap::kMost>;
-
-/// Returns what the points of an overlap take from those of an earlier one: each earlier point goes to the
-/// nearest new one, which takes the mean by area; a new point to which none goes is like the nearest earlier
-/// one. A point whose area is 0 follows points that rested.
-NumbersOfPoints carried_over(const LanePoints& points, const Overlap& earlier,
-                             const TrianglePair<double>& pair_then, const Overlap& overlap,
-                             const TrianglePair<double>& pair) {
-  const int count_then = earlier.count, count = overlap.count;
-  std::array<Vec<3>, Overlap::kMost> then{}, places{};
-  NumbersOfPoints numbers{}, carried{};
-  double whole = 0.0;
-  for (int k = 0; k < count_then; ++k) {
+/// \param weight  of the earlier points: their areas, or 1 of each where none bears
+Heirs heirs_of(const Overlap& earlier, const TrianglePair<double>& pair_then, const Overlap& overlap,
+               const TrianglePair<double>& pair, const std::array<double, Overlap::kMost>& weight) {
+  std::array<Vec<3>, Overlap::kMost> then, places;
+  for (int k = 0; k < earlier.count; ++k)
     then[k] = TrianglePair<double>::mixed(pair.a, pair_then.at_a[k]);  // it moves with a
-    numbers[k] = points.take(k);
-    whole += numbers[k].area;
+  for (int k = 0; k < overlap.count; ++k) places[k] = pair.on_a(k);
+  Heirs heirs;
+  for (int k = 0; k < earlier.count; ++k) {
+    if (!(weight[k] > 0.0)) continue;
+    const int to = nearest(then[k], places, overlap.count);
+    heirs.from[to][heirs.count[to]++] = k;
   }
-  std::array<std::vector<std::pair<PointNumbers, double>>, Overlap::kMost> come;
-  for (int k = 0; k < count; ++k) places[k] = pair.on_a(k);
-  for (int k = 0; k < count_then; ++k) {
-    const double weight = whole > 0.0 ? numbers[k].area : 1.0;
-    if (weight > 0.0) come[nearest(then[k], places, count)].emplace_back(numbers[k], weight);
+  for (int k = 0; k < overlap.count; ++k) {
+    if (heirs.count[k] == 0) heirs.like[k] = nearest(places[k], then, earlier.count);
+    double all = 0.0;
+    for (const int from : heirs.of(k)) all += weight[from];
+    for (const int from : heirs.of(k)) heirs.share[from] = weight[from] / all;
   }
-  for (int k = 0; k < Overlap::kMost; ++k) {
-    if (k >= count) {
-      carried[k] = points.fresh();
-    } else if (!come[k].empty()) {
-      carried[k] = points.mean(come[k]);
-    } else {
-      carried[k] = numbers[nearest(places[k], then, count_then)];
-      carried[k].damped = 0.0;
-    }
-  }
-  return carried;
+  return heirs;
 }
 
 void set_bit(std::uint32_t& bits, int lane, bool is_set) {
@@ -196,23 +211,30 @@ bool carry_over(const FoundRows<3>& found, FoundRow<3>& row, int lane, const Tri
   const TriangleCorners then = corners_in(row.pressed_at, lane);
   const auto pair = triangle_pair(overlap, first_of(corners), second_of(corners));
   const auto pair_then = triangle_pair(earlier, first_of(then), second_of(then));
-  LanePoints points(found, row, lane);
-  double held_then = 0.0;
+  std::array<double, Overlap::kMost> weight{};
   bool bore = false;
   for (int k = 0; k < earlier.count; ++k) {
-    held_then += points.held_energy(points.take(k));
-    bore = bore || row.area[k].number[lane] > 0.0;
+    weight[k] = row.area[k].number[lane];
+    bore = bore || weight[k] > 0.0;
   }
-  NumbersOfPoints carried = carried_over(points, earlier, pair_then, overlap, pair);
+  if (!bore) std::fill_n(weight.begin(), earlier.count, 1.0);
+  const Heirs heirs = heirs_of(earlier, pair_then, overlap, pair, weight);
   const double most_depth = row.most_depth.number[lane];
   std::array<double, Overlap::kMost> gap{};
   bool touches = false;
   for (int k = 0; k < overlap.count; ++k) {
-    gap[k] = pair.gap[k] + carried[k].offset;
-    touches = touches || (gap[k] < carried[k].rest && -gap[k] < most_depth);
+    const auto [offset, rest] = rest_of(row, lane, heirs, k);
+    gap[k] = pair.gap[k] + offset;
+    touches = touches || (gap[k] < rest && -gap[k] < most_depth);
   }
   // points that rest stay those of the last overlap that pressed, whatever overlaps come between
   if (!touches && !bore) return false;
+  LanePoints points(found, row, lane);
+  double held_then = 0.0;
+  for (int k = 0; k < earlier.count; ++k) held_then += points.held_energy(points.take(k));
+  std::array<PointNumbers, Overlap::kMost> carried{};
+  for (int k = 0; k < Overlap::kMost; ++k)
+    carried[k] = k < overlap.count ? points.carried(heirs, k) : points.fresh();
   const double not_counted = touches ? std::min(row.not_counted.number[lane], pair.overlap) : 0.0;
   PointAreas<double> areas;
   if (pair.overlap > not_counted)

@@ -73,7 +73,8 @@ struct FoundPair {
   /// can neither press nor change.
   double wakes = 0.0;
   bool is_near = true;  ///< true for a pair that may press before the next search, and is to stand in a row
-  int slot = -1;        ///< place in the rows: kLanes row + lane; -1 for a pair that is in none
+  bool was_asked = false;  ///< true where the last step went through its overlap, whether it pressed or not
+  int slot = -1;           ///< place in the rows: kLanes row + lane; -1 for a pair that is in none
 
   /// Tells whether the pair bore something in the last step.
   bool bears() const {

@@ -63,6 +63,7 @@ struct ShapesOfRow<3> {
   std::array<std::uint8_t, Overlap::kMost>
       joined_points;                         ///< bits of the points that an unbroken contact joins
   std::array<std::uint32_t, kLanes> joined;  ///< bits of the corners that an unbroken contact joins
+  std::uint32_t asked;                       ///< bits of the lanes whose overlap the last step went through
 };
 
 /// Returns the corners of one pair of several.

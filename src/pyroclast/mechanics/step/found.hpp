@@ -182,6 +182,7 @@ struct FoundContactForces {
       bore = bore | (Real::load(row.area[k].number) > zero);
       rest_below = larger(rest_below, Real::load(row.rest[k].number) - Real::load(row.offset[k].number));
     }
+    row.asked = 0;
     const Truth rests_on = was_handed_over & (!bore) & lie.over & (lie.gap > rest_below + Real(kRounding));
     const Truth is_asked =
         (!lie.beside) & (!rests_on) & (was_handed_over | bore | (lie.gap < Real(kRounding)));
@@ -190,11 +191,14 @@ struct FoundContactForces {
 
     const PlacesOfOverlap places = places_of(at, lie);
     const Truth rests_here = is_asked & was_handed_over & !bore;
-    const Truth is_pressed = is_asked & (bore | ((!was_handed_over) & may_touch(row, lie, places)));
+    const Truth may_begin = is_asked & !was_handed_over & !bore;
+    Truth is_pressed = is_asked & bore;
+    if (any(may_begin)) is_pressed = is_pressed | (may_begin & may_touch(row, lie, places));
     if (row.rests && !any(is_pressed | rests_here | flies_off)) return;
     const Real sides = sides_of(at, lie);
-    const Truth changes = rests_here & may_change(row, lie, places, sides);
+    const Truth changes = any(rests_here) ? rests_here & may_change(row, lie, places, sides) : rests_here;
     const Truth is_taken = is_pressed | changes, lies_still = rests_here & !changes;
+    row.asked = bits_of(is_taken);
     if (row.rests && !any(is_taken | flies_off)) return;
     OverlapsInLanes of;
     TrianglePair<Real> p;
@@ -222,26 +226,37 @@ struct FoundContactForces {
                                     select(Truth::from_bits(faces), left_out, zero));
     not_counted.store(row.not_counted.number);
     PointAreas<Real> areas(of.count, p, Real::load(row.thickness.number), not_counted, most_depth, now.gap);
+    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
+    std::array<Truth, kPoints> acts;
+    Truth works = bore;
+    for (int k = 0; k < kPoints; ++k) {
+      acts[k] = zero > zero;
+      if (k >= of.count) continue;
+      acts[k] = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.joined_points[k])) &
+                (p.overlap > not_counted) & (areas.area[k] > zero) &
+                (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
+      works = works | acts[k];
+    }
+    // pairs may lie in each other, and bear nothing yet
+    if (!any(works | is_damped(row))) {
+      for (int k = 0; k < kPoints; ++k) forget(s, row, k, leaves);
+      keep_places(row, at, carried);
+      unload(row, forces);
+      row.rests = !any(not_counted > zero);
+      return;
+    }
     const auto tangents = tangents_of(p.a, p.normal);
     const auto slides = slides_of(row, p, of.count, tangents);
-    if (row.handed_over != 0 && any(leaves)) set_apart(s, row, leaves);
 
     std::array<Tractions, kPoints> tractions;
     Real stored = zero;
     Truth loaded = zero > zero;
     for (int k = 0; k < kPoints; ++k) {
-      Real area_now = zero;
-      Truth acts = zero > zero;
-      if (k < of.count) {
-        area_now = areas.area[k];
-        acts = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.joined_points[k])) &
-               (p.overlap > not_counted) & (area_now > zero) &
-               (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
-      }
-      if (any(acts | (now.area_before[k] > zero))) {
+      Real area_now = k < of.count ? areas.area[k] : zero;
+      if (any(acts[k] | (now.area_before[k] > zero))) {
         const Truth rested = !(now.area_before[k] > zero);
         const Jump slide = choose(rested, Jump{}, slides[k]);
-        stored += press_point(s, row, k, acts, now, slide, area_now, tractions[k]);
+        stored += press_point(s, row, k, acts[k], now, slide, area_now, tractions[k]);
       } else {
         area_now = zero;
         tractions[k] = {zero, zero, Jump{}};
@@ -259,14 +274,12 @@ struct FoundContactForces {
     stored.store(row.stored.number);
     const std::uint32_t bearing = bits_of(loaded);
     const Truth remembers = (not_counted > zero) | is_damped(row);
-    const bool presses = bearing != 0 || any(remembers);
     keep_places(row, at, bearing | carried);
-    if (!presses && row.handed_over == 0) {
-      rest(row, forces);
-      return;
-    }
-    place_forces(row, of, p, areas, tractions, tangents, loaded, forces);
-    row.rests = !presses;
+    if (bearing != 0)
+      place_forces(row, of, p, areas, tractions, tangents, loaded, forces);
+    else
+      unload(row, forces);
+    row.rests = bearing == 0 && !any(remembers);
   }
 
   /// How eight pairs of triangles lie, seen along the mean normal.
@@ -598,11 +611,16 @@ struct FoundContactForces {
     applied.store(row.applied.number);
   }
 
-  /// Writes what follows where no pair of a row presses.
-  static void rest(Row& row, Vec<Dim>* forces) {
+  /// Writes what follows where no pair of a row bears anything.
+  static void unload(Row& row, Vec<Dim>* forces) {
     const Real zero = 0.0;
     for (int i = 0; i < kCorners; ++i) R::store(Vector{}, &forces[i * kLanes]);
-    for (Line* line : {&row.not_counted, &row.stored, &row.applied}) zero.store(line->number);
+    for (Line* line : {&row.stored, &row.applied}) zero.store(line->number);
+  }
+  /// Writes what follows where none touches either.
+  static void rest(Row& row, Vec<Dim>* forces) {
+    unload(row, forces);
+    Real(0.0).store(row.not_counted.number);
     row.rests = true;
   }
 
