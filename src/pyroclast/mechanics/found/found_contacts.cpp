@@ -35,6 +35,10 @@ constexpr double kMargin = 5.0;
 constexpr double kFarthest = 1e5;
 /// Steps to the end of lists of far pairs over those to the end of lists of near ones.
 constexpr double kFarOverNear = 20.0;
+/// Share of the steps and of the way to the end of lists of near pairs: in space a step looks longer at each
+/// pair than in the plane, so that searches pay sooner.
+template <int Dim>
+constexpr double kOfNear = Dim == 2 ? 1.0 : 0.3;
 /// Longest such ways: for far pairs over the mean edge, for near ones over those for far pairs.
 constexpr double kLongestFar = 0.25, kLongestNear = 0.2;
 /// Bound of a gridpoint's share of critical damping over that of its block, the root of the ratio of their
@@ -784,8 +788,9 @@ void FoundContacts<Dim>::let_sleep() {
 /// are near ones that stand in no row.
 template <int Dim>
 bool FoundContacts<Dim>::find_near() {
+  const FoundParameters& p = found_.parameters;
   std::vector<double> reach =
-      ways(found_.parameters.steps, found_.parameters.reach * found_.mean_edge, found_.mean_edge);
+      ways(kOfNear<Dim> * p.steps, kOfNear<Dim> * p.reach * found_.mean_edge, found_.mean_edge);
   for (std::size_t b = 0; b < reach.size(); ++b) reach[b] = std::min(reach[b], kLongestNear * found_.skin[b]);
   found_.reach = std::move(reach);
   std::vector<Pair> next;
