@@ -88,14 +88,23 @@ def fill_table(table: pathlib.Path, columns: tuple[str, ...], makers: Sequence[C
 
 
 @functools.cache
-def physics_version(program: str = PROGRAM) -> str:
-    """Of the program, for decks with small kinematics: results of the same deck are the same with the same version. A
-    version that changed finite kinematics alone left them as the version before has them."""
+def physics_version(program: str = PROGRAM, kinematics: str = "small") -> str:
+    """Of the program, for decks with these kinematics: results of the same deck are the same with the same version. A
+    version that changed finite kinematics alone left small ones as the version before has them."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
-    return _for_small_kinematics(int(re.search(r"physics version (\d+)", version)[1]))
+    return _for_kinematics(int(re.search(r"physics version (\d+)", version)[1]), kinematics)
 
 
-def _for_small_kinematics(version: int) -> str:
+def kinematics(deck: pathlib.Path, changes: Sequence[str] = ()) -> str:
+    """Of a deck with changes."""
+    key = "mechanics.kinematics="
+    stated = [change.removeprefix(key) for change in changes if change.startswith(key)]
+    return stated[-1] if stated else tomllib.loads(deck.read_text()).get("mechanics", {}).get("kinematics", "small")
+
+
+def _for_kinematics(version: int, kinematics: str) -> str:
+    if kinematics == "finite":
+        return str(version)
     changes = tomllib.loads((ROOT / "validation/reference.toml").read_text())["changed"]
     while {change.get("kinematics") for change in changes if change["physics_version"] == version} == {"finite"}:
         version -= 1
@@ -144,7 +153,8 @@ def finished(folder: pathlib.Path, command: list[str], deck: pathlib.Path) -> bo
         return False
     manifest = json.loads((folder / "manifest.json").read_text())
     same_deck = _source(folder).read_text() == deck_hash(deck)
-    return same_deck and _for_small_kinematics(manifest["physics_version"]) == physics_version(PROGRAM)
+    of_run = kinematics(folder / "deck.toml")
+    return same_deck and _for_kinematics(manifest["physics_version"], of_run) == physics_version(PROGRAM, of_run)
 
 
 def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str], again: bool = True) -> None:

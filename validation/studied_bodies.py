@@ -179,8 +179,10 @@ class Studies:
         return runs.rounded(row)
 
     def _key(self, study: str, name: str, body: Body, seed: int) -> dict[str, str]:
-        return {"deck": runs.deck_hash(self.deck_of(body.case), body.changes),
-                "physics_version": runs.physics_version(), "study": study, "body": name, "seed": str(seed)}
+        deck = self.deck_of(body.case)
+        version = runs.physics_version(kinematics=runs.kinematics(deck, body.changes))
+        return {"deck": runs.deck_hash(deck, body.changes), "physics_version": version, "study": study, "body": name,
+                "seed": str(seed)}
 
     def _order(self, row: dict[str, str]) -> tuple[int, int, int]:
         study = list(self.bodies).index(row["study"])

@@ -25,8 +25,9 @@ class Runs(unittest.TestCase):
         (self.folder / "checkpoints" / "1.state").touch()
         (self.folder / "manifest.json").write_text(json.dumps(
             {"command": shlex.join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
+        (self.folder / "deck.toml").write_text(self.deck.read_text())
         self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
-        version = mock.patch.object(runs, "physics_version", lambda program: "7")
+        version = mock.patch.object(runs, "physics_version", lambda program, kinematics: "7")
         version.start()
         self.addCleanup(version.stop)
 
@@ -51,12 +52,23 @@ class Runs(unittest.TestCase):
         self.end("completed")
         other = [*COMMAND[:-1], "blocks.count=301"]
         self.assertFalse(runs.finished(self.folder, other, self.deck))
-        with mock.patch.object(runs, "physics_version", lambda program: "8"):
+        with mock.patch.object(runs, "physics_version", lambda program, kinematics: "8"):
             self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
         self.deck.write_text("title = \"another\"\n")
         self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
         (self.folder / "summary.json").unlink()
         self.assertFalse(runs.broken_off(self.folder, other))
+
+    def test_a_version_that_changed_finite_kinematics_alone_leaves_small_ones_done(self):
+        self.end("completed")
+        changed = {"changed": [{"physics_version": 7, "kinematics": "finite"}]}
+        with mock.patch.object(runs.tomllib, "loads", lambda text: changed | {"mechanics": {"kinematics": of_deck}}), \
+                mock.patch.object(runs, "physics_version", lambda program, kinematics: version):
+            for of_deck, version, is_done in (("small", "6", True), ("small", "7", False), ("finite", "7", True),
+                                              ("finite", "6", False)):
+                with self.subTest(kinematics=of_deck, version=version):
+                    self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
+                    self.assertEqual(runs.finished(self.folder, COMMAND, self.deck), is_done)
 
 
 if __name__ == "__main__":
