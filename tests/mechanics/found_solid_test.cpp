@@ -9,6 +9,8 @@
 
 #include "copy_state.hpp"
 #include "crushing.hpp"
+#include "hertz.hpp"
+#include "known.hpp"
 #include "loose_blocks.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
@@ -144,6 +146,71 @@ TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLaw) {
   EXPECT_LT(std::abs(e.dissipated.of("contact_area")), 1e-3 * e.dissipated.of("friction"));
   // friction that comes and goes is booked to the first order of the step
   EXPECT_LT(std::abs(e.error()), 2e-4 * e.dissipated.of("friction"));
+}
+
+/// Quarter of a ball around its lowest point as one block, its zones finer where it touches a plate below:
+/// prisms on rings of triangles, each cut into three tetrahedra.
+ModelOf<3> quarter_ball(const Round& round) {
+  const std::vector<double> angles = round.angles();
+  const int rings = static_cast<int>(angles.size()) - 1, of_layer = (rings + 1) * (rings + 1);
+  std::vector<Vec<3>> gridpoints;
+  for (int j = 0; j <= round.layers; ++j)
+    for (int ring = 0; ring <= rings; ++ring)
+      for (int k = 0; k <= 2 * ring; ++k) {
+        const double around = ring == 0 ? 0.0 : 0.25 * std::numbers::pi * k / ring;
+        const double out = std::sin(angles[ring]);
+        gridpoints.push_back(
+            Vec<3>{{out * std::cos(around), out * std::sin(around), -std::cos(angles[ring])}} *
+            round.at_layer(j));
+      }
+  std::vector<std::array<int, 4>> zones;
+  const auto add = [&](std::array<int, 3> triangle) {
+    std::ranges::sort(triangle);  // so that prisms that share a side cut it by the same diagonal
+    for (int j = 0; j < round.layers; ++j)
+      for (int i = 0; i < 3; ++i) {
+        std::array<int, 4> zone{};
+        for (int corner = 0; corner < 4; ++corner)
+          zone[corner] =
+              corner <= i ? triangle[corner] + j * of_layer : triangle[corner - 1] + (j + 1) * of_layer;
+        const auto from_first = [&](int corner) { return gridpoints[zone[corner]] - gridpoints[zone[0]]; };
+        if (dot(cross(from_first(1), from_first(2)), from_first(3)) < 0.0) std::swap(zone[2], zone[3]);
+        zones.push_back(zone);
+      }
+  };
+  for (int ring = 0; ring < rings; ++ring)
+    for (const int half : {0, 1}) {  // each ring has one side more in 45 degrees than the one within
+      const int inner = ring * ring + half * ring, outer = (ring + 1) * (ring + 1) + half * (ring + 1);
+      for (int k = 0; k <= ring; ++k) add({inner + k, outer + k, outer + k + 1});
+      for (int k = 0; k < ring; ++k) add({inner + k, inner + k + 1, outer + k + 1});
+    }
+  ModelOf<3> model = no_blocks();
+  model.add_block(gridpoints, zones, 0);
+  return model;
+}
+
+// Promise: a ball of facets presses a plate that was not made with it as Hertz's sphere does.
+TEST(FoundContactsVerification, BallOnAPlatePressesAsHertzSays) {
+  constexpr double kYoung = 30e9, kPoisson = 0.2;
+  const Round round{.radius = 0.05,
+                    .depth = 0.012,
+                    .facet_angle = 0.25 * std::numbers::pi / 180.0,
+                    .fine = 8,
+                    .coarse = 7,
+                    .layers = 10,
+                    .growth = 1.3};
+  ModelOf<3> model = quarter_ball(round);
+  const double low = std::ranges::min(model.position, {}, [](const Vec<3>& x) { return x[2]; })[2];
+  add_box(model, {{0.06, 0.06, 0.01}}, {{0.0007, 0.0002, low - 0.005}}, {});
+  const PressedSpot quarter = press(model, round, kYoung, 4.2e-5, 1000, 3000);
+  const double force = 4.0 * quarter.force,
+               radius = std::cbrt(0.75 * force * round.radius * (1.0 - kPoisson * kPoisson) / kYoung),
+               pressure = 1.5 * force / (std::numbers::pi * radius * radius);
+  EXPECT_NEAR(radius / round.facet(), 6.5, 0.5);
+  const std::string what = "A ball of facets on a plate of its own, 6 of them over the pressed radius: ",
+                    hertz = "Hertz (Johnson 1985, 4.2)";
+  expect_known({what + "pressed radius", hertz, "m"}, std::sqrt(2.5 * quarter.mean_square), radius,
+               0.02 * radius);
+  expect_known({what + "largest pressure", hertz, "Pa"}, quarter.largest, pressure, 0.02 * pressure);
 }
 
 /// A cube that hits a box obliquely on its edge, rubs and turns.
