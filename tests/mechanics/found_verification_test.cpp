@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "all_pairs.hpp"
 #include "hertz.hpp"
 #include "known.hpp"
 #include "loose_blocks.hpp"
-#include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/mechanics/found/found_points.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
@@ -161,97 +161,6 @@ TEST(FoundContactsVerification, CrushedDiscKeepsItsEnergy) {
   EXPECT_LT(std::abs(e.error()), 1e-5 * e.loading);
 }
 
-/// Contacts of loose rectangles as one writes them without lists: in each step every edge meets every edge of
-/// the other blocks, one pair after the other, with the law of one point.
-class AllPairs {
- public:
-  AllPairs(const ModelOf<2>& model, const Frictional::Properties<double>& law)
-      : model_(model), constants_(Frictional::derive(law)) {
-    for (int b = 0; b < model.block_count(); ++b) {
-      const int first = model.block_gridpoints[b];
-      double area = 0.0, longest = 0.0;
-      for (int i = 0; i < 4; ++i) {
-        const int from = first + i, to = first + (i + 1) % 4;
-        const double length = norm(model.position[to] - model.position[from]);
-        edges_.push_back({b, from, to, length});
-        area += 0.5 * cross(model.position[from] - model.position[first],
-                            model.position[to] - model.position[first]);
-        longest = std::max(longest, length);
-      }
-      most_depth_.push_back(0.25 * area / longest);
-    }
-    ends_.resize(edges_.size() * edges_.size());
-  }
-
-  double rubbed = 0.0;  ///< energy lost to friction, J
-
-  /// Puts the forces at the present places on the gridpoints of a body that has no contacts.
-  void load(Mechanics<2>& m, int held_blocks) {
-    std::vector<Vec<2>> forces(model_.position.size());
-    for (std::size_t a = 0; a < edges_.size(); ++a)
-      for (std::size_t b = a + 1; b < edges_.size(); ++b)
-        if (edges_[a].block != edges_[b].block) add(m, a, b, forces);
-    for (int g = model_.block_gridpoints[held_blocks]; g < model_.gridpoint_count(); ++g)
-      m.constraints().apply_force(g, forces[g]);
-  }
-
- private:
-  struct Edge {
-    int block, from, to;
-    double length;
-  };
-  struct End {
-    double area = 0.0, shift = 0.0, held = 0.0;
-    Frictional::Internals<2, double> internals{};
-  };
-
-  void add(const Mechanics<2>& m, std::size_t a, std::size_t b, std::vector<Vec<2>>& forces) {
-    const Edge &edge_a = edges_[a], &edge_b = edges_[b];
-    const std::array<int, 4> corners{edge_a.from, edge_a.to, edge_b.to, edge_b.from};
-    const auto at = [&](int i) { return model_.position[corners[i]] + m.read().displacement(corners[i]); };
-    const auto p = edge_pair<double>({at(0), at(1)}, {at(2), at(3)}, edge_a.length, edge_b.length);
-    const double most_depth = std::min(most_depth_[edge_a.block], most_depth_[edge_b.block]);
-    const EndAreas<double> areas(p, model_.thickness, 0.0, most_depth, p.gap);
-    EndAreas<double> of_pressed = areas;
-    EndTractions<double> tractions;
-    for (int k = 0; k < 2; ++k) {
-      End& end = ends_[(a * edges_.size() + b)][k];
-      if (!p.face || p.gap[k] >= 0.0 || -p.gap[k] >= most_depth || areas.area[k] <= 0.0) {
-        if (end.area > 0.0)  // what was held is let go
-          rubbed += 0.5 * constants_.shear_stiffness * end.held * end.held * end.area;
-        end = {};
-        of_pressed.area[k] = 0.0;
-        of_pressed.ends[k].share = of_pressed.ends[k].slope = of_pressed.ends[k].depth = 0.0;
-        continue;
-      }
-      if (end.area == 0.0) end.shift = -p.slide[k];
-      if (end.area > 0.0 && areas.area[k] > end.area) {  // the force stays
-        const double held = end.held * end.area / areas.area[k];
-        end.shift -= end.held - held;
-        end.internals.held_jump = std::abs(held);
-      }
-      Frictional::Losses<double> losses{};
-      const auto response = Frictional::update<2, double>(
-          constants_, p.gap[k], Tangential<2, double>{{p.slide[k] + end.shift}}, end.internals, losses);
-      end.area = areas.area[k];
-      end.held = response.shear_traction[0] / constants_.shear_stiffness;
-      rubbed += losses.friction * end.area;
-      tractions.normal[k] = response.normal_traction;
-      tractions.shear[k] = response.shear_traction[0];
-      tractions.stored[k] = response.stored - 0.5 * response.shear_traction[0] * end.held;
-    }
-    if (!(of_pressed.area[0] > 0.0) && !(of_pressed.area[1] > 0.0)) return;
-    const auto f = corner_forces(p, of_pressed, tractions);
-    for (int i = 0; i < 4; ++i) forces[corners[i]] += f[i];
-  }
-
-  const ModelOf<2>& model_;
-  Frictional::Constants<double> constants_;
-  std::vector<Edge> edges_;
-  std::vector<double> most_depth_;
-  std::vector<std::array<End, 2>> ends_;  // by edge a, then b
-};
-
 // Promise: blocks that fall, turn, rub and bounce go the same way as with all pairs in each step.
 TEST(FoundContactsVerification, ListsAndRowsAgreeWithAllPairsInEachStep) {
   constexpr int kHeld = 3;
@@ -269,32 +178,7 @@ TEST(FoundContactsVerification, ListsAndRowsAgreeWithAllPairsInEachStep) {
   for (int b = kHeld; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
       velocities[g] = {{0.4 * (b % 3 - 1), -1.0}};
-  const auto law = rubbing(1e8, 0.4);
-  auto parameters = flying(kGravity, 0.3);
-  auto m = mechanics<2>(model, law, parameters, 3e8);
-  parameters.found.is_on = false;
-  const double own_step = mechanics<2>(model, law, parameters, 3e8).time_step();
-  parameters.safety *= m.time_step() / own_step;
-  auto expected = mechanics<2>(model, law, parameters, 3e8);
-  ASSERT_NEAR(expected.time_step(), m.time_step(), 1e-15 * m.time_step());
-  for (Mechanics<2>* body : {&m, &expected}) {
-    for (int b = 0; b < kHeld; ++b) hold(*body, b);
-    body->begin_moving(velocities);
-  }
-  AllPairs pairs(model, law);
-  while (m.time() < 0.05) {
-    pairs.load(expected, kHeld);
-    expected.advance(1);
-    m.advance(1);
-    if (m.steps() % 500 != 0) continue;
-    double difference = 0.0;
-    for (int g = 0; g < model.gridpoint_count(); ++g)
-      difference = std::max(difference, norm(m.read().displacement(g) - expected.read().displacement(g)));
-    EXPECT_LT(difference, 1e-13);  // rounding; blocks have gone some 50 mm
-  }
-  const EnergyLedger e = m.totals().energy();
-  EXPECT_GT(e.dissipated.of("friction"), 0.2 * e.kinetic);  // blocks have met
-  EXPECT_NEAR(e.dissipated.of("friction"), pairs.rubbed, 1e-10 * pairs.rubbed);
+  expect_the_way_of_all_pairs(model, kHeld, velocities, 0.05, 500);
 }
 
 }  // namespace
