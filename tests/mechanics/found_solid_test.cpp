@@ -7,8 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "all_pairs.hpp"
 #include "copy_state.hpp"
 #include "crushing.hpp"
+#include "hertz.hpp"
+#include "known.hpp"
 #include "loose_blocks.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
@@ -20,41 +23,6 @@ namespace {
 using namespace bodies;
 
 constexpr double kEdge = 0.05;  // m, of the cube that moves
-
-/// Rotation about an axis by the angle that is the axis' length.
-Vec<3> turned(const Vec<3>& x, const Vec<3>& by) {
-  const double angle = norm(by);
-  if (angle == 0.0) return x;
-  const Vec<3> k = by * (1.0 / angle);
-  return x * std::cos(angle) + cross(k, x) * std::sin(angle) + k * (dot(k, x) * (1.0 - std::cos(angle)));
-}
-
-/// Adds a box around a place, cut into tetrahedra around its middle. Returns the block.
-int add_box(ModelOf<3>& model, const Vec<3>& size, const Vec<3>& place, const std::vector<Vec<3>>& turns) {
-  ModelOf<3> one = cubes(1, 1.0);
-  for (Vec<3>& x : one.position) {
-    for (int i = 0; i < 3; ++i) x[i] = (x[i] - 0.5) * size[i];
-    for (const Vec<3>& turn : turns) x = turned(x, turn);
-    x += place;
-  }
-  return model.add_block(one.position, one.zones, 0);
-}
-
-ModelOf<3> no_blocks() {
-  ModelOf<3> model;
-  model.material_names = {"mortar"};
-  model.interface_names = {"mortar-mortar"};
-  return model;
-}
-
-MechanicsParameters flying_in_space(double gravity, double safety) {
-  MechanicsParameters p;
-  p.gravity = {{0.0, 0.0, -gravity}};
-  p.safety = safety;
-  p.found.is_on = true;
-  p.zones_for_a_thread = 1;
-  return p;
-}
 
 std::vector<Vec<3>> velocities(const ModelOf<3>& model, int block, const Vec<3>& velocity) {
   std::vector<Vec<3>> all(model.position.size());
@@ -91,7 +59,7 @@ const std::vector<Drop> kDrops{
 // contact takes, also where edges are parallel.
 TEST(FoundContactsVerification, CubeInSpaceKeepsItsEnergyOnFacesEdgesAndCorners) {
   for (const Drop& drop : kDrops) {
-    ModelOf<3> model = no_blocks();
+    ModelOf<3> model = empty_model<3>();
     const bool is_aligned = std::string(drop.name).starts_with("aligned");
     const double size = is_aligned ? kEdge : 0.1;
     const int box = add_box(model, {{size, size, size}}, {}, drop.turns_of_box);
@@ -103,7 +71,7 @@ TEST(FoundContactsVerification, CubeInSpaceKeepsItsEnergyOnFacesEdgesAndCorners)
                                                             : std::min(low, model.position[g][2]);
     for (int g = model.block_gridpoints[cube]; g < model.gridpoint_count(); ++g)
       model.position[g][2] += high - low + 1e-4;
-    auto m = mechanics<3>(model, rubbing(1e9, 0.0), flying_in_space(0.0, 0.3), 30e9);
+    auto m = mechanics<3>(model, rubbing(1e9, 0.0), flying<3>(0.0, 0.3), 30e9);
     hold(m, box);
     m.begin_moving(velocities(model, cube, {{0, 0, -0.1}}));
     const double kinetic = m.totals().energy().kinetic;
@@ -127,11 +95,11 @@ TEST(FoundContactsVerification, CubeInSpaceKeepsItsEnergyOnFacesEdgesAndCorners)
 // over is little beside the friction.
 TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLaw) {
   constexpr double kFriction = 0.3, kTime = 0.12;
-  ModelOf<3> model = no_blocks();
+  ModelOf<3> model = empty_model<3>();
   const int box = add_box(model, {{0.2, 0.2, 0.2}}, {{0, 0, -0.1}}, {});
   const int cube =
       add_box(model, {{kEdge, kEdge, kEdge}}, {{0.01, 0.004, 0.5 * kEdge + 1e-6}}, {{{0, 0, 0.5}}});
-  auto m = mechanics<3>(model, rubbing(1e8, kFriction), flying_in_space(kGravity, 0.5), 3e8);
+  auto m = mechanics<3>(model, rubbing(1e8, kFriction), flying<3>(kGravity, 0.5), 3e8);
   hold(m, box);
   m.begin_moving(velocities(model, cube, {{0.8, 0.24, 0}}));
   const double speed = std::hypot(0.8, 0.24);
@@ -144,6 +112,90 @@ TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLaw) {
   EXPECT_LT(std::abs(e.dissipated.of("contact_area")), 1e-3 * e.dissipated.of("friction"));
   // friction that comes and goes is booked to the first order of the step
   EXPECT_LT(std::abs(e.error()), 2e-4 * e.dissipated.of("friction"));
+}
+
+/// Quarter of a ball around its lowest point as one block, its zones finer where it touches a plate below:
+/// prisms on rings of triangles, each cut into three tetrahedra.
+ModelOf<3> quarter_ball(const Round& round) {
+  const std::vector<double> angles = round.angles();
+  const int rings = static_cast<int>(angles.size()) - 1, of_layer = (rings + 1) * (rings + 1);
+  std::vector<Vec<3>> gridpoints;
+  for (int j = 0; j <= round.layers; ++j)
+    for (int ring = 0; ring <= rings; ++ring)
+      for (int k = 0; k <= 2 * ring; ++k) {
+        const double around = ring == 0 ? 0.0 : 0.25 * std::numbers::pi * k / ring;
+        const double out = std::sin(angles[ring]);
+        gridpoints.push_back(
+            Vec<3>{{out * std::cos(around), out * std::sin(around), -std::cos(angles[ring])}} *
+            round.at_layer(j));
+      }
+  std::vector<std::array<int, 4>> zones;
+  const auto add = [&](std::array<int, 3> triangle) {
+    std::ranges::sort(triangle);  // so that prisms that share a side cut it by the same diagonal
+    for (int j = 0; j < round.layers; ++j)
+      for (int i = 0; i < 3; ++i) {
+        std::array<int, 4> zone{};
+        for (int corner = 0; corner < 4; ++corner)
+          zone[corner] =
+              corner <= i ? triangle[corner] + j * of_layer : triangle[corner - 1] + (j + 1) * of_layer;
+        const auto from_first = [&](int corner) { return gridpoints[zone[corner]] - gridpoints[zone[0]]; };
+        if (dot(cross(from_first(1), from_first(2)), from_first(3)) < 0.0) std::swap(zone[2], zone[3]);
+        zones.push_back(zone);
+      }
+  };
+  for (int ring = 0; ring < rings; ++ring)
+    for (const int half : {0, 1}) {  // each ring has one side more in 45 degrees than the one within
+      const int inner = ring * ring + half * ring, outer = (ring + 1) * (ring + 1) + half * (ring + 1);
+      for (int k = 0; k <= ring; ++k) add({inner + k, outer + k, outer + k + 1});
+      for (int k = 0; k < ring; ++k) add({inner + k, inner + k + 1, outer + k + 1});
+    }
+  ModelOf<3> model = empty_model<3>();
+  model.add_block(gridpoints, zones, 0);
+  return model;
+}
+
+// Promise: a ball of facets presses a plate that was not made with it as Hertz's sphere does.
+TEST(FoundContactsVerification, BallOnAPlatePressesAsHertzSays) {
+  constexpr double kYoung = 30e9, kPoisson = 0.2;
+  const Round round{.radius = 0.05,
+                    .depth = 0.012,
+                    .facet_angle = 0.25 * std::numbers::pi / 180.0,
+                    .fine = 8,
+                    .coarse = 7,
+                    .layers = 10,
+                    .growth = 1.3};
+  ModelOf<3> model = quarter_ball(round);
+  const double low = std::ranges::min(model.position, {}, [](const Vec<3>& x) { return x[2]; })[2];
+  add_box(model, {{0.06, 0.06, 0.01}}, {{0.0007, 0.0002, low - 0.005}}, {});
+  const PressedSpot quarter = press(model, round, kYoung, 4.2e-5, 1000, 3000);
+  const double force = 4.0 * quarter.force,
+               radius = std::cbrt(0.75 * force * round.radius * (1.0 - kPoisson * kPoisson) / kYoung),
+               pressure = 1.5 * force / (std::numbers::pi * radius * radius);
+  EXPECT_NEAR(radius / round.facet(), 6.5, 0.5);
+  const std::string what = "A ball of facets on a plate of its own, 6 of them over the pressed radius: ",
+                    hertz = "Hertz (Johnson 1985, 4.2)";
+  expect_known({what + "pressed radius", hertz, "m"}, std::sqrt(2.5 * quarter.mean_square), radius,
+               0.02 * radius);
+  expect_known({what + "largest pressure", hertz, "Pa"}, quarter.largest, pressure, 0.02 * pressure);
+}
+
+// Promise: boxes that fall on each other in space, turn, rub and bounce go the same way as with all pairs of
+// triangles in each step.
+TEST(FoundContactsVerification, ListsAndRowsInSpaceAgreeWithAllPairsInEachStep) {
+  constexpr int kHeld = 2;
+  ModelOf<3> model = empty_model<3>();
+  add_box(model, {{0.2, 0.2, 0.05}}, {{0.01, 0.004, -0.025}}, {});
+  add_box(model, {{0.03, 0.2, 0.1}}, {{-0.06, 0.003, 0.05}}, {{{0, 0, 0.1}}});
+  for (int i = 0; i < 5; ++i) {
+    Vec<3> place{{-0.02 + 0.04 * (i / 2), -0.02 + 0.04 * (i % 2), 0.016 + 0.002 * i}};
+    if (i == 4) place = {{0.004, 0.001, 0.05}};  // it falls on the others
+    add_box(model, {{0.028, 0.02 + 0.002 * i, 0.02}}, place, {{{0.08 * (i - 1), 0.1 - 0.05 * i, 0.2 * i}}});
+  }
+  std::vector<Vec<3>> velocities(model.position.size());
+  for (int b = kHeld; b < model.block_count(); ++b)
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
+      velocities[g] = {{0.4 * (b % 3 - 1), 0.3 * (b % 2), -1.0}};
+  expect_the_way_of_all_pairs(model, kHeld, velocities, 0.03, 250);
 }
 
 /// A cube that hits a box obliquely on its edge, rubs and turns.
@@ -167,10 +219,10 @@ void expect_equal(const Mechanics<3>& m, const Mechanics<3>& expected, const std
 // a search, and a state that is copied goes on with the same bits.
 TEST(FoundContacts, BitsInSpaceDependOnPairsThatPressAlone) {
   constexpr int kSteps = 1500;
-  ModelOf<3> model = no_blocks();
+  ModelOf<3> model = empty_model<3>();
   add_box(model, {{0.2, 0.1, 0.1}}, {{0, 0, -0.05}}, {});
   add_box(model, {{kEdge, kEdge, kEdge}}, {{-0.02, 0.01, 0.03}}, {{{0.1, 0.05, 0.5}}});
-  auto parameters = flying_in_space(0.0, 0.5);
+  auto parameters = flying<3>(0.0, 0.5);
   parameters.found.damping = 0.05;
   auto expected = oblique(model, parameters, 1);
   expected.advance(kSteps);
@@ -205,7 +257,7 @@ TEST(FoundContacts, FaceOfASolidThatIsHandedOverPressesOn) {
   const ModelOf<3> model = cubes(2, 0.01);
   auto bond = mortar_contact();
   bond.residual_cohesion = 0.0;
-  auto parameters = flying_in_space(0.0, 0.5);
+  auto parameters = flying<3>(0.0, 0.5);
   parameters.damping_form = DampingForm::combined;
   parameters.local_damping = 0.3;
   auto never = parameters;

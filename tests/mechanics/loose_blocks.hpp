@@ -22,17 +22,39 @@ inline int add_block(ModelOf<2>& model, const std::vector<Vec<2>>& corners) {
   return model.add_block(zoned.gridpoints, zoned.zones, 0);
 }
 
-inline ModelOf<2> empty_model() {
-  ModelOf<2> model;
+/// Rotation about an axis by the angle that is the axis' length.
+inline Vec<3> turned(const Vec<3>& x, const Vec<3>& by) {
+  const double angle = norm(by);
+  if (angle == 0.0) return x;
+  const Vec<3> k = by * (1.0 / angle);
+  return x * std::cos(angle) + cross(k, x) * std::sin(angle) + k * (dot(k, x) * (1.0 - std::cos(angle)));
+}
+
+/// Adds a box around a place, cut into tetrahedra around its middle. Returns the block.
+inline int add_box(ModelOf<3>& model, const Vec<3>& size, const Vec<3>& place,
+                   const std::vector<Vec<3>>& turns) {
+  ModelOf<3> one = cubes(1, 1.0);
+  for (Vec<3>& x : one.position) {
+    for (int i = 0; i < 3; ++i) x[i] = (x[i] - 0.5) * size[i];
+    for (const Vec<3>& turn : turns) x = turned(x, turn);
+    x += place;
+  }
+  return model.add_block(one.position, one.zones, 0);
+}
+
+template <int Dim = 2>
+ModelOf<Dim> empty_model() {
+  ModelOf<Dim> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   return model;
 }
 
 /// Parameters of blocks that fly: real mass, no damping.
-inline MechanicsParameters flying(double gravity, double safety) {
+template <int Dim = 2>
+MechanicsParameters flying(double gravity, double safety) {
   MechanicsParameters p;
-  p.gravity = {{0.0, -gravity}};
+  p.gravity[Dim - 1] = -gravity;
   p.kinematics = Kinematics::finite;
   p.safety = safety;
   p.found.is_on = true;
