@@ -88,25 +88,33 @@ def fill_table(table: pathlib.Path, columns: tuple[str, ...], makers: Sequence[C
 
 
 @functools.cache
-def physics_version(program: str = PROGRAM, kinematics: str = "small") -> str:
-    """Of the program, for decks with these kinematics: results of the same deck are the same with the same version. A
-    version that changed finite kinematics alone left small ones as the version before has them."""
+def physics_version(program: str = PROGRAM, kinds: frozenset[str] = frozenset()) -> str:
+    """Of the program, for decks of some `kinds`: results of the same deck are the same with the same version. A version
+    that changed other kinds alone left them as the version before has them."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
-    return _for_kinematics(int(re.search(r"physics version (\d+)", version)[1]), kinematics)
+    return _for_kinds(int(re.search(r"physics version (\d+)", version)[1]), kinds)
 
 
-def kinematics(deck: pathlib.Path, changes: Sequence[str] = ()) -> str:
-    """Of a deck with changes."""
-    key = "mechanics.kinematics="
-    stated = [change.removeprefix(key) for change in changes if change.startswith(key)]
-    return stated[-1] if stated else tomllib.loads(deck.read_text()).get("mechanics", {}).get("kinematics", "small")
+def kinds(deck: pathlib.Path, changes: Sequence[str] = ()) -> frozenset[str]:
+    """Kinds of a deck with changes, by the names that `only` in [[changed]] of validation/reference.toml has: "finite"
+    kinematics, and stones in space that blocks have "followed"."""
+    tables = tomllib.loads(deck.read_text())
+    stated = dict(change.split("=", 1) for change in changes)
+    specimen = tables.get("specimen", {})
+
+    def value(table: str, key: str) -> str | None:
+        return stated.get(f"{table}.{key}", tables.get(table, {}).get(key))
+
+    is_in_space = "depth" in specimen or specimen.get("shape") in ("cylinder", "polyhedra")
+    has = {"finite": value("mechanics", "kinematics") == "finite",
+           "followed": is_in_space and value("superposition", "rule") == "follow"}
+    return frozenset(kind for kind, is_one in has.items() if is_one)
 
 
-def _for_kinematics(version: int, kinematics: str) -> str:
-    if kinematics == "finite":
-        return str(version)
+def _for_kinds(version: int, kinds: frozenset[str]) -> str:
     changes = tomllib.loads((ROOT / "validation/reference.toml").read_text())["changed"]
-    while {change.get("kinematics") for change in changes if change["physics_version"] == version} == {"finite"}:
+    while (only := {change.get("only") for change in changes if change["physics_version"] == version}) \
+            and None not in only and not only & kinds:
         version -= 1
     return str(version)
 
@@ -153,8 +161,8 @@ def finished(folder: pathlib.Path, command: list[str], deck: pathlib.Path) -> bo
         return False
     manifest = json.loads((folder / "manifest.json").read_text())
     same_deck = _source(folder).read_text() == deck_hash(deck)
-    of_run = kinematics(folder / "deck.toml")
-    return same_deck and _for_kinematics(manifest["physics_version"], of_run) == physics_version(PROGRAM, of_run)
+    of_run = kinds(folder / "deck.toml")
+    return same_deck and _for_kinds(manifest["physics_version"], of_run) == physics_version(PROGRAM, of_run)
 
 
 def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str], again: bool = True) -> None:

@@ -180,7 +180,7 @@ class Studies:
 
     def _key(self, study: str, name: str, body: Body, seed: int) -> dict[str, str]:
         deck = self.deck_of(body.case)
-        version = runs.physics_version(kinematics=runs.kinematics(deck, body.changes))
+        version = runs.physics_version(kinds=runs.kinds(deck, body.changes))
         return {"deck": runs.deck_hash(deck, body.changes), "physics_version": version, "study": study, "body": name,
                 "seed": str(seed)}
 

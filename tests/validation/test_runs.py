@@ -27,7 +27,7 @@ class Runs(unittest.TestCase):
             {"command": shlex.join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
         (self.folder / "deck.toml").write_text(self.deck.read_text())
         self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
-        version = mock.patch.object(runs, "physics_version", lambda program, kinematics: "7")
+        version = mock.patch.object(runs, "physics_version", lambda program, kinds: "7")
         version.start()
         self.addCleanup(version.stop)
 
@@ -52,23 +52,32 @@ class Runs(unittest.TestCase):
         self.end("completed")
         other = [*COMMAND[:-1], "blocks.count=301"]
         self.assertFalse(runs.finished(self.folder, other, self.deck))
-        with mock.patch.object(runs, "physics_version", lambda program, kinematics: "8"):
+        with mock.patch.object(runs, "physics_version", lambda program, kinds: "8"):
             self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
         self.deck.write_text("title = \"another\"\n")
         self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
         (self.folder / "summary.json").unlink()
         self.assertFalse(runs.broken_off(self.folder, other))
 
-    def test_a_version_that_changed_finite_kinematics_alone_leaves_small_ones_done(self):
+    def test_a_version_that_changed_one_kind_of_deck_leaves_others_done(self):
         self.end("completed")
-        changed = {"changed": [{"physics_version": 7, "kinematics": "finite"}]}
-        with mock.patch.object(runs.tomllib, "loads", lambda text: changed | {"mechanics": {"kinematics": of_deck}}), \
-                mock.patch.object(runs, "physics_version", lambda program, kinematics: version):
-            for of_deck, version, is_done in (("small", "6", True), ("small", "7", False), ("finite", "7", True),
-                                              ("finite", "6", False)):
-                with self.subTest(kinematics=of_deck, version=version):
-                    self.folder.with_name("run.source").write_text(runs.deck_hash(self.deck))
-                    self.assertEqual(runs.finished(self.folder, COMMAND, self.deck), is_done)
+        rules = pathlib.Path(self.deck.parent) / "validation/reference.toml"
+        rules.parent.mkdir()
+        rules.write_text('[[changed]]\nphysics_version = 7\nonly = "finite"\n')
+        for of_deck, version, is_done in (("small", "6", True), ("small", "7", False), ("finite", "7", True),
+                                          ("finite", "6", False)):
+            with self.subTest(kinematics=of_deck, version=version), mock.patch.object(runs, "ROOT", self.deck.parent), \
+                    mock.patch.object(runs, "physics_version", lambda program, kinds: version):
+                (self.folder / "deck.toml").write_text(f'[mechanics]\nkinematics = "{of_deck}"\n')
+                self.assertEqual(runs.finished(self.folder, COMMAND, self.deck), is_done)
+
+    def test_kinds_of_a_deck_are_those_of_its_changes_too(self):
+        self.deck.write_text('[specimen]\nshape = "cylinder"\n[superposition]\nrule = "each"\n')
+        self.assertEqual(runs.kinds(self.deck), frozenset())
+        self.assertEqual(runs.kinds(self.deck, ["superposition.rule=follow", "mechanics.kinematics=finite"]),
+                         {"followed", "finite"})
+        self.deck.write_text('[superposition]\nrule = "follow"\n')
+        self.assertEqual(runs.kinds(self.deck), frozenset())  # of the plane
 
 
 if __name__ == "__main__":

@@ -45,10 +45,12 @@ RegularisedCells regularise(Cells<2>& cells, const Region& region, const Regular
 /// each cell a ball that is cut into zones of positive volume; and bends no face by more than
 /// `asked.largest_bend`. Vertices on planes of the body stay on these, so that the body keeps its volume and
 /// its sides; those between cells of different stones move along the surface there, and not at all where its
-/// faces meet at an edge. The order of all changes is fixed: shortest edges first, then face by face and
-/// vertex by vertex. \param plane  plane of the body on which each face lies; -1 within it \param sizes sizes
-/// of blocks: edges and ways are measured by the size of the blocks there \param stone  stone of each cell
-/// whose surface blocks follow, -1: of none; empty: they follow none
+/// faces meet at an edge. Only vertices that nearly touch merge where they lie on surfaces of different
+/// stones. The order of all changes is fixed: shortest edges first, then face by face and vertex by vertex.
+///
+/// \param plane  plane of the body on which each face lies; -1 within it
+/// \param sizes  sizes of blocks: edges and ways are measured by the size of the blocks there
+/// \param stone  stone of each cell whose surface blocks follow, -1: of none; empty: they follow none
 RegularisedCells regularise(Cells<3>& cells, const Prism& body, const std::vector<int>& plane,
                             const RegularCells& asked, const BlockSizes& sizes = BlockSizes(1.0),
                             std::span<const int> stone = {});

@@ -29,6 +29,8 @@ constexpr double kAcross = 0.3;
 /// Cosine of the angle between a face and the surface of a stone at a vertex from which on the vertex lies on
 /// an edge of the stone.
 constexpr double kCosineAtEdge = 0.9;
+/// Distance, in sizes of a block, at which vertices merge even if they lie on surfaces of two stones.
+constexpr double kTouching = 0.02;
 /// Share of its flatness by which a fan must be better than another, beyond rounding.
 constexpr double kRounding = 1e-9;
 
@@ -214,11 +216,21 @@ class CellRegulariser {
     return true;
   }
 
-  /// Returns the places where vertices may merge: on all planes of the body on which any of them lies.
+  /// Returns the places where vertices may merge: on all planes of the body, and surfaces of stones, on which
+  /// any of them lies. Vertices that nearly touch leave a surface, by no more than their distance.
   std::vector<Vec<3>> places_of(const std::vector<int>& group, const std::vector<int>& planes) const {
     std::vector<Vec<3>> places;
     for (const int v : group)
       if (planes_[v] == planes) places.push_back(at(v));
+    if (places.empty() && nearly_touch(group)) {
+      const auto of_body = [this](std::vector<int> of) {
+        std::erase_if(of, [this](int plane) { return plane >= static_cast<int>(body_.planes().size()); });
+        return of;
+      };
+      for (const int v : group)
+        if (of_body(planes_[v]) == of_body(planes)) places.push_back(at(v));
+      return places;
+    }
     if (places.size() == 2 && group.size() == 2) {
       const Vec<3> from = places[0], edge = places[1] - places[0];
       for (const double share : {0.25, 0.5, 0.75}) places.push_back(from + share * edge);
@@ -228,6 +240,12 @@ class CellRegulariser {
       places.push_back(sum * (1.0 / static_cast<double>(places.size())));
     }
     return places;
+  }
+
+  bool nearly_touch(const std::vector<int>& group) const {
+    return std::ranges::all_of(group, [&](int v) {
+      return norm(at(v) - at(group.front())) < kTouching * size_ * relative_[group.front()];
+    });
   }
 
   /// Lets the first of some vertices take the places of all in the corners of faces. Faces with two corners
