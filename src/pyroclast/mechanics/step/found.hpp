@@ -234,7 +234,7 @@ struct FoundContactForces {
       Truth acts = zero > zero;
       if (k < of.count) {
         area_now = areas.area[k];
-        acts = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.joined_points[k])) &
+        acts = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.silent_points[k])) &
                (p.overlap > not_counted) & (area_now > zero) &
                (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
       }
