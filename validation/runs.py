@@ -97,7 +97,7 @@ def physics_version(program: str = PROGRAM, kinds: frozenset[str] = frozenset())
 
 def kinds(deck: pathlib.Path, changes: Sequence[str] = ()) -> frozenset[str]:
     """Kinds of a deck with changes, by the names that `only` in [[changed]] of validation/reference.toml has: "finite"
-    kinematics, and stones in space that blocks have "followed"."""
+    kinematics, contacts "found in space", and stones in space that blocks have "followed"."""
     tables = tomllib.loads(deck.read_text())
     stated = dict(change.split("=", 1) for change in changes)
     specimen = tables.get("specimen", {})
@@ -107,6 +107,7 @@ def kinds(deck: pathlib.Path, changes: Sequence[str] = ()) -> frozenset[str]:
 
     is_in_space = "depth" in specimen or specimen.get("shape") in ("cylinder", "polyhedra")
     has = {"finite": value("mechanics", "kinematics") == "finite",
+           "found in space": is_in_space and value("mechanics", "contacts") == "found",
            "followed": is_in_space and value("superposition", "rule") == "follow"}
     return frozenset(kind for kind, is_one in has.items() if is_one)
 

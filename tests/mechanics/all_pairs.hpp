@@ -118,7 +118,8 @@ class PairOfFacets<3> {
     bool presses = false;
     for (int k = 0; k < Overlap::kMost; ++k) {
       PressedPoint<3>& point = points_[k];
-      if (k >= overlap.count || !RubbingLaw::goes_in(p.gap[k], most_depth) || areas.area[k] <= 0.0) {
+      if (k >= overlap.count || is_steep(overlap, k) || !RubbingLaw::goes_in(p.gap[k], most_depth) ||
+          areas.area[k] <= 0.0) {
         law.let_go(point);
         areas.area[k] = 0.0;
         areas.points[k].share = areas.points[k].slope = areas.points[k].depth = 0.0;
@@ -141,6 +142,9 @@ class PairOfFacets<3> {
   }
 
  private:
+  static bool is_steep(const Overlap& overlap, int k) {
+    return overlap.corners[k].kind == OverlapCorner::Kind::steep;
+  }
   bool is_like(const Overlap& overlap) const {
     return overlap.count == overlap_.count &&
            std::equal(overlap.corners.begin(), overlap.corners.begin() + overlap.count,
@@ -185,7 +189,7 @@ class PairOfFacets<3> {
           if (norm(p.on_a(k) - then[i]) < norm(p.on_a(k) - then[nearest])) nearest = i;
         add(point, points_[nearest]);
       }
-      if (point.area == 0.0 || areas.area[k] <= 0.0) {
+      if (point.area == 0.0 || areas.area[k] <= 0.0 || is_steep(overlap, k)) {
         point = {};
         continue;
       }

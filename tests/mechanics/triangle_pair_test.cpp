@@ -111,7 +111,7 @@ bool is_at_kink(const Pressed& p, const Springs& s) {
     const double depth = p.areas.points[k].depth;
     kink = kink || std::abs(pair.gap[k]) < 1e-3 || std::abs(depth - 1.0) < 0.02 ||
            std::abs(depth - 3.0) < 0.02 || norm(pair.place[next] - pair.place[k]) < 0.01 ||
-           p.overlap.corners[k].kind == OverlapCorner::Kind::fixed;
+           p.overlap.corners[k].has_fixed_place();
     for (const auto& weights : {pair.at_a[k], pair.at_b[k]})
       for (const double weight : weights) kink = kink || (weight != 0.0 && weight < 0.005);
   }

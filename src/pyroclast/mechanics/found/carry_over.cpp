@@ -22,8 +22,9 @@ bool have_same_corners(const Overlap& a, const Overlap& b) {
   return same;
 }
 
-/// Tells whether an unbroken contact joins the corner at which a point lies: it presses there alone.
-bool is_joined(const OverlapCorner& corner, unsigned joined) {
+/// Tells whether a point never presses: edges cross steeply there, or an unbroken contact joins the corner at
+/// which it lies, and presses alone.
+bool is_silent(const OverlapCorner& corner, unsigned joined) {
   const auto at = [&](int i) { return (joined >> static_cast<unsigned>(i) & 1U) != 0; };
   switch (corner.kind) {
     case OverlapCorner::Kind::of_a:
@@ -35,6 +36,8 @@ bool is_joined(const OverlapCorner& corner, unsigned joined) {
       return false;
     case OverlapCorner::Kind::crossing:
       return false;
+    case OverlapCorner::Kind::steep:
+      return true;
   }
   return false;
 }
@@ -196,10 +199,10 @@ void see_overlap(FoundRow<3>& row, int lane, const TriangleCorners& corners, dou
   bool is_lasting = seen.count > 0;  // places of fixed corners follow anew, and the size of tiny overlaps
   for (int k = 0; k < Overlap::kMost; ++k) {
     const bool is_point = k < seen.count;
-    is_lasting = is_lasting && !(is_point && seen.corners[k].kind == OverlapCorner::Kind::fixed);
-    std::uint32_t joined = row.joined_points[k];
-    set_bit(joined, lane, is_point && is_joined(seen.corners[k], row.joined[lane]));
-    row.joined_points[k] = static_cast<std::uint8_t>(joined);
+    is_lasting = is_lasting && !(is_point && seen.corners[k].has_fixed_place());
+    std::uint32_t silent = row.silent_points[k];
+    set_bit(silent, lane, is_point && is_silent(seen.corners[k], row.joined[lane]));
+    row.silent_points[k] = static_cast<std::uint8_t>(silent);
   }
   row.sides.number[lane] = is_lasting ? sides : -1.0;
   set_bit(row.changed, lane, row.overlap[lane].count > 0 && !have_same_corners(row.overlap[lane], seen));
@@ -244,7 +247,7 @@ bool carry_over(const FoundRows<3>& found, FoundRow<3>& row, int lane, const Tri
   const bool is_handed_over = (row.handed_over >> static_cast<unsigned>(lane) & 1U) != 0;
   for (int k = 0; k < Overlap::kMost; ++k) {
     PointNumbers& point = carried[k];
-    const bool counts = areas.area[k] > 0.0 && !is_joined(overlap.corners[k], row.joined[lane]);
+    const bool counts = areas.area[k] > 0.0 && !is_silent(overlap.corners[k], row.joined[lane]);
     if (!counts && !is_handed_over) point = points.fresh();
     point.area = counts && point.area > 0.0 ? areas.area[k] : 0.0;
     points.put(k, point);

@@ -60,8 +60,7 @@ struct ShapesOfRow<3> {
   Line sides;             ///< see FoundContactForces::Sides; less than 0 where not known
   /// Bits of the lanes where `seen` has other corners than `overlap`, and where it may have other numbers.
   std::uint32_t changed, renewed;
-  std::array<std::uint8_t, Overlap::kMost>
-      joined_points;                         ///< bits of the points that an unbroken contact joins
+  std::array<std::uint8_t, Overlap::kMost> silent_points;  ///< bits of the points that never press
   std::array<std::uint32_t, kLanes> joined;  ///< bits of the corners that an unbroken contact joins
   std::uint32_t asked;                       ///< bits of the lanes whose overlap the last step went through
 };

@@ -189,13 +189,15 @@ Overlap overlap_of(const Triangle& a, const Triangle& b) {
       const int i = corner.edge_a(), j = corner.edge_b();
       const Vec<3> edge_a = a[(i + 1) % 3] - a[i], edge_b = b[(j + 1) % 3] - b[j];
       const Vec<3> across = cross(edge_a, edge_b);
-      const double least =
-          std::max(Overlap::kParallel * norm(edge_a) * norm(edge_b), Overlap::kSteepest * norm(across));
-      if (std::abs(dot(across, plane.normal)) >= least) {
+      const double along_normal = std::abs(dot(across, plane.normal));
+      const double parallel = Overlap::kParallel * norm(edge_a) * norm(edge_b),
+                   steep = Overlap::kSteepest * norm(across);
+      if (along_normal >= std::max(parallel, steep)) {
         corner.kind = Kind::crossing;
       } else {
         corner.at_a = weights_on_edge(flat_a, i, at);
         corner.at_b = weights_on_edge(flat_b, j, at);
+        if (along_normal < steep && norm(across) >= parallel) corner.kind = Kind::steep;
         is_straight[k] = dot(edge_a, edge_b) > 0.0;
         straight += is_straight[k] ? 1 : 0;
       }

@@ -30,7 +30,8 @@ struct OverlapCorner {
     crossing,  ///< crossing of an edge of a and an edge of b
     /// Place that does not follow the edges: where they are almost parallel their crossing would run along
     /// them, and where they coincide rounding alone says which corner it is.
-    fixed
+    fixed,
+    steep  ///< such a place, where edges cross so steeply that they do not press, see Overlap::kSteepest
   };
   Kind kind = Kind::fixed;
   /// Edges of the overlap before and behind the corner. Edge i goes from corner i to the next one: 0 to 2 are
@@ -38,6 +39,7 @@ struct OverlapCorner {
   int before = 0, behind = 0;
   std::array<double, 3> at_a{}, at_b{};  ///< weights of the corners of a and b at a fixed place
 
+  bool has_fixed_place() const { return kind == Kind::fixed || kind == Kind::steep; }
   int edge_a() const { return std::min(before, behind); }      ///< edge of a that crosses
   int edge_b() const { return std::max(before, behind) - 3; }  ///< edge of b that crosses
 };

@@ -232,7 +232,7 @@ struct FoundContactForces {
     for (int k = 0; k < kPoints; ++k) {
       acts[k] = zero > zero;
       if (k >= of.count) continue;
-      acts[k] = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.joined_points[k])) &
+      acts[k] = Truth::from_bits(of.exists[k] & live & ~static_cast<unsigned>(row.silent_points[k])) &
                 (p.overlap > not_counted) & (areas.area[k] > zero) &
                 (now.goes_in[k] | (now.handed_over & (now.area_before[k] > zero)));
       works = works | acts[k];
