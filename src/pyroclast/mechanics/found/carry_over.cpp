@@ -157,6 +157,8 @@ int nearest(const Vec<3>& to, const std::array<Vec<3>, Overlap::kMost>& places, 
   return best;
 }
 
+/// Returns the heirs among the points of a new overlap.
+///
 /// \param weight  of the earlier points: their areas, or 1 of each where none bears
 Heirs heirs_of(const Overlap& earlier, const TrianglePair<double>& pair_then, const Overlap& overlap,
                const TrianglePair<double>& pair, const std::array<double, Overlap::kMost>& weight) {
