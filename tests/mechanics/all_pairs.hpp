@@ -265,7 +265,9 @@ class AllPairs {
 };
 
 /// Lets loose boxes fall on held ones, and expects that they go the way that they go with all pairs in each
-/// step. \param held  number of the first blocks, which are held
+/// step.
+///
+/// \param held  number of the first blocks, which are held
 template <int Dim>
 void expect_the_way_of_all_pairs(const ModelOf<Dim>& model, int held, const std::vector<Vec<Dim>>& velocities,
                                  double duration, int every) {
