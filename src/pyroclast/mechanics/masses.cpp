@@ -14,6 +14,9 @@ namespace {
 
 /// Strain whose forces count as none beside the forces that a body bears: some 3 Pa in concrete.
 constexpr double kNoStrain = 1e-10;
+/// Growth of a gridpoint's stiffness from which on its scaled mass follows; a step with a safety of 0.8 bears
+/// it.
+constexpr double kMuchStiffer = 1.5;
 
 }  // namespace
 
@@ -25,6 +28,22 @@ void Masses<Dim>::measure_stiffness() {
   for (int g = 0; g < body_.model.gridpoint_count(); ++g)
     body_.stiffness[g] = body_.state.stiffness[body_.layout.gridpoint_slot[g]];
   if (body_.found) FoundContacts<Dim>(body_).add_stiffness(body_.stiffness);
+}
+
+template <int Dim>
+void Masses<Dim>::follow_stiffness() {
+  if (!are_scaled()) return;
+  std::vector<double> before = body_.stiffness;
+  measure_stiffness();
+  bool is_stiffer = false;
+  for (std::size_t g = 0; g < before.size(); ++g)
+    is_stiffer = is_stiffer || body_.stiffness[g] > kMuchStiffer * before[g];
+  if (!body_.model.ranks().any(is_stiffer)) {
+    body_.stiffness = std::move(before);
+    return;
+  }
+  const std::vector<double> mass_before = scale();
+  take(body_.model.ranks().together([&] { return sums(mass_before); }));
 }
 
 template <int Dim>

@@ -35,6 +35,9 @@ class Masses {
   /// matrix, zones and contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the
   /// step is safe for any shape.
   void measure_stiffness();
+  /// Measures the stiffness anew, and lets scaled masses follow it if it has risen somewhere by more than the
+  /// margin of the time step: faces whose sides slide far on each other stiffen, see FaceFrames::stiffening.
+  void follow_stiffness();
   /// Scales the masses to the stiffness, and returns those before; real masses stay. `take` ends it.
   std::vector<double> scale();
   /// Returns the sums of stiffness and masses: a collective, for `take`.

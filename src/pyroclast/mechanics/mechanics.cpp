@@ -19,6 +19,9 @@ namespace {
 /// Steps from one look at faces that are to be torn or handed over to the next: whatever the batches, the
 /// same steps of a run.
 constexpr int kStepsToHandOver = 64;
+/// Steps after which masses follow a stiffness that has grown. A face slides little in so many steps.
+constexpr int kStepsToFollow = 1024;
+static_assert(kStepsToFollow % kStepsToHandOver == 0);
 /// Largest ratio between the time steps of a body and of a state that it takes over.
 constexpr double kSameStep = 2.0;
 
@@ -168,8 +171,8 @@ void Mechanics<Dim>::change_properties(const Before& before, UnderChange& under_
   masses.take(sums);
   if (are_real && limit < time_step() * (1.0 - 1e-9))
     throw Error(fmt::format(
-        "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
-        "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
+        "the body got stiffer, at its new temperature or as its faces slid: the time step {:.3g} s of its real "
+        "mass is not stable any more (now {:.3g} s); start from a smaller safety, or scale the mass",
         time_step(), limit));
 }
 
@@ -213,6 +216,11 @@ int Mechanics<Dim>::steps_to_hand_over() {
   if (since == 0) {
     if (turns) tear_turned_faces();
     if (body_->found) FoundContacts<Dim>(*body_).hand_over();
+    if (turns && body_->steps % kStepsToFollow == 0) {
+      mover_.take_from_owners();
+      Masses<Dim>(*body_).follow_stiffness();
+      body_->books.mass_scaling += std::exchange(body_->books.begun_mass_scaling, 0.0);
+    }
   }
   return kStepsToHandOver - since;
 }

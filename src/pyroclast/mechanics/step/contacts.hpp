@@ -71,7 +71,42 @@ struct FaceFrames {
     }
   }
 
+  /// Returns by how many times the turn of a face's frame stiffens the face. Where its sides have slid on
+  /// each other, a turn opens or closes its points: a side that moves one corner moves all points, the more
+  /// so the longer the way against the face. So rows of (1 + way)² times the stiffness bound those of the
+  /// face.
+  static Real stiffening(const State<Dim>& s, int pack, const TurningFrame<Dim, Real>& frame) {
+    const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
+    Real area = 0.0;
+    for (int at = first; at < last; ++at) area += Real::load(s.layout.points[at].area);
+    Real length = area / s.thickness, to_unit = 1.0;
+    if constexpr (Dim == 2)
+      to_unit = 1.0 / length;
+    else
+      length = sqrt(area);
+    Real way = 0.0;
+    for (int at = first; at < last; ++at) {
+      const PointPack& point = s.layout.points[at];
+      const Vector jump = R::gather_differences(s.displacement, point.b, point.a);
+      Real of_all = 0.0, of_one = 0.0;
+      for (int other = first; other < last; ++other) {
+        const auto weight = weights(s, other, first);
+        Real moved = 0.0;
+        for (int t = 0; t + 1 < Dim; ++t) moved += weight[t] * dot(jump, frame.tangents[t]);
+        of_all += abs(moved);
+        of_one = larger(of_one, abs(moved) * (area / Real::load(s.layout.points[other].area)));
+      }
+      const auto is_near = dot(jump, frame.normal) < length * kNear;
+      way = larger(way, select(is_near, larger(of_all, of_one) * to_unit, 0.0));
+    }
+    if (!s.left_out.empty()) way = select(Real::Truth::from_bits(s.left_out[pack]), Real(0.0), way);
+    return (1.0 + way) * (1.0 + way);
+  }
+
  private:
+  /// Gap over the size of a face from which on its sides bear nothing soon.
+  static constexpr double kNear = 0.01;
+
   /// Returns the weights of the gridpoints of a point in the gradient of their face.
   static std::array<Real, Dim - 1> weights(const State<Dim>& s, int at, [[maybe_unused]] int first) {
     if constexpr (Dim == 2)
@@ -249,9 +284,11 @@ struct Contacts {
   [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_pack, int last_pack) {
     for (int pack = first_pack; pack < last_pack; ++pack) {
       const auto frame = Frames::template of<kKinematics>(s, pack);
+      Real stiffer = 1.0;
+      if constexpr (kKinematics == Kinematics::finite) stiffer = Frames::stiffening(s, pack, frame);
       const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
       for (int at = first; at < last; ++at) {
-        const Real area = Real::load(s.layout.points[at].area);
+        const Real area = Real::load(s.layout.points[at].area) * stiffer;
         R::store(s.one_set[pack] ? stiffness(constants_of_set(s, pack), frame.normal, area)
                                  : stiffness(own_constants(s, pack, at - first), frame.normal, area),
                  &s.contact_force[slot_of(at, 0)]);
