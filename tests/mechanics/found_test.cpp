@@ -88,6 +88,48 @@ TEST(FoundContactsVerification, BrickSlidesDownAnInclineOfSeveralBlocks) {
   EXPECT_GT(e.dissipated.of("friction"), 0.1 * e.gravity);
 }
 
+// Promise: a bearing, whose law never breaks, is handed over once its sides have slid by 1 % of the face.
+// Before that, the facets of a platen are free for other blocks alone. The block slides on over the platen's
+// facets.
+TEST(FoundContactsVerification, BrickSlidesAlongABearingOfSeveralFacets) {
+  constexpr double kSize = 0.05, kSpeed = 2.0, kFriction = 0.3;
+  ModelOf<2> model = empty_model();
+  std::vector<Vec<2>> corners{{{0.0, -kSize}}, {{5.0 * kSize, -kSize}}};
+  for (int i = 5; i >= 0; --i) corners.push_back({{i * kSize, 0.0}});
+  add_block(model, corners);
+  const int brick = add_block(model, rectangle(0.0, 0.0, kSize, kSize)),
+            first = model.block_gridpoints[brick];
+  model.join_faces({6, 7}, {first + 1, first}, 0);
+  auto m = mechanics<2>(model, rubbing(1e10, kFriction), flying(kGravity, 0.3), 30e9);
+  hold(m, 0);
+  std::vector<Vec<2>> velocity(model.position.size());
+  std::fill(velocity.begin() + first, velocity.end(), Vec<2>{{kSpeed, 0.0}});
+  m.begin_moving(velocity);
+  const auto& found = *m.body().found;
+  const auto is_free = [&](int block) {
+    return std::ranges::all_of(found.facets, [&](const BlockFacet<2>& facet) {
+      return facet.block != block || facet.face < 0 || facet.is_free;
+    });
+  };
+  EXPECT_TRUE(is_free(0) && !found.is_handed_over[0]);
+  m.advance(64);
+  EXPECT_EQ(found.is_handed_over[0], kSpeed * m.time() > 0.01 * kSize);
+  const double pressed = 2400.0 * kGravity * kSize / 1e10;  // m, at rest
+  double highest = -1.0, deepest = 1.0;
+  while (m.time() < 0.08) {
+    m.advance(500);
+    highest = std::max(highest, lowest(m, brick));
+    deepest = std::min(deepest, lowest(m, brick));
+  }
+  EXPECT_TRUE(found.is_handed_over[0] && is_free(brick));
+  const Vec<2> v = velocity_of_block(m, brick);
+  EXPECT_NEAR((kSpeed - v[0] + kFriction * v[1]) / (kFriction * kGravity * m.time()), 1.0, 1e-3);
+  EXPECT_LT(highest, 0.0);
+  EXPECT_GT(deepest, -5.0 * pressed);
+  const EnergyLedger e = m.totals().energy();
+  EXPECT_LT(std::abs(e.error()), 1e-5 * e.kinetic);
+}
+
 // Promise: a broken face that is handed over presses on as it did: neither energy nor forces change.
 TEST(FoundContacts, FaceThatIsHandedOverPressesOn) {
   const ModelOf<2> model = two_rows(3, 0.01);

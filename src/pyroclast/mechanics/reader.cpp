@@ -117,35 +117,49 @@ SymmetricTensor<Dim> Reader<Dim>::creep_strain(int zone) const {
 }
 
 template <int Dim>
-ContactFrame<Dim> Reader<Dim>::frame_of_forces(int contact) const {
-  const Contact<Dim>& c = body_.model.contacts[contact];
-  if (body_.parameters.kinematics == Kinematics::finite) return TurningFrame<Dim>(gradient_of_forces(c.face));
-  return {c.normal, c.tangents};
-}
-
-template <int Dim>
-typename TurningFrame<Dim>::Columns Reader<Dim>::gradient_of_forces(int face) const {
+template <class Moved>
+ContactFrame<Dim> Reader<Dim>::frame(int contact, Moved moved) const {
   const Model& model = body_.model;
-  const int first = model.face_contacts[face], last = model.face_contacts[face + 1];
+  const Contact<Dim>& of = body_.model.contacts[contact];
+  if (body_.parameters.kinematics == Kinematics::small) return {of.normal, of.tangents};
+  const int first = model.face_contacts[of.face], last = model.face_contacts[of.face + 1];
+  typename TurningFrame<Dim>::Columns columns;
   if constexpr (Dim == 2) {
     const auto &c = body_.model.contacts[first], &d = body_.model.contacts[first + 1];
-    const auto at = [&](int g) { return body_.model.position[g] + displacement_of_force(g); };
-    return {((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5};
+    const auto at = [&](int g) { return body_.model.position[g] + moved(g); };
+    columns = {((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5};
   } else {
-    const auto point = [&](int contact) { return body_.layout.contact_slot[contact] / kLanes; };
+    const auto point = [&](int c) { return body_.layout.contact_slot[c] / kLanes; };
     const int lane = body_.layout.contact_slot[first] % kLanes;
     const auto& before = body_.arrays.face_gradient[body_.layout.face_pack_of_point[point(first)]];
-    typename TurningFrame<Dim>::Columns columns;
     for (int t : {0, 1}) {
       for (int i = 0; i < Dim; ++i) columns[t][i] = before.tangent[t][i][lane];
       for (int c = first; c < last; ++c) {
-        const Contact<Dim>& contact = body_.model.contacts[c];
-        columns[t] += (displacement_of_force(contact.a) + displacement_of_force(contact.b)) *
-                      body_.arrays.turning_weight[2 * point(c) + t].number[lane];
+        const Contact<Dim>& other = body_.model.contacts[c];
+        columns[t] +=
+            (moved(other.a) + moved(other.b)) * body_.arrays.turning_weight[2 * point(c) + t].number[lane];
       }
     }
-    return columns;
   }
+  return TurningFrame<Dim>(columns);
+}
+
+template <int Dim>
+ContactFrame<Dim> Reader<Dim>::frame_of_forces(int contact) const {
+  return frame(contact, [&](int g) { return displacement_of_force(g); });
+}
+
+template <int Dim>
+double Reader<Dim>::slide(int face) const {
+  const int first = body_.model.face_contacts[face];
+  const Vec<Dim> normal = frame(first, [&](int g) { return displacement(g); }).normal;
+  double most = 0.0;
+  for (int c = first; c < body_.model.face_contacts[face + 1]; ++c) {
+    const Contact<Dim>& contact = body_.model.contacts[c];
+    const Vec<Dim> jump = displacement(contact.b) - displacement(contact.a);
+    most = std::max(most, norm(jump - normal * dot(jump, normal)));
+  }
+  return most;
 }
 
 template <int Dim>

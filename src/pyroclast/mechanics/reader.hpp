@@ -66,6 +66,8 @@ class Reader {
   double opening(int contact) const;
   /// Returns the directions of a contact at the displacements of the last forces.
   ContactFrame<Dim> frame_of_forces(int contact) const;
+  /// Returns the longest way that a point of a face has slid, at the present displacements, m.
+  double slide(int face) const;
 
   // The next functions return a value of each gridpoint, zone or contact.
   std::vector<Vec<Dim>> displacements() const;
@@ -79,8 +81,10 @@ class Reader {
   /// Turns a tensor of a zone's own frame into the frame of the model.
   SymmetricTensor<Dim> in_frame_of_model(const Rotation<Dim>& rotation,
                                          const SymmetricTensor<Dim>& tensor) const;
-  /// Returns the gradient of a face that turns, see TurningFrame.
-  typename TurningFrame<Dim>::Columns gradient_of_forces(int face) const;
+  /// Returns the directions of a contact.
+  /// \param moved  returns the displacement of a gridpoint, m
+  template <class Moved>
+  ContactFrame<Dim> frame(int contact, Moved moved) const;
 
   const Body<Dim>& body_;
 };

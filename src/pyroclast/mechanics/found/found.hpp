@@ -13,7 +13,10 @@
 /// Contacts that are found while a body moves: its data.
 ///
 ///     facet   edge, or triangle of a zone, on the outline of a block; free where no contact joins it to
-///             another block, or where that contact is broken and handed over
+///             another block, where that contact is handed over, or on a bearing
+///     bearing face whose law never breaks but lets go of what it pulls; and the block that has no other
+///     ones,
+///             such as a platen
 ///     pair    two free facets of different blocks that may press each other (found/edge_pair.hpp,
 ///             found/triangle_pair.hpp)
 ///     point   end or corner of the overlap of a pair
@@ -33,8 +36,9 @@ struct BlockFacet {
   std::array<int, Dim> gridpoints{};
   int face = -1;  ///< face of the model that joins it to another block; -1 where none does
   bool is_free = false;
-  double length = 0.0;  ///< length of the longest edge, m, without load
-  double extent = 0.0;  ///< length, m, or area, m², without load
+  bool begins_free = false;  ///< true for one that is free before any face is handed over
+  double length = 0.0;       ///< length of the longest edge, m, without load
+  double extent = 0.0;       ///< length, m, or area, m², without load
 };
 
 /// Numbers of a point of a pair.
@@ -136,6 +140,7 @@ struct FoundData {
   GridpointContacts at_gridpoint;
   std::vector<int> face_of_lane;     ///< face of each lane of the packs of faces; -1 where idle
   std::vector<bool> is_handed_over;  ///< by face of the model; true for those of gone blocks too
+  std::vector<int> bearings;         ///< faces that are handed over once their sides have slid
 
   std::vector<FoundPair<Dim>> pairs;  ///< pairs that are near, or not as new ones, by key
   std::vector<FarPair> far;           ///< far pairs, by key

@@ -29,6 +29,8 @@ constexpr double kTouching = 1e-6;
 /// Cosine between the facets of a torn face below which its pairs begin anew: it leans, and does not spin on
 /// its other side.
 constexpr double kLeans = 0.5;
+/// Way that the sides of a bearing slide on each other until it is handed over, over the size of its face.
+constexpr double kSlidBearing = 0.01;
 /// Bound of a change of gaps, overlaps and cosines over the reach, while gridpoints go that far.
 constexpr double kMargin = 5.0;
 /// Distance from the origin, over the mean edge, beyond which nothing meets any more.
@@ -58,6 +60,11 @@ std::vector<double> broken_internals(const LawTable& law, int dim) {
     if (const int place = place_of(law, what, dim); place >= 0)
       internals[static_cast<std::size_t>(place)] = 1.0;
   return internals;
+}
+
+/// Tells whether points of a law never break.
+bool never_breaks(const LawTable& law, int dim) {
+  return std::ranges::none_of(kDamages, [&](Remembers what) { return place_of(law, what, dim) >= 0; });
 }
 
 /// Tells whether a broken point of a law lets go of what it pulls.
@@ -152,7 +159,7 @@ void FoundContacts<Dim>::make(Body<Dim>& body) {
 
   const std::vector<int> block_of = gridpoint_blocks(model);
   const auto add_facet = [&](const std::array<int, Dim>& gridpoints, int face) {
-    found.facets.push_back({block_of[gridpoints[0]], gridpoints, face, face < 0, 0.0, 0.0});
+    found.facets.push_back({.block = block_of[gridpoints[0]], .gridpoints = gridpoints, .face = face});
     BlockFacet<Dim>& facet = found.facets.back();
     const auto at = [&](int i) -> const Vec<Dim>& { return model.position[gridpoints[i % Dim]]; };
     for (int i = 0; i < (Dim == 2 ? 1 : Dim); ++i)
@@ -240,6 +247,17 @@ void FoundContacts<Dim>::make(Body<Dim>& body) {
   for (int i = 0; i < std::ssize(serves); ++i)
     if (const int set = FoundContacts(body).set_of_interface(i); set >= 0)
       serves[i] = lets_go(body.properties.contacts[set], Dim);
+  std::vector<bool> only_bears(blocks, true);
+  for (int face = 0; face < model.face_count(); ++face) {
+    const Joint& contact = model.contacts[model.face_contacts[face]];
+    const int set = FoundContacts(body).set_of_interface(contact.interface);
+    if (serves[contact.interface] && never_breaks(body.properties.contacts.law(set), Dim))
+      found.bearings.push_back(face);
+    else
+      only_bears[block_of[contact.a]] = only_bears[block_of[contact.b]] = false;
+  }
+  for (BlockFacet<Dim>& facet : found.facets)
+    facet.is_free = facet.begins_free = facet.face < 0 || only_bears[facet.block];
   found.of_body = interfaces_of_loose_bodies(model);
   const std::string& name = found.parameters.like;
   const int like = name.empty() ? 0 : place_in(model.interface_names, name);
@@ -344,6 +362,13 @@ template <int Dim>
 int FoundContacts<Dim>::face_of(const Key& key) const {
   const int face = found_.facets[key[0]].face;
   return found_.facets[key[1]].face == face ? face : -1;
+}
+
+/// Tells whether no contact of the beginning joins the facets of a pair.
+template <int Dim>
+bool FoundContacts<Dim>::may_meet(const Key& key) const {
+  const int face = face_of(key);
+  return face < 0 || found_.is_handed_over[face];
 }
 
 /// Returns a set of parameters of a pair: that of a contact of its own face; else that of the nearest contact
@@ -601,7 +626,7 @@ std::optional<typename FoundContacts<Dim>::Box> FoundContacts<Dim>::box_of(int i
 /// Lists a pair of free facets as far where their boxes meet and it may press before the next such search.
 template <int Dim>
 void FoundContacts<Dim>::list_if_far(int a, const Box& box_a, int b, const Box& box_b) {
-  if (found_.facets[a].block == found_.facets[b].block || !is_own({a, b})) return;
+  if (found_.facets[a].block == found_.facets[b].block || !may_meet({a, b}) || !is_own({a, b})) return;
   for (int k = 0; k < Dim; ++k)
     if (box_a.low[k] > box_b.high[k] || box_b.low[k] > box_a.high[k]) return;
   const Key key{std::min(a, b), std::max(a, b)};
@@ -1073,9 +1098,19 @@ void FoundContacts<Dim>::follow_masses() {
 
 // Faces that are handed over
 
+/// Tells whether the sides of a face have slid so far on each other that it is to be handed over, as a
+/// bearing. Beyond that a contact of the beginning would press a side where it is no more.
+template <int Dim>
+bool FoundContacts<Dim>::has_slid(int face) const {
+  double extent = 0.0;
+  for (int c = body_.model.face_contacts[face]; c < body_.model.face_contacts[face + 1]; ++c)
+    extent += body_.model.contacts[c].area / body_.model.thickness;
+  return Reader<Dim>(body_).slide(face) > kSlidBearing * (Dim == 2 ? extent : std::sqrt(extent));
+}
+
 /// Returns the faces of the whole body that are to be handed over: a collective.
 template <int Dim>
-std::vector<int> FoundContacts<Dim>::broken_faces() const {
+std::vector<int> FoundContacts<Dim>::faces_to_hand_over() const {
   std::vector<int> faces;
   const auto& s = body_.arrays;
   for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {
@@ -1099,6 +1134,12 @@ std::vector<int> FoundContacts<Dim>::broken_faces() const {
   }
   for (int face = 0; face < std::ssize(body_.torn); ++face)
     if (body_.torn[face] && !found_.is_handed_over[face]) faces.push_back(face);
+  const ChunkList::Items own = body_.model.gridpoint_chunks().own();
+  for (const int face : found_.bearings) {
+    const Joint& contact = body_.model.contacts[body_.model.face_contacts[face]];
+    if (!found_.is_handed_over[face] && (own.contain(contact.a) || own.contain(contact.b)) && has_slid(face))
+      faces.push_back(face);
+  }
   faces = body_.model.ranks().collect(faces);
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -1223,7 +1264,7 @@ void FoundContacts<Dim>::take_history(const TrianglePair<double>& p, int points,
 
 template <int Dim>
 void FoundContacts<Dim>::hand_over() {
-  const std::vector<int> faces = broken_faces();
+  const std::vector<int> faces = faces_to_hand_over();
   if (faces.empty()) return;
   take_back();
   take_from_owners();
@@ -1432,7 +1473,7 @@ void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
   if (!visitor.replaces()) return;
 
   std::fill(found_.is_handed_over.begin(), found_.is_handed_over.end(), false);
-  for (BlockFacet<Dim>& facet : found_.facets) facet.is_free = facet.face < 0;
+  for (BlockFacet<Dim>& facet : found_.facets) facet.is_free = facet.begins_free;
   for (const int face : faces) mark_handed_over(face);
   found_.pairs.clear();
   visitor.require(keys.size() % 3 == 0, "pairs", "is cut off");
@@ -1442,7 +1483,7 @@ void FoundContacts<Dim>::visit_state(StateVisitor& visitor) {
     visitor.require(key[0] < key[1] && (i == 0 || Key{keys[i - 3], keys[i - 2]} < key), "pairs",
                     "are not in order");
     visitor.require(found_.facets[key[0]].block != found_.facets[key[1]].block, "pairs", "are of one block");
-    visitor.require(found_.facets[key[0]].is_free && found_.facets[key[1]].is_free, "pairs",
+    visitor.require(found_.facets[key[0]].is_free && found_.facets[key[1]].is_free && may_meet(key), "pairs",
                     "names a facet that is not free");
     const bool is_handed_over = keys[i + 2] != 0;
     visitor.require(!is_handed_over || face_of(key) >= 0, "pairs", "hands over facets of two faces");

@@ -34,7 +34,8 @@ class FoundContacts {
   void take_from_owners();
   /// Returns the gridpoints that pairs in rows share with each of the other ranks.
   std::map<int, SharedGridpoints> shared_gridpoints() const;
-  /// Hands faces over to pairs whose contact points are all broken, with all that the points remember.
+  /// Hands faces over to pairs whose contact points are all broken, and bearings whose sides have slid, with
+  /// all that the points remember.
   void hand_over();
   /// Forgets the pairs of blocks that are gone, but for what they lost, and frees what such blocks covered.
   void forget_gone();
@@ -95,7 +96,9 @@ class FoundContacts {
   void take_back();
   void mark_handed_over(int face);
   void bury_gone();
-  std::vector<int> broken_faces() const;
+  std::vector<int> faces_to_hand_over() const;
+  bool has_slid(int face) const;
+  bool may_meet(const Key& key) const;
   std::vector<Pair> pairs_of_face(int face) const;
   double shear_stiffness_of(int contact) const;
   void take_history(const TrianglePair<double>& p, int points, int first, int last, Pair& pair) const;
