@@ -30,7 +30,7 @@ constexpr double kTouching = 1e-6;
 /// its other side.
 constexpr double kLeans = 0.5;
 /// Way that the sides of a bearing slide on each other until it is handed over, over the size of its face.
-constexpr double kSlidBearing = 0.01;
+constexpr double kSlidBearing = 0.1;
 /// Bound of a change of gaps, overlaps and cosines over the reach, while gridpoints go that far.
 constexpr double kMargin = 5.0;
 /// Distance from the origin, over the mean edge, beyond which nothing meets any more.
