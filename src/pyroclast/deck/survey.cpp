@@ -1,6 +1,7 @@
 #include "pyroclast/deck/survey.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <deque>
 #include <iterator>
 #include <set>
@@ -55,6 +56,18 @@ class Numbers {
 
 constexpr std::size_t kNotAsked = -1;
 
+/// Set of answers to one question.
+class AnswerSet {
+ public:
+  void insert(std::size_t answer) { bits_.set(answer); }  ///< Throws std::out_of_range beyond the 64th.
+  void erase(std::size_t answer) { bits_.reset(answer); }
+  bool contains(std::size_t answer) const { return answer < bits_.size() && bits_[answer]; }
+  std::size_t size() const { return bits_.count(); }
+
+ private:
+  std::bitset<64> bits_;
+};
+
 /// Record of one run, of thousands. Questions and keys have the numbers of the surveyor, which keeps their
 /// texts once.
 struct Told {
@@ -88,7 +101,8 @@ struct Found {
   bool in_form = false;
   /// Answers with which the key is read, for each question before it; the other questions have the run's
   /// answers.
-  std::vector<std::set<std::size_t>> with;
+  std::vector<AnswerSet> with;
+  std::vector<std::size_t> deciding;  ///< questions that count and have not all their answers in `with`
 };
 
 template <class Tables>
@@ -243,16 +257,17 @@ class Surveyor {
   /// finding.
   Found find(const Told::Read& read, const SurveyAnswers& given) {
     const SurveyRun::Read& what = key_texts_[read.key];
-    Found f{what, read.key, given, &told_.at(given), is_form(what.table), {}};
+    Found f{what, read.key, given, &told_.at(given), is_form(what.table), {}, {}};
     for (std::size_t i = 0; i < read.after; ++i) {
       const auto& a = f.run->answered[i];
-      f.with.push_back({a.answer});
+      f.with.emplace_back().insert(a.answer);
       const SurveyQuestion question = asked_[a.question];
       if (!counts(f, question)) continue;
       for (std::size_t answer = 0; answer < a.possible->size(); ++answer) {
         const Told& other = told(changed(given, question, answer));
         if (other.reads(read.key) && !is_explained(read.key, other)) f.with[i].insert(answer);
       }
+      if (f.with[i].size() < a.possible->size()) f.deciding.push_back(i);
     }
     return f;
   }
@@ -266,13 +281,10 @@ class Surveyor {
   }
 
   /// Tells whether a run's answers are those with which the key is read.
-  bool is_explained(const Found& f, const Told& run) const {
-    for (std::size_t i = 0; i < f.with.size(); ++i) {
-      const auto& a = f.run->answered[i];
-      if (f.with[i].size() == a.possible->size() || !counts(f, asked_[a.question])) continue;
-      if (!f.with[i].contains(run.answer(a.question))) return false;
-    }
-    return true;
+  static bool is_explained(const Found& f, const Told& run) {
+    return std::ranges::all_of(f.deciding, [&](std::size_t i) {
+      return f.with[i].contains(run.answer(f.run->answered[i].question));
+    });
   }
 
   /// Removes an answer from a finding: one with which the key is read only if questions that follow from it
@@ -287,6 +299,8 @@ class Surveyor {
       if (answer == a.answer || !f.with[i].contains(answer)) continue;
       if (told(changed(as_in_run, asked_[a.question], answer)).reads(f.key)) continue;
       f.with[i].erase(answer);
+      if (std::ranges::find(f.deciding, i) == f.deciding.end() && counts(f, asked_[a.question]))
+        f.deciding.push_back(i);
       return true;
     }
     return false;
