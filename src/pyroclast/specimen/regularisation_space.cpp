@@ -31,6 +31,9 @@ constexpr double kAcross = 0.3;
 constexpr double kCosineAtEdge = 0.9;
 /// Distance, in sizes of a block, at which vertices merge even if they lie on surfaces of two stones.
 constexpr double kTouching = 0.02;
+/// Distance, in sizes of a block, at which vertices on surfaces are as good as one: no face bends as they
+/// merge.
+constexpr double kCoinciding = 1e-5;
 /// Share of its flatness by which a fan must be better than another, beyond rounding.
 constexpr double kRounding = 1e-9;
 
@@ -194,9 +197,10 @@ class CellRegulariser {
     const std::vector<int> cells = cells_of(faces);
     const auto before = loops_of(faces);
     const int kept = group.front();
+    const bool may_bend = !surface_of_face_.empty() && lie_within(kCoinciding, group);
     const Vec<3> place_before = at(kept);
     if (!contract(group, faces) || !std::ranges::all_of(cells, [this](int cell) { return is_ball(cell); }) ||
-        !put_best(kept, places, faces, cells)) {
+        !put_best(kept, places, faces, cells, may_bend)) {
       cells_.vertices[kept] = place_before;
       put(faces, before);
       return false;
@@ -222,7 +226,7 @@ class CellRegulariser {
     std::vector<Vec<3>> places;
     for (const int v : group)
       if (planes_[v] == planes) places.push_back(at(v));
-    if (places.empty() && nearly_touch(group)) {
+    if (places.empty() && lie_within(kTouching, group)) {
       const auto of_body = [this](std::vector<int> of) {
         std::erase_if(of, [this](int plane) { return plane >= static_cast<int>(body_.planes().size()); });
         return of;
@@ -242,9 +246,10 @@ class CellRegulariser {
     return places;
   }
 
-  bool nearly_touch(const std::vector<int>& group) const {
+  /// \param distance  in sizes of a block
+  bool lie_within(double distance, const std::vector<int>& group) const {
     return std::ranges::all_of(group, [&](int v) {
-      return norm(at(v) - at(group.front())) < kTouching * size_ * relative_[group.front()];
+      return norm(at(v) - at(group.front())) < distance * size_ * relative_[group.front()];
     });
   }
 
@@ -290,8 +295,10 @@ class CellRegulariser {
 
   /// Puts a vertex at the one of some places where the zones of cells become roundest, and turns the fans of
   /// its faces for it. Returns false where no place makes them rounder than they were.
+  ///
+  /// \param may_bend  true where faces may be bent beyond the limit
   bool put_best(int vertex, const std::vector<Vec<3>>& places, const std::vector<int>& faces,
-                const std::vector<int>& cells) {
+                const std::vector<int>& cells, bool may_bend) {
     const auto contracted = loops_of(faces);
     std::optional<Vec<3>> best;
     std::vector<std::vector<int>> best_loops;
@@ -299,7 +306,8 @@ class CellRegulariser {
     for (const Vec<3>& place : places) {
       cells_.vertices[vertex] = place;
       put(faces, contracted);
-      if (!std::ranges::all_of(faces, [this](int f) { return turn_to_fan_allowed(cells_.faces[f]); }))
+      if (!std::ranges::all_of(faces,
+                               [&](int f) { return turn_to_fan_allowed(cells_.faces[f]) || may_bend; }))
         continue;
       if (const double flat = flatness_up_to(least, cells); flat < least) {
         least = flat;
