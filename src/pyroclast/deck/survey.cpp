@@ -56,17 +56,10 @@ class Numbers {
 
 constexpr std::size_t kNotAsked = -1;
 
-/// Set of answers to one question.
-class AnswerSet {
- public:
-  void insert(std::size_t answer) { bits_.set(answer); }  ///< Throws std::out_of_range beyond the 64th.
-  void erase(std::size_t answer) { bits_.reset(answer); }
-  bool contains(std::size_t answer) const { return answer < bits_.size() && bits_[answer]; }
-  std::size_t size() const { return bits_.count(); }
-
- private:
-  std::bitset<64> bits_;
-};
+using AnswerSet = std::bitset<64>;  ///< answers to one question, by number
+bool has(const AnswerSet& set, std::size_t answer) {
+  return answer < set.size() && set[answer];
+}
 
 /// Record of one run, of thousands. Questions and keys have the numbers of the surveyor, which keeps their
 /// texts once.
@@ -260,14 +253,14 @@ class Surveyor {
     Found f{what, read.key, given, &told_.at(given), is_form(what.table), {}, {}};
     for (std::size_t i = 0; i < read.after; ++i) {
       const auto& a = f.run->answered[i];
-      f.with.emplace_back().insert(a.answer);
+      f.with.emplace_back().set(a.answer);
       const SurveyQuestion question = asked_[a.question];
       if (!counts(f, question)) continue;
       for (std::size_t answer = 0; answer < a.possible->size(); ++answer) {
         const Told& other = told(changed(given, question, answer));
-        if (other.reads(read.key) && !is_explained(read.key, other)) f.with[i].insert(answer);
+        if (other.reads(read.key) && !is_explained(read.key, other)) f.with[i].set(answer);
       }
-      if (f.with[i].size() < a.possible->size()) f.deciding.push_back(i);
+      if (f.with[i].count() < a.possible->size()) f.deciding.push_back(i);
     }
     return f;
   }
@@ -282,9 +275,8 @@ class Surveyor {
 
   /// Tells whether a run's answers are those with which the key is read.
   static bool is_explained(const Found& f, const Told& run) {
-    return std::ranges::all_of(f.deciding, [&](std::size_t i) {
-      return f.with[i].contains(run.answer(f.run->answered[i].question));
-    });
+    return std::ranges::all_of(
+        f.deciding, [&](std::size_t i) { return has(f.with[i], run.answer(f.run->answered[i].question)); });
   }
 
   /// Removes an answer from a finding: one with which the key is read only if questions that follow from it
@@ -296,9 +288,9 @@ class Surveyor {
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
       const std::size_t answer = run.answer(a.question);
-      if (answer == a.answer || !f.with[i].contains(answer)) continue;
+      if (answer == a.answer || !has(f.with[i], answer)) continue;
       if (told(changed(as_in_run, asked_[a.question], answer)).reads(f.key)) continue;
-      f.with[i].erase(answer);
+      f.with[i].reset(answer);
       if (std::ranges::find(f.deciding, i) == f.deciding.end() && counts(f, asked_[a.question]))
         f.deciding.push_back(i);
       return true;
@@ -311,10 +303,10 @@ class Surveyor {
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
       const SurveyQuestion& question = asked_[a.question];
-      if (!counts(f, question) || f.with[i].size() == a.possible->size()) continue;
+      if (!counts(f, question) || f.with[i].count() == a.possible->size()) continue;
       std::vector<std::string> with, without;
       for (std::size_t answer = 0; answer < a.possible->size(); ++answer)
-        (f.with[i].contains(answer) ? with : without).push_back((*a.possible)[answer]);
+        (has(f.with[i], answer) ? with : without).push_back((*a.possible)[answer]);
       add_condition(key, f, question, with, without);
     }
     return key;
