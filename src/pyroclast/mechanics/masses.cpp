@@ -14,8 +14,7 @@ namespace {
 
 /// Strain whose forces count as none beside the forces that a body bears: some 3 Pa in concrete.
 constexpr double kNoStrain = 1e-10;
-/// Growth of a gridpoint's stiffness from which on its scaled mass follows; a step with a safety of 0.8 bears
-/// it.
+/// Growth of a gridpoint's stiffness from which on scaled masses follow. A safety of 0.8 bears so much.
 constexpr double kMuchStiffer = 1.5;
 
 }  // namespace

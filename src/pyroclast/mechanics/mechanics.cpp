@@ -172,8 +172,7 @@ void Mechanics<Dim>::change_properties(const Before& before, UnderChange& under_
   if (are_real && limit < time_step() * (1.0 - 1e-9))
     throw Error(fmt::format(
         "the body got stiffer, at its new temperature or as its faces slid: the time step {:.3g} s of its "
-        "real "
-        "mass is not stable any more (now {:.3g} s); start from a smaller safety, or scale the mass",
+        "real mass is not stable any more (now {:.3g} s); start from a smaller safety, or scale the mass",
         time_step(), limit));
 }
 

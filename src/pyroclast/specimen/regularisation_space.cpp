@@ -31,8 +31,7 @@ constexpr double kAcross = 0.3;
 constexpr double kCosineAtEdge = 0.9;
 /// Distance, in sizes of a block, at which vertices merge even if they lie on surfaces of two stones.
 constexpr double kTouching = 0.02;
-/// Distance, in sizes of a block, at which vertices on surfaces are as good as one: no face bends as they
-/// merge.
+/// Distance, in sizes of a block, at which vertices on surfaces are one but for rounding: no face bends more.
 constexpr double kCoinciding = 1e-5;
 /// Share of its flatness by which a fan must be better than another, beyond rounding.
 constexpr double kRounding = 1e-9;

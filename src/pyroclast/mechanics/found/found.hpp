@@ -14,9 +14,7 @@
 ///
 ///     facet   edge, or triangle of a zone, on the outline of a block; free where no contact joins it to
 ///             another block, where that contact is handed over, or on a bearing
-///     bearing face whose law never breaks but lets go of what it pulls; and the block that has no other
-///     ones,
-///             such as a platen
+///     bearing face whose law never breaks but lets go of what it pulls; a platen has no other faces
 ///     pair    two free facets of different blocks that may press each other (found/edge_pair.hpp,
 ///             found/triangle_pair.hpp)
 ///     point   end or corner of the overlap of a pair
