@@ -139,7 +139,8 @@ TEST(Regularisation, BendsNoFaceByMoreThanAsked) {
 TEST(Regularisation, MergesCoincidingVerticesWhateverTheBend) {
   constexpr int kCount = 200;
   const Prism body = cuboid(0.1, 0.1, 0.1);
-  const BlockSizes sizes(std::cbrt(body.extent() / kCount));
+  const double size = std::cbrt(body.extent() / kCount), tiny = 1e-7 * size;
+  const BlockSizes sizes(size);
   Random random(3);
   Laguerre<3> made = laguerre_cells(spaced_seeds(body, sizes, kCount, 0.3, random), body);
   Cells<3>& cells = made.cells;
@@ -159,7 +160,6 @@ TEST(Regularisation, MergesCoincidingVerticesWhateverTheBend) {
         ends = {a, b};
       }
     }
-  const double tiny = 1e-7 * std::cbrt(body.extent() / kCount);
   const auto [a, b] = ends;
   cells.vertices[b] = cells.vertices[a] + (cells.vertices[b] - cells.vertices[a]) * (tiny / shortest);
   EXPECT_NEAR(measure(cells, body).shortest_edge, tiny, 1e-3 * tiny);

@@ -291,8 +291,7 @@ class Surveyor {
       if (answer == a.answer || !has(f.with[i], answer)) continue;
       if (told(changed(as_in_run, asked_[a.question], answer)).reads(f.key)) continue;
       f.with[i].reset(answer);
-      if (std::ranges::find(f.deciding, i) == f.deciding.end() && counts(f, asked_[a.question]))
-        f.deciding.push_back(i);
+      if (std::ranges::find(f.deciding, i) == f.deciding.end()) f.deciding.push_back(i);
       return true;
     }
     return false;

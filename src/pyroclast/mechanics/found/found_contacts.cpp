@@ -1104,7 +1104,7 @@ template <int Dim>
 bool FoundContacts<Dim>::has_slid(int face) const {
   double extent = 0.0;
   for (int c = body_.model.face_contacts[face]; c < body_.model.face_contacts[face + 1]; ++c)
-    extent += body_.model.contacts[c].area / body_.model.thickness;
+    extent += body_.model.extent(c);
   return Reader<Dim>(body_).slide(face) > kSlidBearing * (Dim == 2 ? extent : std::sqrt(extent));
 }
 
