@@ -97,7 +97,8 @@ def physics_version(program: str = PROGRAM, kinds: frozenset[str] = frozenset())
 
 def kinds(deck: pathlib.Path, changes: Sequence[str] = ()) -> frozenset[str]:
     """Kinds of a deck with changes, by the names that `only` in [[changed]] of validation/reference.toml has: "finite"
-    kinematics, contacts "found in space", and stones in space that blocks have "followed"."""
+    kinematics, these with the contacts of the start ("finite, first"), contacts "found in space", and stones in space
+    that blocks have "followed"."""
     tables = tomllib.loads(deck.read_text())
     stated = dict(change.split("=", 1) for change in changes)
     specimen = tables.get("specimen", {})
@@ -106,8 +107,10 @@ def kinds(deck: pathlib.Path, changes: Sequence[str] = ()) -> frozenset[str]:
         return stated.get(f"{table}.{key}", tables.get(table, {}).get(key))
 
     is_in_space = "depth" in specimen or specimen.get("shape") in ("cylinder", "polyhedra")
-    has = {"finite": value("mechanics", "kinematics") == "finite",
-           "found in space": is_in_space and value("mechanics", "contacts") == "found",
+    is_finite, are_found = value("mechanics", "kinematics") == "finite", value("mechanics", "contacts") == "found"
+    has = {"finite": is_finite,
+           "finite, first": is_finite and not are_found,
+           "found in space": is_in_space and are_found,
            "followed": is_in_space and value("superposition", "rule") == "follow"}
     return frozenset(kind for kind, is_one in has.items() if is_one)
 

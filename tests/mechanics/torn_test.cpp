@@ -297,6 +297,48 @@ TEST(TornFaces, BlocksThatSpinOnEachOtherPressOn) {
   EXPECT_NEAR(m.read().displacement(model.block_gridpoints[2] - 1)[2], -pressed, 1.1 * pressed);
 }
 
+/// Drags a block over another, from which it has broken off and which it presses, until it has passed it.
+template <int Dim>
+void expect_to_part_once_past() {
+  SCOPED_TRACE(std::to_string(Dim) + " dimensions");
+  constexpr double kSpeed = 4.0, kForce = 0.05;  // m/s; N on each gridpoint
+  const ModelOf<Dim> model = two_blocks<Dim>();
+  auto bond = strong();
+  bond.friction_angle = bond.residual_friction_angle = bond.residual_cohesion = 0.0;
+  Mechanics<Dim> m = mechanics<Dim>(model, bond, free_flight<Dim>(false));
+  for (int c = 0; c < model.contact_count(); ++c) static_cast<void>(m.break_contact(c));
+  hold(m, 0);
+  const Vec<Dim> normal = model.contacts[0].normal;
+  const int across = std::abs(normal[0]) > 0.5 ? 0 : std::abs(normal[1]) > 0.5 ? 1 : 2;
+  const int along = across == 0 ? 1 : 0;
+  std::vector<int> dragged;
+  std::vector<Vec<Dim>> velocity(model.position.size());
+  for (int g = model.block_gridpoints[1]; g < model.block_gridpoints[2]; ++g) {
+    dragged.push_back(g);
+    m.constraints().apply_force(g, normal * -kForce);
+    velocity[g][along] = kSpeed;
+  }
+  m.constraints().tie(dragged, across);
+  for (const int g : dragged) m.constraints().prescribe_velocity(g, along, kSpeed);
+  m.begin_moving(velocity);
+  const double widest = kSize * (Dim == 2 ? 1.0 : std::numbers::sqrt2);
+  while (m.read().slide(0) < 0.98 * widest) m.advance(64);
+  EXPECT_FALSE(m.body().is_torn(0));
+  EXPECT_LT(m.read().contact(0).normal_traction, 0.0);
+  while (m.read().slide(0) < 1.02 * widest) m.advance(64);
+  EXPECT_TRUE(m.body().is_torn(0));
+  const EnergyLedger e = m.totals().energy();
+  EXPECT_EQ(e.contacts, 0.0);
+  EXPECT_GT(e.dissipated.of("tension"), 0.0);
+  EXPECT_LT(std::abs(e.error()), 1e-4 * e.dissipated.of("tension"));
+}
+
+// Promise: a broken face is torn once its sides have slid past each other, and the ledger closes.
+TEST(TornFaces, SidesThatHaveSlidPastEachOtherPart) {
+  expect_to_part_once_past<2>();
+  expect_to_part_once_past<3>();
+}
+
 // Promise: a law that loses no energy holds what is broken, however far its sides turn.
 TEST(TornFaces, ElasticFacesHold) {
   const ModelOf<2> model = two_rows(1, kSize);

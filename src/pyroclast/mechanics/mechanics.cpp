@@ -206,17 +206,17 @@ void Mechanics<Dim>::advance(int steps) {
   }
 }
 
-/// Returns how many steps may follow before faces that have turned are torn, and broken faces are handed over
-/// to found contacts; does with those that are due now.
+/// Returns how many steps may follow before faces whose sides no longer face each other are torn, and broken
+/// faces are handed over to found contacts; does with those that are due now.
 template <int Dim>
 int Mechanics<Dim>::steps_to_hand_over() {
-  const bool turns = body_->parameters.kinematics == Kinematics::finite;
-  if (!turns && !body_->found) return std::numeric_limits<int>::max();
+  const bool is_finite = body_->parameters.kinematics == Kinematics::finite;
+  if (!is_finite && !body_->found) return std::numeric_limits<int>::max();
   const auto since = static_cast<int>(body_->steps % kStepsToHandOver);
   if (since == 0) {
-    if (turns) tear_turned_faces();
+    if (is_finite) tear_faces();
     if (body_->found) FoundContacts<Dim>(*body_).hand_over();
-    if (turns && body_->steps % kStepsToFollow == 0) {
+    if (is_finite && body_->steps % kStepsToFollow == 0) {
       mover_.take_from_owners();
       Masses<Dim>(*body_).follow_stiffness();
       body_->books.mass_scaling += std::exchange(body_->books.begun_mass_scaling, 0.0);
@@ -226,10 +226,10 @@ int Mechanics<Dim>::steps_to_hand_over() {
 }
 
 template <int Dim>
-void Mechanics<Dim>::tear_turned_faces() {
+void Mechanics<Dim>::tear_faces() {
   Body<Dim>& body = *body_;
   TornFaces<Dim> torn(body);
-  const std::vector<int> faces = torn.turned();
+  const std::vector<int> faces = torn.faces_to_tear();
   if (!body.model.ranks().any(!faces.empty())) return;
   mover_.take_from_owners();  // velocities, which travel when steps are measured
   const double pushed = totals().work_of_pore_pressure();

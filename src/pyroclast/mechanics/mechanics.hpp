@@ -106,7 +106,7 @@ class Mechanics {
   double held() const;
   double measure_at_last_forces();
   int steps_to_hand_over();
-  void tear_turned_faces();
+  void tear_faces();
 
   std::unique_ptr<Body<Dim>> body_;
   Mover<Dim> mover_;

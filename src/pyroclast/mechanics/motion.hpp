@@ -47,6 +47,7 @@ class MotionReader {
   virtual ContactState contact(int contact) const = 0;
   virtual ContactFrame<3> frame_of_forces(int contact) const = 0;
   virtual double remembered(int contact, Remembers what) const = 0;
+  virtual double damage(int contact) const = 0;
   virtual double crack_step(int contact) const = 0;
   virtual double opening(int contact) const = 0;
 };
@@ -207,6 +208,7 @@ class MotionOf final : public Motion {
     ContactState contact(int contact) const override { return read_.contact(contact); }
     ContactFrame<3> frame_of_forces(int contact) const override;
     double remembered(int contact, Remembers what) const override { return read_.remembered(contact, what); }
+    double damage(int contact) const override { return read_.damage(contact); }
     double crack_step(int contact) const override { return read_.crack_step(contact); }
     double opening(int contact) const override { return read_.opening(contact); }
 

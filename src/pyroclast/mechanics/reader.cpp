@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/mechanics/found/found.hpp"
 
 namespace pyroclast {
@@ -117,31 +118,41 @@ SymmetricTensor<Dim> Reader<Dim>::creep_strain(int zone) const {
 }
 
 template <int Dim>
+typename TurningFrame<Dim>::Columns Reader<Dim>::gradient(int face, double sign) const {
+  return gradient(face, sign, [&](int g) { return displacement(g); });
+}
+
+template <int Dim>
 template <class Moved>
-ContactFrame<Dim> Reader<Dim>::frame(int contact, Moved moved) const {
-  const Model& model = body_.model;
-  const Contact<Dim>& of = body_.model.contacts[contact];
-  if (body_.parameters.kinematics == Kinematics::small) return {of.normal, of.tangents};
-  const int first = model.face_contacts[of.face], last = model.face_contacts[of.face + 1];
-  typename TurningFrame<Dim>::Columns columns;
+typename TurningFrame<Dim>::Columns Reader<Dim>::gradient(int face, double sign, Moved moved) const {
+  const int first = body_.model.face_contacts[face], last = body_.model.face_contacts[face + 1];
+  typename TurningFrame<Dim>::Columns columns{};
   if constexpr (Dim == 2) {
     const auto &c = body_.model.contacts[first], &d = body_.model.contacts[first + 1];
     const auto at = [&](int g) { return body_.model.position[g] + moved(g); };
-    columns = {((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5};
+    columns = {((at(d.a) - at(c.a)) + (at(d.b) - at(c.b)) * sign) * 0.5};
   } else {
     const auto point = [&](int c) { return body_.layout.contact_slot[c] / kLanes; };
     const int lane = body_.layout.contact_slot[first] % kLanes;
     const auto& before = body_.arrays.face_gradient[body_.layout.face_pack_of_point[point(first)]];
     for (int t : {0, 1}) {
-      for (int i = 0; i < Dim; ++i) columns[t][i] = before.tangent[t][i][lane];
+      for (int i = 0; sign > 0.0 && i < Dim; ++i) columns[t][i] = before.tangent[t][i][lane];
       for (int c = first; c < last; ++c) {
         const Contact<Dim>& other = body_.model.contacts[c];
-        columns[t] +=
-            (moved(other.a) + moved(other.b)) * body_.arrays.turning_weight[2 * point(c) + t].number[lane];
+        columns[t] += (moved(other.a) + moved(other.b) * sign) *
+                      body_.arrays.turning_weight[2 * point(c) + t].number[lane];
       }
     }
   }
-  return TurningFrame<Dim>(columns);
+  return columns;
+}
+
+template <int Dim>
+template <class Moved>
+ContactFrame<Dim> Reader<Dim>::frame(int contact, Moved moved) const {
+  const Contact<Dim>& of = body_.model.contacts[contact];
+  if (body_.parameters.kinematics == Kinematics::small) return {of.normal, of.tangents};
+  return TurningFrame<Dim>(gradient(of.face, 1.0, moved));
 }
 
 template <int Dim>
@@ -182,6 +193,13 @@ double Reader<Dim>::remembered(int contact, Remembers what) const {
   return lines_of(body_.layout, body_.state.internals, body_.state.first_internal, contact,
                   law.internals(Dim).size())[place]
       .number[body_.layout.contact_slot[contact] % kLanes];
+}
+
+template <int Dim>
+double Reader<Dim>::damage(int contact) const {
+  double most = 0.0;
+  for (const Remembers mode : kCrackModes) most = std::max(most, remembered(contact, mode));
+  return most;
 }
 
 template <int Dim>

@@ -61,11 +61,15 @@ class Reader {
   ContactState contact(int contact) const;
   /// Returns an internal variable of a contact; 0 where its law has none of this meaning.
   double remembered(int contact, Remembers what) const;
+  double damage(int contact) const;      ///< Returns the largest damage of a contact by any mode.
   double crack_step(int contact) const;  ///< Returns the step noted by note_cracks, else kNotCracked.
   /// Returns u_n at the displacements of the last forces, m; of a torn face the distance of its sides there.
   double opening(int contact) const;
   /// Returns the directions of a contact at the displacements of the last forces.
   ContactFrame<Dim> frame_of_forces(int contact) const;
+  /// Returns the gradient of a face at the present displacements, see TurningFrame.
+  /// \param sign  1: the mean of those of its sides; -1: half of that of side a less that of side b
+  typename TurningFrame<Dim>::Columns gradient(int face, double sign) const;
   /// Returns the longest way that a point of a face has slid, at the present displacements, m.
   double slide(int face) const;
 
@@ -81,8 +85,10 @@ class Reader {
   /// Turns a tensor of a zone's own frame into the frame of the model.
   SymmetricTensor<Dim> in_frame_of_model(const Rotation<Dim>& rotation,
                                          const SymmetricTensor<Dim>& tensor) const;
+  // Param `moved`: returns the displacement of a gridpoint, m.
+  template <class Moved>
+  typename TurningFrame<Dim>::Columns gradient(int face, double sign, Moved moved) const;
   /// Returns the directions of a contact.
-  /// \param moved  returns the displacement of a gridpoint, m
   template <class Moved>
   ContactFrame<Dim> frame(int contact, Moved moved) const;
 

@@ -10,16 +10,6 @@ namespace pyroclast {
 
 namespace {
 
-/// Tells whether two gradients of one face have turned against each other by more than 90 degrees. The frame
-/// of a gradient has columns of length 1 but for strains, so the trace of the turn is the sum of products.
-bool turned_apart(const TurningFrame<2>::Columns& a, const TurningFrame<2>::Columns& b) {
-  return dot(a[0], b[0]) < 0.0;
-}
-bool turned_apart(const TurningFrame<3>::Columns& a, const TurningFrame<3>::Columns& b) {
-  // of a turn by an angle phi it is 1 + 2 cos phi
-  return dot(a[0], b[0]) + dot(a[1], b[1]) + dot(cross(a[0], a[1]), cross(b[0], b[1])) < 1.0;
-}
-
 /// Returns the place of the first energy that a law loses; -1 where it loses none.
 int first_energy(const LawTable& law) {
   const auto first = std::ranges::find_if(law.losses, &LossInfo::is_energy);
@@ -28,51 +18,62 @@ int first_energy(const LawTable& law) {
 
 }  // namespace
 
-/// Returns the gradients of both sides of a face at the present displacements, see TurningFrame: those of
-/// side a, then of side b. Their mean is that of the face.
+/// Tells whether the sides of a face have turned against each other by more than 90 degrees. The gradient of
+/// a side has columns of length 1 but for strains, so the trace of the turn is the sum of products.
 template <int Dim>
-std::array<typename TornFaces<Dim>::Columns, 2> TornFaces<Dim>::sides(int face) const {
-  const Model& model = body_.model;
-  const auto& layout = body_.layout;
-  const int begin = model.face_contacts[face], points = model.face_contacts[face + 1] - begin;
-  const int slot = layout.contact_slot[begin], lane = slot % kLanes, first = slot / kLanes;
-  const auto moved = [&](int point, int side) -> const Vec<Dim>& {
-    const PointPack& pack = layout.points[first + point];
-    return body_.state.displacement[(side == 0 ? pack.a : pack.b)[lane] / offset_of<Dim>(1)];
-  };
-  std::array<Columns, 2> columns;
+bool TornFaces<Dim>::have_turned_apart(int face) const {
+  const Reader<Dim> read(body_);
+  const auto half = read.gradient(face, -1.0);
   if constexpr (Dim == 2) {
-    const auto &c = body_.model.contacts[begin], &d = body_.model.contacts[begin + 1];
-    const Vec<2> before = body_.model.position[d.a] - body_.model.position[c.a];
-    for (int side : {0, 1}) columns[side] = {before + (moved(1, side) - moved(0, side))};
+    const auto mean = read.gradient(face, 1.0);
+    return dot(mean[0], mean[0]) < dot(half[0], half[0]);
   } else {
-    const auto& before = body_.arrays.face_gradient[layout.face_pack_of_point[first]];
-    for (int t : {0, 1}) {
-      for (int i = 0; i < Dim; ++i) columns[0][t][i] = before.tangent[t][i][lane];
-      columns[1][t] = columns[0][t];
-      for (int point = 0; point < points; ++point) {
-        const double weight = 2.0 * body_.arrays.turning_weight[2 * (first + point) + t].number[lane];
-        for (int side : {0, 1}) columns[side][t] += moved(point, side) * weight;
-      }
-    }
+    // a turn by 90 degrees makes at least one column of both differ by the root of 2, and halves by 0.7
+    if (dot(half[0], half[0]) + dot(half[1], half[1]) < 0.25) return false;
+    const auto mean = read.gradient(face, 1.0);
+    const Vec<3> a0 = mean[0] + half[0], a1 = mean[1] + half[1], b0 = mean[0] - half[0],
+                 b1 = mean[1] - half[1];
+    // of a turn by an angle phi the trace is 1 + 2 cos phi
+    return dot(a0, b0) + dot(a1, b1) + dot(cross(a0, a1), cross(b0, b1)) < 1.0;
   }
-  return columns;
+}
+
+/// Tells whether all points of a face are broken and its sides have slid past each other: their middles lie
+/// further apart along the face than the face is wide, so that none of one side lies over the other.
+template <int Dim>
+bool TornFaces<Dim>::have_slid_past(int face) const {
+  const auto& model = body_.model;
+  const int begin = model.face_contacts[face], end = model.face_contacts[face + 1];
+  const Reader<Dim> read(body_);
+  Vec<Dim> jump{};
+  for (int c = begin; c < end; ++c) {
+    if (read.damage(c) < 1.0) return false;
+    jump += read.displacement(model.contacts[c].b) - read.displacement(model.contacts[c].a);
+  }
+  jump *= 1.0 / (end - begin);
+  const Vec<Dim> normal = TurningFrame<Dim>(read.gradient(face, 1.0)).normal;
+  const double slid = norm(jump - normal * dot(jump, normal));
+  const auto place = [&](int c) { return model.position[model.contacts[c].a]; };
+  for (int c = begin; c < end; ++c)
+    for (int d = begin; d < c; ++d)
+      if (slid <= norm(place(c) - place(d))) return false;
+  return true;
 }
 
 template <int Dim>
-std::vector<int> TornFaces<Dim>::turned() const {
+std::vector<int> TornFaces<Dim>::faces_to_tear() const {
   std::vector<bool> can_tear;
   for (const LawTable* law : body_.laws) can_tear.push_back(first_energy(*law) >= 0);
   std::vector<int> faces;
   const ChunkList::Items own = body_.model.gridpoint_chunks().own();
   for (int face = 0; face < body_.model.face_count(); ++face) {
     const int contact = body_.model.face_contacts[face];
-    const Joint& first = body_.model.contacts[contact];
+    const Contact<Dim>& first = body_.model.contacts[contact];
     if (!own.contain(first.a) && !own.contain(first.b)) continue;  // its owners tear it
     const int pack = body_.layout.face_pack_of_point[body_.layout.contact_slot[contact] / kLanes];
-    if (!can_tear[body_.arrays.law_of_faces[pack]] || body_.is_torn(face)) continue;
-    const auto [a, b] = sides(face);
-    if (turned_apart(a, b) && !body_.has_left(body_.model.contacts[contact])) faces.push_back(face);
+    if (!can_tear[body_.arrays.law_of_faces[pack]] || body_.is_torn(face) || body_.has_left(first)) continue;
+    // found contacts take over what is broken before its sides have slid so far
+    if (have_turned_apart(face) || (!body_.found && have_slid_past(face))) faces.push_back(face);
   }
   return faces;
 }
@@ -94,11 +95,7 @@ void TornFaces<Dim>::tear(const std::vector<int>& faces) {
 template <int Dim>
 void TornFaces<Dim>::break_points(int face) {
   const Reader<Dim> read(body_);
-  Columns mean;
-  const auto both = sides(face);
-  for (int t = 0; t + 1 < Dim; ++t) mean[t] = (both[0][t] + both[1][t]) * 0.5;
-  const TurningFrame<Dim> frame(mean);
-  const bool bears_on = body_.found != nullptr;
+  const TurningFrame<Dim> frame(read.gradient(face, 1.0));
   for (int c = body_.model.face_contacts[face]; c < body_.model.face_contacts[face + 1]; ++c) {
     const ContactState before = read.contact(c);
     static_cast<void>(Properties<Dim>(body_).break_contact(c));  // a law without damage has nothing to break
@@ -109,7 +106,7 @@ void TornFaces<Dim>::break_points(int face) {
     const ContactProperties properties = body_.properties.contacts[body_.properties.of_contact[c]];
     PointResponse after =
         law.update(Dim)(properties.constants().data(), jump.data(), internals.data(), losses.data());
-    if (!bears_on) after = {};
+    if (!body_.found) after = {};
 
     const Joint& contact = body_.model.contacts[c];
     const Vec<Dim> next = read.displacement(contact.b) - read.displacement(contact.a);

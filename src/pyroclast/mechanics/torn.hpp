@@ -3,21 +3,21 @@
 #include <vector>
 
 #include "pyroclast/mechanics/body.hpp"
-#include "pyroclast/mechanics/turning_frame.hpp"
 
 namespace pyroclast {
 
-/// Faces whose sides have turned against each other by more than 90 degrees, with finite kinematics. Their
-/// frame is the mean of both sides, which vanishes at half a turn: no law holds through that. So such a face
-/// is torn for good: its contact points are broken, it bears nothing, and no water presses in it. Faces of
-/// laws that lose no energy hold what is broken, and are never torn.
+/// Faces whose sides no longer face each other, with finite kinematics: sides that have turned against each
+/// other by more than 90 degrees, and broken ones that have slid past each other. The frame of a face is the
+/// mean of both sides, which vanishes at half a turn: no law holds through that. Such a face is torn for
+/// good: its contact points are broken, it bears nothing, and no water presses in it. Faces of laws that lose
+/// no energy hold what is broken, and are never torn.
 template <int Dim>
 class TornFaces {
  public:
   explicit TornFaces(Body<Dim>& body) : body_(body) {}
 
   /// Returns the faces that are to be torn at the present displacements.
-  std::vector<int> turned() const;
+  std::vector<int> faces_to_tear() const;
   /// Breaks the points of faces by their laws. What they held counts as the first energy that their law
   /// loses. Where contacts are found, broken points go on to bear what they bear until they are handed over.
   void tear(const std::vector<int>& faces);
@@ -27,8 +27,8 @@ class TornFaces {
   void visit_state(StateVisitor& visitor);
 
  private:
-  using Columns = typename TurningFrame<Dim>::Columns;
-  std::array<Columns, 2> sides(int face) const;
+  bool have_turned_apart(int face) const;
+  bool have_slid_past(int face) const;
   void break_points(int face);
   void mark(int face);
 

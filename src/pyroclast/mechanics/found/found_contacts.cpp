@@ -11,6 +11,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/laws/common.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/mechanics/found/carry_over.hpp"
 #include "pyroclast/mechanics/found/edge_pair.hpp"
 #include "pyroclast/mechanics/reader.hpp"
@@ -50,13 +51,10 @@ constexpr double kGridpointDamping = 3.0;
 /// whatever its direction: (1 + sqrt 2) / 2, where it has no shear stiffness.
 constexpr double kOfAnyDirection = 1.2071067811865476;
 
-constexpr Remembers kDamages[] = {Remembers::tension_damage, Remembers::shear_damage,
-                                  Remembers::mixed_damage};
-
 /// Returns the internal variables of a broken point that was never touched.
 std::vector<double> broken_internals(const LawTable& law, int dim) {
   std::vector<double> internals(law.internals(dim).size());
-  for (const Remembers what : kDamages)
+  for (const Remembers what : kCrackModes)
     if (const int place = place_of(law, what, dim); place >= 0)
       internals[static_cast<std::size_t>(place)] = 1.0;
   return internals;
@@ -64,7 +62,7 @@ std::vector<double> broken_internals(const LawTable& law, int dim) {
 
 /// Tells whether points of a law never break.
 bool never_breaks(const LawTable& law, int dim) {
-  return std::ranges::none_of(kDamages, [&](Remembers what) { return place_of(law, what, dim) >= 0; });
+  return std::ranges::none_of(kCrackModes, [&](Remembers what) { return place_of(law, what, dim) >= 0; });
 }
 
 /// Tells whether a broken point of a law lets go of what it pulls.
@@ -1120,7 +1118,7 @@ std::vector<int> FoundContacts<Dim>::faces_to_hand_over() const {
     unsigned broken = 0xffU & ~static_cast<unsigned>(body_.left_out.empty() ? 0 : body_.left_out[pack]);
     for (int point = 0; point < points; ++point) {
       unsigned of_point = 0;
-      for (const Remembers what : kDamages)
+      for (const Remembers what : kCrackModes)
         if (const int place = place_of(law, what, Dim); place >= 0)
           for (int lane = 0; lane < kLanes; ++lane)
             if (s.internals[s.first_internal[pack] + point * count + place].number[lane] >= 1.0)

@@ -14,7 +14,6 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/simulation/watching/found_fields.hpp"
 
 namespace pyroclast {
@@ -109,10 +108,7 @@ double along_face(const R& r, const Vec<2>& tangential) {
 
 /// Returns the largest damage of a contact by any mode, 0 to 1; 0 at bearings, whose contacts are no cracks.
 double crack(const R& r, int contact) {
-  if (r.model().is_of_bearing(r.model().joint(contact))) return 0.0;
-  double most = 0.0;
-  for (const auto mode : kCrackModes) most = std::max(most, r.motion().read().remembered(contact, mode));
-  return most;
+  return r.model().is_of_bearing(r.model().joint(contact)) ? 0.0 : r.motion().read().damage(contact);
 }
 
 /// Returns the step at which a contact was first found cracked, as `crack` tells it.

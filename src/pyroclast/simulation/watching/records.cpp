@@ -10,7 +10,6 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
@@ -27,11 +26,6 @@ bool is_of_what_is_left(RecordKind kind) {
 bool is_of_cracks(RecordKind kind) {
   return kind == RecordKind::crack_length || kind == RecordKind::crack_area ||
          kind == RecordKind::crack_opening;
-}
-
-bool is_damaged(const Motion& motion, int contact) {
-  return std::ranges::any_of(kCrackModes,
-                             [&](Remembers mode) { return motion.read().remembered(contact, mode) > 0.0; });
 }
 
 /// Returns the zones that lie wholly in a set.
@@ -235,7 +229,8 @@ double Record::measure(const Simulation& simulation) const {
     }
     case RecordKind::crack_length:
     case RecordKind::crack_area:
-      return chunked_sum(chunks_, [&](int i) { return is_damaged(motion, items_[i]) ? size_[i] : 0.0; });
+      return chunked_sum(chunks_,
+                         [&](int i) { return motion.read().damage(items_[i]) > 0.0 ? size_[i] : 0.0; });
     case RecordKind::crack_opening:
       return chunked_sum(chunks_, [&](int i) { return size_[i] * motion.read().opening(items_[i]); }) /
              whole_;
