@@ -124,6 +124,33 @@ TEST(FoundContactsVerification, CubeInSpaceSlidesByCoulombsLawAndFallsOffTheEdge
   EXPECT_LT(std::abs(e.error()), 2e-4 * e.dissipated.of("friction"));
 }
 
+// Promise: a cube without friction that tips over the edge of a box keeps its energy, though edges cross ever
+// more steeply, and far sides of the box and the cube face each other beside the edge.
+TEST(FoundContactsVerification, CubeThatTipsOverAnEdgeKeepsItsEnergy) {
+  constexpr double kSide = 0.06;
+  struct Tip {
+    double turn, most;  ///< rad; error over the largest energy that contacts store
+  };
+  for (const Tip& tip : {Tip{0.1, 1e-6}, Tip{0.7, 1e-3}}) {
+    ModelOf<3> model = empty_model<3>();
+    const int box = add_box(model, {{kSide, kSide, kSide}}, {{-0.5 * kSide, 0.0, -0.5 * kSide}}, {});
+    const int cube =
+        add_box(model, {{kEdge, kEdge, kEdge}}, {{0.003, 0.002, 0.5 * kEdge}}, {{{0, 0, tip.turn}}});
+    auto m = mechanics<3>(model, rubbing(1e8, 0.0), flying<3>(kGravity, 0.3), 30e9);
+    hold(m, box);
+    double worst = 0.0, stored = 0.0, height = 0.0;
+    while (height > -kEdge) {
+      m.advance(20);
+      const EnergyLedger e = m.totals().energy();
+      worst = std::max(worst, std::abs(e.error()));
+      stored = std::max(stored, e.contacts);
+      height = m.read().displacement(model.block_gridpoints[cube])[2];
+    }
+    EXPECT_GT(stored, 1e-4);
+    EXPECT_LT(worst, tip.most * stored);
+  }
+}
+
 /// Quarter of a ball around its lowest point as one block, its zones finer where it touches a plate below:
 /// prisms on rings of triangles, each cut into three tetrahedra.
 ModelOf<3> quarter_ball(const Round& round) {

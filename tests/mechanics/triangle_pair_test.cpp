@@ -102,7 +102,7 @@ Corners random_corners(Random& random, double depth, double rise) {
 }
 
 /// Tells whether the energy has a kink within the reach of the differences: where a point begins to press,
-/// where a share begins or ends to fall, and where corners come and go.
+/// where shares begin or end to fall, and where corners come and go.
 bool is_at_kink(const Pressed& p, const Springs& s) {
   const auto& pair = p.pair;
   bool kink = std::abs(std::sqrt(std::max(p.areas.counted, 0.0)) - s.most_depth / 3.0) < 2e-3;
@@ -111,7 +111,8 @@ bool is_at_kink(const Pressed& p, const Springs& s) {
     const double depth = p.areas.points[k].depth;
     kink = kink || std::abs(pair.gap[k]) < 1e-3 || std::abs(depth - 1.0) < 0.02 ||
            std::abs(depth - 3.0) < 0.02 || norm(pair.place[next] - pair.place[k]) < 0.01 ||
-           p.overlap.corners[k].has_fixed_place();
+           p.overlap.corners[k].has_fixed_place() || std::abs(pair.upright[k] - Overlap::kSteepest) < 0.005 ||
+           std::abs(pair.upright[k] - Overlap::kUpright) < 0.005;
     for (const auto& weights : {pair.at_a[k], pair.at_b[k]})
       for (const double weight : weights) kink = kink || (weight != 0.0 && weight < 0.005);
   }
@@ -126,7 +127,8 @@ std::array<int, Overlap::kMost + 1> for_random_pairs(int pairs, F f) {
   std::array<int, Overlap::kMost + 1> counts{};
   for (int taken = 0; taken < pairs;) {
     const Springs s{.not_counted = taken % 2 == 0 ? 0.02 : 0.0, .most_depth = taken % 3 == 0 ? 1.2 : 9.0};
-    const Corners x = random_corners(random, random.uniform(-0.1, 0.6), 0.3);
+    const double rise = taken % 4 == 3 ? 5.0 : 0.3;  // edges of tilted triangles cross steeply
+    const Corners x = random_corners(random, random.uniform(-0.1, 0.6), rise);
     const Pressed p = pressed(x, s);
     if (p.overlap.count == 0 || p.pair.overlap < 0.05 || is_at_kink(p, s)) continue;
     ++taken;
@@ -260,6 +262,13 @@ TEST(TrianglePairVerification, EveryPartOfTheForcesIsNeeded) {
          for (auto& point : p.areas.points) point.slope = 0.0;
        }},
       {"largest depth", [](auto& p) { p.areas.is_wide = false; }},
+      {"outline of the overlap", [](auto& p) { p.pair.outline = std::numeric_limits<double>::infinity(); }},
+      {"share of steep edges",
+       [](auto& p) {
+         for (double& share : p.areas.upright)
+           if (share > 0.0) share = 1.0;
+       }},
+      {"derivative of the share of steep edges", [](auto& p) { p.areas.upright_slope.fill(0.0); }},
       {"overlap of the beginning", [](auto& p) { p.areas.counted = p.pair.overlap; }},
       {"derivative of the share of the overlap that counts", [](auto& p) { p.areas.not_counted = 0.0; }},
       {"ratio of areas", [](auto& p) { p.areas.ratio = 1.0; }},

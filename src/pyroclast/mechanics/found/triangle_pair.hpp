@@ -55,6 +55,8 @@ struct Overlap {
   /// do not press where they cross: the gap there, which is taken along the normal, would change ten times as
   /// fast as the edges move. Edges of tilted triangles that lie in one outer side of their blocks are such.
   static constexpr double kSteepest = 0.1;
+  /// Cosine from which on they press fully: between both a smooth share of their area counts.
+  static constexpr double kUpright = 0.2;
   /// Overlap over the length of the sum of both area vectors above which there surely is one.
   static constexpr double kSurelyOne = 2e-11;
 
@@ -133,7 +135,11 @@ struct TrianglePair {
   /// Direction by which a relative motion of a and b at these places changes the gap; its component along the
   /// normal is 1. A corner is met along the normal of the triangle over it, crossing edges across both.
   OfPoint<Vector> gap_slope;
-  OfPoint<Real> part{};  ///< part of the overlap, m²
+  OfPoint<Real> upright;  ///< cosine between that direction and the normal; 1 but at crossings
+  OfPoint<Real> part{};   ///< part of the overlap, m²
+  /// Side of the overlap to the next corner, m, and the sum of the sides.
+  OfPoint<Vector> side;
+  Real outline = 0.0;
 
   /// Returns a point's place on a and that on b, m.
   Vector on_a(int k) const { return mixed(a, at_a[k]); }
@@ -183,6 +189,7 @@ void place_corners(const OverlapsInLanes& of, const std::array<Vec<3, Real>, 3>&
   for (int k = 0; k < of.count; ++k) {
     std::array<Real, 3> at_a{zero, zero, zero}, at_b{zero, zero, zero};
     Vector slope = p.normal;
+    p.upright[k] = one;
     if ((of.of_a[k] | of.of_b[k]) != 0) {
       // a corner is met by the other triangle, where each of whose corners has the weight of the triangle
       // that the others make with that place
@@ -215,6 +222,7 @@ void place_corners(const OverlapsInLanes& of, const std::array<Vec<3, Real>, 3>&
         at_b[i] = select(crosses, on_edge(of.on_b[k], i, along_b), at_b[i]);
       }
       slope = select(crosses, across * over, slope);
+      p.upright[k] = select(crosses, one / norm(slope), one);
     }
     if (fixed_in<Real>(of, k) != 0) {
       const auto fixed = truth(fixed_in<Real>(of, k));
@@ -249,8 +257,10 @@ void place_corners(const OverlapsInLanes& of, const std::array<Vec<3, Real>, 3>&
   // of the triangle of the centroid and an edge, each end of the edge has half: linear gaps keep their sum
   // and their moments, and nothing jumps where corners come and go
   for (int k = 0; k < of.count; ++k) {
-    const Real area =
-        dot(p.normal, cross(p.place[k] - p.middle, p.next_place(of, k) - p.middle)) * Real(0.25);
+    const Vector next = p.next_place(of, k);
+    const Real area = dot(p.normal, cross(p.place[k] - p.middle, next - p.middle)) * Real(0.25);
+    p.side[k] = next - p.place[k];
+    add_where<Real>(of.exists[k], p.outline, norm(p.side[k]));
     add_where<Real>(of.exists[k], p.part[k], area);
     if (k + 1 < of.count) add_where<Real>(of.exists[k + 1], p.part[k + 1], area);
     add_where<Real>(ends_at<Real>(of, k), p.part[0], area);
@@ -269,17 +279,21 @@ struct PointTractions {
 };
 
 /// Areas of the points: their parts of the overlap, where triangles do not lie parallel times the square of
-/// the cosine, and times the share that counts.
+/// the cosine, and times the shares that count, by depth and by the steepness of crossing edges.
 template <class Real>
 struct PointAreas {
   Real ratio = 0.0;        ///< ratio of the pair
   Real not_counted = 0.0;  ///< m²
   Real counted = 0.0;      ///< overlap less that of the pair's beginning, m²
-  Real width = 0.0;        ///< length by which depths are divided, m
+  /// Length by which depths are divided, m: that side of a square, and twice that of a band, which has the
+  /// area that counts and the outline of the overlap. So sides that face each other far off, of which one
+  /// sees a band as narrow as blocks lie deep in each other, do not press.
+  Real width = 0.0;
   /// True where the overlap is wider than that.
   decltype(Real(0.0) < Real(0.0)) is_wide = Real(0.0) < Real(0.0);
   std::array<CountedShare<Real>, Overlap::kMost> points{};
-  std::array<Real, Overlap::kMost> area{};  ///< m²
+  std::array<Real, Overlap::kMost> upright{}, upright_slope{};  ///< share by steepness, and its slope
+  std::array<Real, Overlap::kMost> area{};                      ///< m²
 
   PointAreas() = default;
   /// \param count        number of points
@@ -292,13 +306,18 @@ struct PointAreas {
              const Real& most_depth, const std::array<Real, Overlap::kMost>& gap)
       : ratio(of_pair), not_counted(left_out), counted(p.overlap - left_out) {
     using std::sqrt;
-    const Real root = sqrt(larger(counted, Real(0.0)));
-    width = smaller(root, most_depth * Real(1.0 / CountedShare<Real>::kMost));
-    is_wide = width < root;
+    const Real some = larger(counted, Real(0.0)),
+               of_outline = sqrt(Real(4.0) * some * sqrt(some) / p.outline);
+    width = smaller(of_outline, most_depth * Real(1.0 / CountedShare<Real>::kMost));
+    is_wide = width < of_outline;
     const Real of_part = factor(p);
     for (int k = 0; k < count; ++k) {
       points[k] = CountedShare<Real>((Real(0.0) - gap[k]) / width);
-      area[k] = of_part * p.part[k] * points[k].share;
+      constexpr double kOver = 1.0 / (Overlap::kUpright - Overlap::kSteepest);
+      const Real y = smaller(larger((p.upright[k] - Overlap::kSteepest) * kOver, Real(0.0)), Real(1.0));
+      upright[k] = y * y * (Real(3.0) - Real(2.0) * y);
+      upright_slope[k] = Real(6.0 * kOver) * y * (Real(1.0) - y);
+      area[k] = of_part * p.part[k] * points[k].share * upright[k];
     }
   }
 
@@ -328,14 +347,14 @@ std::array<Vec<3, Real>, 6> corner_forces(const OverlapsInLanes& of, const Trian
     }
   };
   const Real over_overlap = one / p.overlap, of_part = areas.factor(p);
-  // derivatives of the energy: by the normal, by the overlap's area, by the cosine, by the parts of the
-  // points
+  // derivatives of the energy: by the normal, by the overlap's area and its outline, by the cosine, by the
+  // parts of the points
   Vector by_normal{};
-  Real by_overlap = zero, by_cosine = zero;
+  Real by_overlap = zero, by_outline = zero, by_cosine = zero;
   std::array<Real, Overlap::kMost> by_part;
   for (int k = 0; k < of.count; ++k) {
     const CountedShare<Real>& counts = areas.points[k];
-    const Real of_whole = of_part * tractions.stored[k];
+    const Real of_whole = of_part * tractions.stored[k] * areas.upright[k];
     const Real by_depth = of_whole * p.part[k] * counts.slope;
     const Real normal = tractions.normal[k] * areas.area[k] - by_depth / areas.width;
     const Vector force = p.gap_slope[k] * normal + tractions.shear[k] * areas.area[k];
@@ -343,9 +362,26 @@ std::array<Vec<3, Real>, 6> corner_forces(const OverlapsInLanes& of, const Trian
     by_normal -= force * p.gap[k];
     by_part[k] = of_whole * counts.share;
     const Real of_area = by_part[k] * p.part[k];
-    by_overlap += of_area * areas.not_counted * over_overlap / areas.counted -
-                  select(areas.is_wide, zero, by_depth * counts.depth * half / areas.counted);
+    const Real by_width = select(areas.is_wide, zero, by_depth * counts.depth);  // times the width
+    by_overlap += (of_area * areas.not_counted * over_overlap - Real(0.75) * by_width) / areas.counted;
+    by_outline += half * by_width / p.outline;
     by_cosine += Real(2.0) * of_area / p.cosine;
+    const Real by_upright = of_part * tractions.stored[k] * counts.share * p.part[k] * areas.upright_slope[k];
+    if (of.crosses[k] == 0 || !any(by_upright > zero)) continue;
+    // crossing edges grow steeper as they and the normal turn
+    const Vector edge_a = named(p.a, of.on_a[k], 1) - named(p.a, of.on_a[k], 0);
+    const Vector edge_b = named(p.b, of.on_b[k], 1) - named(p.b, of.on_b[k], 0);
+    const Vector across = cross(edge_a, edge_b), unit = p.gap_slope[k] * p.upright[k];
+    const Vector by_across = (p.normal - unit * p.upright[k]) * (by_upright / dot(across, unit));
+    const Vector by_edge_a = cross(edge_b, by_across), by_edge_b = cross(by_across, edge_a);
+    for (int i = 0; i < 3; ++i) {
+      const int last = (i + 2) % 3;
+      f[i] += where(of.crosses[k] & of.on_a[k][i], by_edge_a) -
+              where(of.crosses[k] & of.on_a[k][last], by_edge_a);
+      f[3 + i] += where(of.crosses[k] & of.on_b[k][i], by_edge_b) -
+                  where(of.crosses[k] & of.on_b[k][last], by_edge_b);
+    }
+    by_normal += unit * by_upright;
   }
   // The parts: triangles of the centroid and an edge, whose sum is the overlap.
   std::array<Vector, Overlap::kMost> by_place{};
@@ -358,9 +394,12 @@ std::array<Vec<3, Real>, 6> corner_forces(const OverlapsInLanes& of, const Trian
         select(truth_of<Real>(of.exists[k]), half * (half * (by_part[k] + by_next) + by_overlap), zero);
     const Vector here = p.place[k] - p.middle, there = p.next_place(of, k) - p.middle;
     const Vector by_here = cross(there, p.normal) * by_area, by_there = cross(p.normal, here) * by_area;
-    by_place[k] += by_here;
-    if (!is_last) add_where<Real>(of.exists[k + 1], by_place[k + 1], by_there);
-    add_where<Real>(ends_at<Real>(of, k), by_place[0], by_there);
+    const Real length = norm(p.side[k]);
+    const Vector stretch = p.side[k] * select(length > zero, by_outline / length, zero);
+    const Vector to_next = by_there + stretch;
+    by_place[k] += by_here - stretch;
+    if (!is_last) add_where<Real>(of.exists[k + 1], by_place[k + 1], to_next);
+    add_where<Real>(ends_at<Real>(of, k), by_place[0], to_next);
     by_middle -= by_here + by_there;
     by_normal += cross(here, there) * by_area;
   }

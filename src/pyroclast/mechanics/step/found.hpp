@@ -485,7 +485,7 @@ struct FoundContactForces {
       if (of.count == 0) break;
       anew = of.exists[0] & ~seen & ~bits_of(p.overlap > p.size * Real(Overlap::kSurelyOne));
       if (anew == 0) break;
-      p.overlap = zero;
+      p.overlap = p.outline = zero;
       p.part.fill(zero);
     }
     std::uint32_t carried = 0;
