@@ -99,6 +99,16 @@ class Seeds(StudyTest):
         self.assertNotIn("without a value", done.stdout)
         self.assertRegex(done.stdout, "(?m)^warning         2 of 2 runs: no f_c: the stage ended before a peak")
 
+    def test_warnings_that_differ_by_numbers_alone_are_told_once(self):
+        for run, texts in {"a": ["3 of 9 exchanges did not come to rest (worst 1.2e-03); see it", "no peak: at 2 MPa"],
+                           "b": ["14 of 80 exchanges did not come to rest (worst 7.1e-04); see it"]}.items():
+            (self.folder / "runs" / run).mkdir(parents=True)
+            (self.folder / "runs" / run / "summary.json").write_text(json.dumps({"warnings": texts}))
+        study = mock.Mock(setup=mock.Mock(folder=self.folder),
+                          rows=lambda: [{"run": "a"}, {"run": "b"}, {"run": "not_kept"}])
+        self.assertEqual(sorted(Study.warnings(study)), [
+            "1 of 2 runs: no peak: at 2 MPa", "2 of 2 runs: 3 of 9 exchanges did not come to rest (worst 1.2e-03); see it"])
+
     def test_a_result_that_nobody_asked_for_fails_no_run(self):
         done = self.run_deck("--seeds", "2", "--no-figures", *SMALL, "--set", "stages[1].stop_fraction_of_peak=0.96", "--set",
                              "contacts.aggregate_mortar.between_stones=[]")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import signal
 import sys
@@ -30,6 +31,8 @@ from .store import CRASHED, TIMED_OUT, Store, only_writer
 
 if TYPE_CHECKING:
     import pandas
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 class Study:
@@ -142,7 +145,7 @@ class Study:
         """Returns warnings of the runs whose summaries are kept: of each kind how many runs have it, and how the first
         says it.
 
-        Warnings are of one kind where they are alike up to the first colon; numbers stand behind it.
+        Warnings are of one kind where they are alike up to the first colon, but for numbers.
         """
         kinds: dict[str, list[str]] = {}
         files = [self.setup.folder / "runs" / str(row["run"]) / "summary.json" for row in self.rows()]
@@ -150,7 +153,7 @@ class Study:
         for summary in summaries:
             of_stages = (text for stage in summary.get("stages", []) for text in stage.get("warnings", []))
             told = [*summary.get("warnings", []), *of_stages]
-            for head, text in {text.partition(":")[0]: text for text in reversed(told)}.items():
+            for head, text in {_NUMBER.sub("#", text.partition(":")[0]): text for text in reversed(told)}.items():
                 kinds.setdefault(head, []).append(text)
         return [f"{len(texts)} of {len(summaries)} runs: {texts[0]}" for texts in kinds.values()]
 
