@@ -436,8 +436,7 @@ def _draw_fractured(axes: Axes, panel: Panel, look: _Look) -> None:
     sheared = np.zeros(len(cells), dtype=bool)
     for crack in cracks_of(run):
         which = cracked(run, frame, crack)
-        shown = cells[which] if in_plane else crack_lines(run.mesh, cells, which, look.view)
-        drawn = style.MILLI * flat(shown, look.view)
+        drawn = style.MILLI * flat(crack_lines(run.mesh, cells, which, look.view), look.view)
         of_lines = np.ones(len(drawn))
         if in_plane and crack.broken:
             of_lines = widths[which] * np.where(sheared[which], _BOTH, 1.0)

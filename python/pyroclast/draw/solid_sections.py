@@ -199,10 +199,13 @@ def _outside_quarter(lines: np.ndarray, blocks: BlockMesh, view: View) -> np.nda
 
 
 def crack_lines(mesh: Mesh, cells: np.ndarray, which: np.ndarray, view: View = VIEW) -> np.ndarray:
-    """Returns (L, 2, 3), m: where chosen contacts show on the sides and cuts of `draw_cut_open`.
+    """Returns (L, 2, 3), m: where chosen contacts show on the sides and cuts of `draw_cut_open`. Of a plane body these
+    are the chosen cells, (L, 2, 2).
 
-    cells: (C, 4, 3), places of the corners of contacts' cells, m. which: (C,) bool.
+    cells: (C, 4, 3), in the plane (C, 2, 2), places of the corners of contacts' cells, m. which: (C,) bool.
     """
+    if cells.shape[-1] == 2:
+        return cells[which]
     chosen = np.flatnonzero(which)
     if not len(chosen):
         return np.zeros((0, 2, 3))

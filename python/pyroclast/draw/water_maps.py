@@ -92,7 +92,7 @@ def _draw_strengths(row: np.ndarray, run: Results, frames: list[Frame], view: Vi
                  for low, high in zip(BANDS, (*BANDS[1:], np.inf))]
         broken = np.any([cracked(run, frame, crack) for crack in cracks_of(run) if crack.broken], axis=0)
         for colour, which in (*bands, (style.BLACK, broken)):
-            lines = cells[which] if cells.shape[-1] == 2 else crack_lines(run.mesh, cells, which, view)
+            lines = crack_lines(run.mesh, cells, which, view)
             axes.add_collection(LineCollection(style.MILLI * flat(lines, view), colors=[colour], linewidths=_WIDE,
                                                rasterized=True))
         frame_section(axes, run.mesh.blocks, view=view)

@@ -216,7 +216,7 @@ int Mechanics<Dim>::steps_to_hand_over() {
   if (since == 0) {
     if (is_finite) tear_faces();
     if (body_->found) FoundContacts<Dim>(*body_).hand_over();
-    if (is_finite && body_->steps % kStepsToFollow == 0) {
+    if (is_finite && body_->steps > 0 && body_->steps % kStepsToFollow == 0) {
       mover_.take_from_owners();
       Masses<Dim>(*body_).follow_stiffness();
       body_->books.mass_scaling += std::exchange(body_->books.begun_mass_scaling, 0.0);
