@@ -345,9 +345,7 @@ ChunkList Body<Dim>::chunks_of(const ArrayInfo& info, const void* array) const {
     return items.of(std::move(begins));
   };
   const Chunks& chunks = layout.chunks;
-  const auto pack = [&](int bundle) {
-    return bundle < std::ssize(layout.bundles) ? layout.bundles[bundle].first_pack : layout.gridpoint_packs;
-  };
+  const auto pack = [&](int bundle) { return layout.first_pack_of(bundle); };
   switch (info.per) {
     case Per::bundle:
       return chunks.bundles;

@@ -286,6 +286,11 @@ struct Layout : LayoutArrays<Dim, FlatArray> {
   /// Returns the number of entries of an array, by what it has one entry each of; none for lists of their
   /// own.
   std::optional<std::size_t> count_of(Per per) const;
+  /// Returns the first pack of gridpoints of a bundle; behind the last bundle the number of packs.
+  int first_pack_of(int bundle) const {
+    return bundle < static_cast<int>(this->bundles.size()) ? this->bundles[bundle].first_pack
+                                                           : gridpoint_packs;
+  }
   int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
   int bundle_of(int gridpoint) const {
     return this->bundle_of_pack[this->gridpoint_slot[gridpoint] / kLanes];

@@ -19,20 +19,18 @@ struct ShareOfFound {
 };
 
 template <int Dim>
-ShareOfFound share_of_found(const State<Dim>& s, const IndexRange& bundles, int packs, int thread,
-                            int threads) {
+ShareOfFound share_of_found(const State<Dim>& s, const Layout<Dim>& layout, const IndexRange& bundles,
+                            int thread, int threads) {
   ShareOfFound share;
   if (!s.found) return share;
   const auto rows = static_cast<std::int64_t>(s.found->rows.size());
   share.rows = {static_cast<int>(rows * thread / threads), static_cast<int>(rows * (thread + 1) / threads)};
-  const auto pack = [&](int bundle) {
-    return bundle < static_cast<int>(s.layout.bundles.size()) ? s.layout.bundles[bundle].first_pack : packs;
-  };
-  const auto before = [&](int end) {
+  const auto before = [&](int bundle) {
     const auto& watched = s.found->watched;
+    const int end = layout.first_pack_of(bundle);
     return static_cast<int>(std::ranges::lower_bound(watched, end, {}, &WatchedPack::pack) - watched.begin());
   };
-  share.watched = {before(pack(bundles.first)), before(pack(bundles.last))};
+  share.watched = {before(bundles.first), before(bundles.last)};
   return share;
 }
 
@@ -102,8 +100,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
         s.found = &rows;
       }
       const Share& share = worker.share;
-      const ShareOfFound found =
-          share_of_found(s, share.bundles, body.layout.gridpoint_packs, thread, threads);
+      const ShareOfFound found = share_of_found(s, body.layout, share.bundles, thread, threads);
       int taken = 0;
       for (bool ends = false; taken < left && !ends; ++taken) {
         if (s.found) passes.update_found(s, found.rows.first, found.rows.last);

@@ -6,9 +6,30 @@
 #include <vector>
 
 #include "pyroclast/base/chunked_sum.hpp"
-#include "pyroclast/mechanics/found/found_contacts.hpp"
+#include "pyroclast/base/place_in.hpp"
+#include "pyroclast/mechanics/found/of_all_pairs.hpp"
+#include "pyroclast/mechanics/found/pair_rows.hpp"
 
 namespace pyroclast {
+
+namespace {
+
+/// Returns the sum of a number of found pairs over the whole body: a collective.
+/// \param in_pair, in_row  places of the number
+template <int Dim>
+double sum_of_pairs(const Body<Dim>& body, double FoundPair<Dim>::*in_pair, Line FoundRow<Dim>::*in_row) {
+  const auto give = [&](const FoundPair<Dim>& pair, auto add) {
+    const double number =
+        pair.slot < 0 ? pair.*in_pair
+                      : (body.found->arrays.rows[pair.slot / kLanes].*in_row).number[pair.slot % kLanes];
+    if (number != 0.0) add(number);
+  };
+  double sum = 0.0;
+  for (const double number : of_all_pairs<double>(body, give)) sum += number;
+  return sum;
+}
+
+}  // namespace
 
 template <int Dim>
 Vec<Dim> Totals<Dim>::mean_displacement(const GridpointSet& set) const {
@@ -67,9 +88,8 @@ Dissipation Totals<Dim>::dissipated() const {
   std::vector<std::vector<int>> places;
   for (const LawTable* law : body_.laws)
     for (auto& of_law = places.emplace_back(); const LossInfo& loss : law->losses) {
-      const auto found = std::ranges::find(body_.dissipations, std::string_view(loss.name));
-      of_law.push_back(
-          found == body_.dissipations.end() ? -1 : static_cast<int>(found - body_.dissipations.begin()));
+      const int place = place_in(body_.dissipations, std::string_view(loss.name));
+      of_law.push_back(place < std::ssize(body_.dissipations) ? place : -1);
     }
   const Sums sums = chunked_sum<Sums>(body_.layout.chunks.face_packs, [&](int pack, Sums& sum) {
     const Line* line = body_.state.loss.data() + body_.state.first_loss[pack];
@@ -86,18 +106,24 @@ Dissipation Totals<Dim>::dissipated() const {
   Dissipation all{
       body_.dissipations,
       {sums.energy.begin(), sums.energy.begin() + static_cast<std::ptrdiff_t>(body_.dissipations.size())}};
-  if (body_.creeps())
-    all.energies[static_cast<std::size_t>(std::ranges::find(all.names, kCreep) - all.names.begin())] +=
-        body_.books.creep_work;
+  if (body_.creeps()) all.energies[place_in(all.names, kCreep)] += body_.books.creep_work;
   if (body_.found) {
-    const auto place_of_name = [&](std::string_view name) {
-      return static_cast<std::size_t>(std::ranges::find(all.names, name) - all.names.begin());
+    const int of_area = place_in(all.names, kContactArea), of_damping = place_in(all.names, kContactDamping);
+    struct Lost {
+      int law;
+      std::array<double, LawOfRows::kMost> of_law;
+      double area, damping;
     };
-    const std::size_t of_area = place_of_name(kContactArea), of_damping = place_of_name(kContactDamping);
-    for (const LossesOfPair& lost : losses_of_pairs(body_)) {
+    const auto give = [&](FoundPair<Dim> pair, auto add) {
+      take_from_row(*body_.found, pair);
+      if (!pair.has_lost()) return;
+      Lost lost{pair.law, {}, pair.lost_area, pair.lost_damping};
+      std::ranges::copy(pair.lost, lost.of_law.begin());
+      add(lost);
+    };
+    for (const Lost& lost : of_all_pairs<Lost>(body_, give)) {
       for (std::size_t i = 0; i < places[lost.law].size(); ++i)
-        if (const int place = places[lost.law][i]; place >= 0)
-          all.energies[static_cast<std::size_t>(place)] += lost.of_law[i];
+        if (const int place = places[lost.law][i]; place >= 0) all.energies[place] += lost.of_law[i];
       all.energies[of_area] += lost.area;
       if (lost.damping != 0.0) all.energies[of_damping] += lost.damping;
     }
@@ -106,8 +132,8 @@ Dissipation Totals<Dim>::dissipated() const {
 }
 
 double Dissipation::of(std::string_view name) const {
-  const auto found = std::ranges::find(names, name);
-  return found == names.end() ? 0.0 : energies[static_cast<std::size_t>(found - names.begin())];
+  const int place = place_in(names, name);
+  return place < std::ssize(names) ? energies[place] : 0.0;
 }
 
 double Dissipation::total() const {
@@ -151,7 +177,7 @@ EnergyLedger Totals<Dim>::energies() const {
   e.loading = sums.loading + body_.books.start;
   e.contacts = chunked_sum(body_.layout.chunks.face_packs,
                            [&](int pack) { return body_.state.face_sums[pack].stored; });
-  if (body_.found) e.contacts += stored_by(body_);
+  if (body_.found) e.contacts += sum_of_pairs(body_, &FoundPair<Dim>::stored, &FoundRow<Dim>::stored);
   e.dissipated = dissipated();
   // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
@@ -188,7 +214,7 @@ double Totals<Dim>::unbalanced_ratio() const {
         chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].unbalanced; });
     double all = chunked_sum(chunks.bundles, [&](int b) { return state.bundle_sums[b].applied; }) +
                  chunked_sum(chunks.face_packs, [&](int pack) { return state.face_sums[pack].applied; });
-    if (body_.found) all += applied_by(body_);
+    if (body_.found) all += sum_of_pairs(body_, &FoundPair<Dim>::applied, &FoundRow<Dim>::applied);
     return unbalanced / std::max(all, body_.least_force);
   });
 }

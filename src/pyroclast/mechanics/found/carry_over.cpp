@@ -8,13 +8,6 @@ namespace pyroclast {
 
 namespace {
 
-Triangle first_of(const TriangleCorners& x) {
-  return {x[0], x[1], x[2]};
-}
-Triangle second_of(const TriangleCorners& x) {
-  return {x[3], x[4], x[5]};
-}
-
 bool have_same_corners(const Overlap& a, const Overlap& b) {
   bool same = a.count == b.count;
   for (int k = 0; same && k < a.count; ++k)
@@ -194,9 +187,21 @@ TriangleCorners corners_in(const ShapesOfRow<3>::Places& places, int lane) {
   return corners;
 }
 
+Triangle triangle_a(const TriangleCorners& corners) {
+  return {corners[0], corners[1], corners[2]};
+}
+
+Triangle triangle_b(const TriangleCorners& corners) {
+  return {corners[3], corners[4], corners[5]};
+}
+
+Overlap overlap_of(const TriangleCorners& corners) {
+  return overlap_of(triangle_a(corners), triangle_b(corners));
+}
+
 void see_overlap(FoundRow<3>& row, int lane, const TriangleCorners& corners, double sides) {
   Overlap& seen = row.seen[lane];
-  seen = overlap_of(first_of(corners), second_of(corners));
+  seen = overlap_of(corners);
   row.names.put(lane, seen);
   bool is_lasting = seen.count > 0;  // places of fixed corners follow anew, and the size of tiny overlaps
   for (int k = 0; k < Overlap::kMost; ++k) {
@@ -214,8 +219,8 @@ void see_overlap(FoundRow<3>& row, int lane, const TriangleCorners& corners, dou
 bool carry_over(const FoundRows<3>& found, FoundRow<3>& row, int lane, const TriangleCorners& corners) {
   const Overlap &overlap = row.seen[lane], &earlier = row.overlap[lane];
   const TriangleCorners then = corners_in(row.pressed_at, lane);
-  const auto pair = triangle_pair(overlap, first_of(corners), second_of(corners));
-  const auto pair_then = triangle_pair(earlier, first_of(then), second_of(then));
+  const auto pair = triangle_pair(overlap, triangle_a(corners), triangle_b(corners));
+  const auto pair_then = triangle_pair(earlier, triangle_a(then), triangle_b(then));
   std::array<double, Overlap::kMost> weight{};
   bool bore = false;
   for (int k = 0; k < earlier.count; ++k) {

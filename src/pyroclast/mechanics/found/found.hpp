@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -52,10 +53,13 @@ struct PairPoint {
   double rest = 0.0;    ///< opening below which a point whose area is 0 goes through the law, m
 };
 
+/// Facets of a pair, the lower one first.
+using PairKey = std::array<int, 2>;
+
 /// Pair of facets.
 template <int Dim>
 struct FoundPair {
-  std::array<int, 2> facets{};  ///< the lower one first: the pair's key
+  PairKey facets{};
   bool is_handed_over = false;  ///< true for facets of the two sides of a face, as long as they overlap
   double ratio = 1.0;           ///< area of the face over that of the overlap
   double not_counted = 0.0;     ///< overlap at the pair's beginning that does not count, m or m²
@@ -106,8 +110,8 @@ struct FoundPair {
 
 /// Pair that may press before the next search for such pairs.
 struct FarPair {
-  std::array<int, 2> facets{};  ///< see FoundPair
-  double way = 0.0;             ///< twice the way that gridpoints go at least until it may press, m
+  PairKey facets{};
+  double way = 0.0;  ///< twice the way that gridpoints go at least until it may press, m
   auto operator<=>(const FarPair&) const = default;
 };
 
@@ -159,6 +163,38 @@ struct FoundData {
   std::vector<int> rank_of_block;  ///< empty where one process holds the body
   bool knows_all = true;           ///< true where foreign gridpoints are where their owners have them
   std::int64_t searches = 0;       ///< number of searches for near pairs
+
+  /// Returns the gridpoints of a pair: those of facet a, then those of facet b the other way round.
+  std::array<int, 2 * Dim> corners(const PairKey& key) const {
+    const auto &a = facets[key[0]].gridpoints, &b = facets[key[1]].gridpoints;
+    if constexpr (Dim == 2)
+      return {a[0], a[1], b[1], b[0]};
+    else
+      return {a[0], a[1], a[2], b[0], b[2], b[1]};
+  }
+  /// Returns the face whose two sides a pair is; -1 for other pairs.
+  int face_of(const PairKey& key) const {
+    const int face = facets[key[0]].face;
+    return facets[key[1]].face == face ? face : -1;
+  }
+  /// Tells whether no contact of the beginning joins the facets of a pair.
+  bool may_meet(const PairKey& key) const {
+    const int face = face_of(key);
+    return face < 0 || is_handed_over[face];
+  }
+  /// Tells whether a pair touches a block of a rank.
+  bool is_of_rank(int rank, const PairKey& key) const {
+    return rank_of_block.empty() || rank_of_block[facets[key[0]].block] == rank ||
+           rank_of_block[facets[key[1]].block] == rank;
+  }
+  /// Returns the larger of a number of the two blocks of a pair.
+  double larger_of(const std::vector<double>& of_blocks, const PairKey& key) const {
+    return std::max(of_blocks[facets[key[0]].block], of_blocks[facets[key[1]].block]);
+  }
+  /// Returns the depth from which on points of a pair do not count, m.
+  double most_depth_of(const PairKey& key) const {
+    return std::min(most_depth[facets[key[0]].block], most_depth[facets[key[1]].block]);
+  }
 };
 
 }  // namespace pyroclast

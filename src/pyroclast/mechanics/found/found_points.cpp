@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <type_traits>
-#include <utility>
 
-#include "pyroclast/mechanics/found/edge_pair.hpp"
-#include "pyroclast/mechanics/found/found_contacts.hpp"
-#include "pyroclast/mechanics/reader.hpp"
+#include "pyroclast/mechanics/found/of_all_pairs.hpp"
+#include "pyroclast/mechanics/found/pair_rows.hpp"
 
 namespace pyroclast {
 
@@ -16,14 +14,11 @@ namespace {
 class PressedEdges {
  public:
   PressedEdges(const Body<2>& body, const FoundPair<2>& pair)
-      : a_(edge(body, pair.facets[0])), b_(edge(body, pair.facets[1])) {
-    std::swap(b_[0], b_[1]);
-    const auto& facets = body.found->facets;
-    pair_ = edge_pair<double>(a_, b_, facets[pair.facets[0]].length, facets[pair.facets[1]].length);
-  }
+      : at_(PairFacts<2>(body).places_of_forces(pair.facets)),
+        pair_(PairFacts<2>(body).shape(pair.facets, at_).p) {}
 
   Vec<3> place(int k) const {
-    return resized<3>((a_[0] + pair_.edge_a * pair_.at_a[k] + b_[0] + pair_.edge_b * pair_.at_b[k]) * 0.5);
+    return resized<3>((at_[0] + pair_.edge_a * pair_.at_a[k] + at_[2] + pair_.edge_b * pair_.at_b[k]) * 0.5);
   }
   Vec<3> middle() const { return (place(0) + place(1)) * 0.5; }
   Vec<3> normal() const { return resized<3>(pair_.normal); }
@@ -42,40 +37,25 @@ class PressedEdges {
   }
 
  private:
-  static std::array<Vec<2>, 2> edge(const Body<2>& body, int facet) {
-    const auto& g = body.found->facets[facet].gridpoints;
-    const auto at = [&](int i) {
-      return body.model.position[g[i]] + Reader<2>(body).displacement_of_force(g[i]);
-    };
-    return {at(0), at(1)};
-  }
-
-  std::array<Vec<2>, 2> a_, b_;
+  PairFacts<2>::Corners at_;
   EdgePair<double> pair_;
 };
 
 /// Two triangles that press, at the displacements of the last forces.
 class PressedTriangles {
  public:
-  PressedTriangles(const Body<3>&, const FoundPair<3>& pair) {
-    Triangle a, b;
-    for (int i = 0; i < 3; ++i) {
-      a[i] = pair.pressed_at[i];
-      b[i] = pair.pressed_at[3 + i];
-    }
-    overlap_ = overlap_of(a, b);
-    pair_ = triangle_pair(overlap_, a, b);
-    tangents_ = tangents_of(pair_.a, pair_.normal);
-  }
+  PressedTriangles(const Body<3>& body, const FoundPair<3>& pair)
+      : shape_(PairFacts<3>(body).shape(pair.facets, pair.pressed_at)),
+        tangents_(tangents_of(shape_.p.a, shape_.p.normal)) {}
 
-  Vec<3> place(int k) const { return (pair_.on_a(k) + pair_.on_b(k)) * 0.5; }
+  Vec<3> place(int k) const { return (shape_.p.on_a(k) + shape_.p.on_b(k)) * 0.5; }
   Vec<3> middle() const {
     Vec<3> moment{};
-    for (int k = 0; k < overlap_.count; ++k) moment += place(k) * pair_.part[k];
-    return moment * (1.0 / pair_.overlap);
+    for (int k = 0; k < shape_.points; ++k) moment += place(k) * shape_.p.part[k];
+    return moment * (1.0 / shape_.p.overlap);
   }
-  Vec<3> normal() const { return pair_.normal; }
-  double gap(int k) const { return pair_.gap[k]; }
+  Vec<3> normal() const { return shape_.p.normal; }
+  double gap(int k) const { return shape_.p.gap[k]; }
   Tangential<3> jump(int, const PairPoint<3>& point) const { return point.shift; }
 
   void put(int k, const Tangential<3>& jump, const PointResponse& response, FoundPoint& point) const {
@@ -84,13 +64,12 @@ class PressedTriangles {
     point.slip = norm(jump);
     point.shear_traction = norm(shear);
     if (point.shear_traction > 0.0) point.tangent = shear * (1.0 / point.shear_traction);
-    point.force = pair_.gap_slope[k] * (point.normal_traction * point.area) + shear * point.area;
+    point.force = shape_.p.gap_slope[k] * (point.normal_traction * point.area) + shear * point.area;
   }
 
  private:
-  Overlap overlap_;
-  TrianglePair<double> pair_;
-  std::array<Vec<3>, 2> tangents_{};
+  PairShape<3> shape_;
+  std::array<Vec<3>, 2> tangents_;
 };
 
 /// Returns the answer of the law to the jump of a point: taken to it once more, the law gives the same.

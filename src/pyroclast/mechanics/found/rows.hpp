@@ -67,6 +67,11 @@ struct ShapesOfRow<3> {
 
 /// Returns the corners of one pair of several.
 TriangleCorners corners_in(const ShapesOfRow<3>::Places& places, int lane);
+/// Returns triangle a or b of a pair.
+Triangle triangle_a(const TriangleCorners& corners);
+Triangle triangle_b(const TriangleCorners& corners);
+/// Returns the overlap of a pair.
+Overlap overlap_of(const TriangleCorners& corners);
 
 /// Eight pairs side by side.
 template <int Dim>
