@@ -249,7 +249,7 @@ Soundness judge_soundness(const Run& run, const std::vector<ReportedStage>& stag
         simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : "",
         simulation.model().dimension() == 2
             ? "with mechanics.kinematics = \"finite\", f_c was up to 4 % lower there, and critical "
-              "temperatures up to 20 K"
+              "temperatures up to 24 K"
             : "with mechanics.kinematics = \"finite\" blocks turn, which makes a body softer there"));
   std::ranges::move(warnings_of_loose_pieces(simulation), std::back_inserter(s.warnings));
   return s;
