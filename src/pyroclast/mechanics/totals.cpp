@@ -8,7 +8,6 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/place_in.hpp"
 #include "pyroclast/mechanics/found/of_all_pairs.hpp"
-#include "pyroclast/mechanics/found/pair_rows.hpp"
 
 namespace pyroclast {
 
@@ -114,12 +113,19 @@ Dissipation Totals<Dim>::dissipated() const {
       std::array<double, LawOfRows::kMost> of_law;
       double area, damping;
     };
-    const auto give = [&](FoundPair<Dim> pair, auto add) {
-      take_from_row(*body_.found, pair);
-      if (!pair.has_lost()) return;
+    const auto give = [&](const FoundPair<Dim>& pair, auto add) {
       Lost lost{pair.law, {}, pair.lost_area, pair.lost_damping};
       std::ranges::copy(pair.lost, lost.of_law.begin());
-      add(lost);
+      if (pair.slot >= 0) {
+        const FoundRow<Dim>& row = body_.found->arrays.rows[pair.slot / kLanes];
+        const int lane = pair.slot % kLanes;
+        const Line* const of_law = body_.found->arrays.lost.data() + row.first_loss;
+        for (std::size_t i = 0; i < pair.lost.size(); ++i) lost.of_law[i] = of_law[i].number[lane];
+        lost.area = row.lost_area.number[lane];
+        lost.damping = row.lost_damping.number[lane];
+      }
+      const auto is_lost = [](double energy) { return energy != 0.0; };
+      if (is_lost(lost.area) || is_lost(lost.damping) || std::ranges::any_of(lost.of_law, is_lost)) add(lost);
     };
     for (const Lost& lost : of_all_pairs<Lost>(body_, give)) {
       for (std::size_t i = 0; i < places[lost.law].size(); ++i)
