@@ -285,9 +285,9 @@ struct PointAreas {
   Real ratio = 0.0;        ///< ratio of the pair
   Real not_counted = 0.0;  ///< m²
   Real counted = 0.0;      ///< overlap less that of the pair's beginning, m²
-  /// Length by which depths are divided, m: the side of a square overlap, and less the narrower an overlap is.
-  /// Far sides of blocks that touch see each other across a band as narrow as blocks lie deep in each other,
-  /// and are not to press.
+  /// Length by which depths are divided, m: the side of a square overlap, and less the narrower an overlap
+  /// is. Far sides of blocks that touch see each other across a band as narrow as blocks lie deep in each
+  /// other, and are not to press.
   Real width = 0.0;
   /// True where the overlap is wider than that.
   decltype(Real(0.0) < Real(0.0)) is_wide = Real(0.0) < Real(0.0);
