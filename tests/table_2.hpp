@@ -38,6 +38,7 @@ inline MixedMode::Properties<double> mixed_mode_contact() {
   p.mode_2_energy = mortar.mode_2_energy;
   p.dilatancy_angle = 25.0 * std::numbers::pi / 180.0;
   p.fading_slip = 100e-6;
+  p.initial_share = 0.4;
   return p;
 }
 

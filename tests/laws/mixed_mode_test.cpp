@@ -23,7 +23,8 @@ template <int Dim>
 using Internals = MixedMode::Internals<Dim, double>;
 using Losses = MixedMode::Losses<double>;
 
-constexpr auto kSoftenings = {Softening::bilinear, Softening::exponential, Softening::linear};
+constexpr auto kSoftenings = {Softening::bilinear, Softening::exponential, Softening::linear,
+                              Softening::tailed};
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 Properties without_dilatancy(Softening softening = Softening::bilinear) {
@@ -175,6 +176,26 @@ TEST(MixedModeCurvesVerification, ExponentialSofteningEndsAfterSevenFoldDecay) {
   }
 }
 
+// The first line goes down to f_t / 3, as steep as one that has a share of the energy; the tail has the rest.
+// Shear stays linear. All that beside the elastic branch, whose energy comes out of G_f1.
+TEST(MixedMode, ATailKeepsTheEnergyOfAFirstSlope) {
+  for (const double share : {0.1, 0.4, 0.9, 1.0, 3.0}) {
+    Properties p = without_dilatancy(Softening::tailed);
+    p.initial_share = share;
+    const double first = p.first_opening(), left = p.mode_1_energy / p.tensile_strength - 0.5 * first;
+    const double line = 2.0 * std::min(share, 1.0) * left, end = p.last_opening() - first;
+    EXPECT_NEAR(0.5 * (2.0 / 3.0 * line + end / 3.0), left, 1e-12 * left);  // area of both lines
+    for (const double crack : {0.1 * line, 0.5 * line, 2.0 / 3.0 * line, 0.8 * line, 0.9 * end}) {
+      const double in_tail = (end - crack) / (end - 2.0 / 3.0 * line) / 3.0;
+      Point<2> point(p);
+      point.go(first + crack, {}, 3);
+      EXPECT_NEAR(point.response.normal_traction / p.tensile_strength, std::max(1.0 - crack / line, in_tail),
+                  1e-11);
+    }
+    for (const double way : {0.3, 0.9}) EXPECT_NEAR(left_in_shear(p, way, 5e6), 1.0 - way, 1e-11);
+  }
+}
+
 // With linear softening the tension curve is that of the paper's law.
 TEST(MixedMode, LinearSofteningInTensionIsThatOfTheCohesiveLaw) {
   Point<2> point(without_dilatancy(Softening::linear));
@@ -234,6 +255,7 @@ TEST(MixedMode, DamageEndsOnTheQuadraticCriterion) {
 TEST_P(MixedModeVerification, AStraightWayFollowsTheLinearEnergyCriterion) {
   for (const Softening softening : kSoftenings) {
     Properties p = without_dilatancy(softening);
+    p.initial_share = 1.0;  // no tail
     p.mode_2_energy =
         p.cohesion * p.first_slip() * p.mode_1_energy / (p.tensile_strength * p.first_opening());
     ASSERT_NEAR(p.last_slip() / p.first_slip(), p.last_opening() / p.first_opening(), 1e-9);
@@ -250,7 +272,8 @@ TEST(MixedModeCurvesVerification, AStraightWayStaysNearTheLinearEnergyCriterion)
   for (const Softening softening : kSoftenings) {
     for (const double angle : {0.1, 0.4, 0.8, 1.2, 1.5}) {
       Point<2> point(without_dilatancy(softening));
-      const Properties& p = point.properties;
+      Properties& p = point.properties;
+      p.initial_share = 1.0;  // no tail
       point.go(1.1 * std::cos(angle) * p.last_opening(), {{1.1 * std::sin(angle) * p.last_slip()}}, 20000);
       ASSERT_EQ(point.internals.damage, 1.0);
       expect_known(
@@ -431,7 +454,8 @@ class RandomPath {
  public:
   explicit RandomPath(unsigned seed) : random_(seed) {
     base_ = mixed_mode_contact();
-    base_.softening = *(kSoftenings.begin() + seed % 3);
+    base_.softening = *(kSoftenings.begin() + seed % kSoftenings.size());
+    base_.initial_share = 0.05 + uniform();
     const int dilatancy = static_cast<int>(seed % 4);
     base_.dilatancy_angle = dilatancy == 0   ? 0.0
                             : dilatancy == 1 ? base_.friction_angle

@@ -43,8 +43,8 @@ void expect_weakened_as_derived(const Properties& p) {
 TEST(Remembers, AShareOfTheStrengthsIsWhatWeakerStrengthsGive) {
   expect_weakened_as_derived<Cohesive>(mortar_contact());
   auto p = mixed_mode_contact();
-  for (const auto softening :
-       {MixedMode::Softening::bilinear, MixedMode::Softening::exponential, MixedMode::Softening::linear}) {
+  for (const auto softening : {MixedMode::Softening::bilinear, MixedMode::Softening::exponential,
+                               MixedMode::Softening::linear, MixedMode::Softening::tailed}) {
     p.softening = softening;
     expect_weakened_as_derived<MixedMode>(p);
   }

@@ -142,7 +142,8 @@ TEST_P(EveryInstructionSet, GivesTheSameBits) {
 TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
   const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
   for (const bool own_temperatures : {false, true}) {
-    for (const auto softening : {MixedMode::Softening::bilinear, MixedMode::Softening::exponential}) {
+    for (const auto softening :
+         {MixedMode::Softening::bilinear, MixedMode::Softening::exponential, MixedMode::Softening::tailed}) {
       auto contact = mixed_mode_contact();
       contact.softening = softening;
       const auto run = [&](InstructionSet set, int threads) {

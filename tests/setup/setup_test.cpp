@@ -556,6 +556,37 @@ TEST(WithBlockSize, AreTheSlopeAndTheEnergyThatADeckNames) {
     }
 }
 
+/// The paper's deck with the law mixed_mode.
+std::string mixed_mode_deck(const std::string& softening) {
+  std::string deck = paper_deck();
+  for (const char* line : {"c_res = \"0.038 MPa\"", "phi_res = \"34 deg\""}) deck = with(deck, line, "");
+  return with(
+      deck, "[contacts.mortar_mortar]",
+      "[contacts.mortar_mortar]\nlaw = \"mixed_mode\"\npsi = \"0 deg\"\nu_r = \"0.1 mm\"\n" + softening);
+}
+
+TEST(WithBlockSize, IsTheShareOfEnergyThatSetsTheFirstSlopeOfTearing) {
+  const std::string tailed = mixed_mode_deck("softening = \"linear with tail\"\ninitial_share = 0.4\n");
+  const auto share = [](const std::string& deck, double size) {
+    const auto setup = read(deck);
+    const auto concrete = make_concrete(setup.block_materials, setup.moving->contacts, size, size);
+    return concrete.contacts[mortar_mortar].at(20.0).as<MixedMode>().initial_share;
+  };
+  const std::string by_size = with(tailed, "t_b_block_size", "mode_1_slope = \"block size\"\nt_b_block_size");
+  for (const double size : {0.0015, 0.003, 0.012}) {
+    EXPECT_DOUBLE_EQ(share(tailed, size), 0.4);
+    EXPECT_NEAR(share(by_size, size), 0.4 * size / 0.003, 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(share(mixed_mode_deck("softening = \"linear\"\n"), 0.003), 1.0);
+
+  // what a deck states is used, or refused
+  expect_in("has no meaning here: it belongs to \"linear with tail\"",
+            message(with(tailed, "linear with tail", "linear")));
+  expect_in("initial_share", message(with(tailed, "initial_share = 0.4", "")));
+  expect_in("mode_1_slope = \"block size\": has no meaning here",
+            message(with(by_size, "softening = \"linear with tail\"\ninitial_share = 0.4\n", "")));
+}
+
 TEST(WithBlockSize, IsRefusedWhereNothingHasOne) {
   std::string deck = with(paper_deck(), "t_b_block_size",
                           "second_slope = \"fixed\"\nmode_2_energy = \"block size\"\nt_b_block_size");

@@ -76,9 +76,8 @@ void print_with_size(const Setup& setup) {
   const ContactParameters& contacts = setup.moving->contacts;
   for (const Role role : contacts.with_size)
     for (const InterfaceParameters& interface : contacts.interfaces) {
-      const LawTable& law = *interface.contact.law;
-      for (const PropertyInfo& info : law.properties)
-        if (info.role == role)
+      for (const PropertyInfo& info : interface.contact.law->properties)
+        if (info.role == role && interface.contact.has(info))
           fmt::print("contacts        {}: {} goes with the block size, {:.4g} times its value in the deck\n",
                      interface.name, info.key, setup.specimen.block_size() / *contacts.fracture_zone_size);
     }

@@ -16,8 +16,9 @@ with `law = "name"` in a table of `[contacts]` ([Phases and interfaces](../under
 The [method](../understand/theory.md) tells how they work, [Add a law](../develop/architecture.md#add-a-law) how to add
 one, and [What every contact law must hold](../develop/laws-verified.md) what each is tried for.
 
-- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses,
-  `second_slope` of `[contacts]` on second slopes, and `mode_2_energy` of `[contacts]` on energies of sliding.
+- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses.
+  Keys of `[contacts]` let others go with the block size: `second_slope` second slopes, `mode_2_energy` energies of
+  sliding, `mode_1_slope` first softening.
 - **Remembered.** What a contact point carries from step to step. A value "in files" is a field of the contacts in
   `fields/`, and a column of `pyroclast law`.
 - **Lost.** Energies are columns `dissipated_<name>_J` of the history and entries of the energy ledger.
@@ -36,6 +37,8 @@ const char* name_of(Role role) {
       return "energy";
     case Role::sliding_energy:
       return "energy of sliding";
+    case Role::first_softening:
+      return "first softening";
     case Role::second_slope:
       return "second slope";
     case Role::cold_strength:
@@ -76,8 +79,9 @@ std::string page_of(const LawTable& law) {
   text += fmt::format("\n![{} along a path](../images/law_{}.png)\n", law.name, law.name);
   text += "\n| property | meaning | unit | allowed | role |\n|---|---|---|---|---|\n";
   for (const PropertyInfo& p : law.properties)
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.key, p.meaning, p.unit.si, p.range.describe(),
-                        name_of(p.role));
+    text += fmt::format("| `{}` | {}{} | {} | {} | {} |\n", p.key, p.meaning,
+                        p.of_option ? fmt::format(", with `{}` alone", p.of_option) : "", p.unit.si,
+                        p.range.describe(), name_of(p.role));
   if (!law.choices.empty()) text += "\n| choice | meaning | options |\n|---|---|---|\n";
   for (const ChoiceInfo& c : law.choices) {
     std::string options;

@@ -251,6 +251,7 @@ class Kit {
           numbers[i] *= alike ? one_for_all : log_uniform(random, 0.1, 1.6);
           break;
         case Role::plain:
+        case Role::first_softening:
         case Role::second_slope:
         case Role::cold_strength:
         case Role::hidden_cracks:

@@ -45,10 +45,11 @@ enum class Role : std::uint8_t {
   shear_stiffness,   ///< G / t_b where a deck says nothing, Eq. (17)
   strength,
   energy,
-  sliding_energy,  ///< energy lost by sliding: a deck may let it go with the block size
-  second_slope,    ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
-  cold_strength,   ///< strength at 20 °C; without a statement the contact's first strength there
-  hidden_cracks    ///< share of strengths lost to cracks below the mesh; curves of strengths include it
+  sliding_energy,   ///< energy lost by sliding: a deck may let it go with the block size
+  first_softening,  ///< softening as it begins: a deck may let it go with the block size
+  second_slope,     ///< slope over the normal stiffness: a deck may keep the slope the same at any block size
+  cold_strength,    ///< strength at 20 °C; without a statement the contact's first strength there
+  hidden_cracks     ///< share of strengths lost to cracks below the mesh; curves of strengths include it
 };
 
 /// Tells whether the property is a fracture energy.
@@ -58,8 +59,8 @@ constexpr bool is_energy(Role role) {
 
 /// Tells whether the property is the same at any temperature but where a deck states a curve for it.
 constexpr bool is_apart_from_temperature(Role role) {
-  return role == Role::plain || role == Role::second_slope || role == Role::cold_strength ||
-         role == Role::hidden_cracks;
+  return role == Role::plain || role == Role::first_softening || role == Role::second_slope ||
+         role == Role::cold_strength || role == Role::hidden_cracks;
 }
 
 struct PropertyInfo {
@@ -68,6 +69,9 @@ struct PropertyInfo {
   Unit unit;
   Range range;
   Role role = Role::plain;
+  /// Option of a choice to which the property belongs; null: to all. Where another option is chosen a deck
+  /// may not state it, and it is 1.
+  const char* of_option = nullptr;
 };
 
 struct OptionInfo {

@@ -29,7 +29,10 @@ struct MixedMode {
   enum class Softening : std::uint8_t {
     bilinear,     ///< Petersson (1981): a third of the strength is left at 2/9 of the way
     exponential,  ///< e^(-7 D) less its last value, so that the strength ends at 0
-    linear
+    linear,
+    /// Linear, but that tension has a tail below a third of f_t, so that a share of G_f1 sets its first
+    /// slope.
+    tailed
   };
   using Compression = pyroclast::Compression;
 
@@ -41,6 +44,7 @@ struct MixedMode {
       case Softening::exponential:
         return 1.0 / kDecay - kTail / (1.0 - kTail);
       case Softening::linear:
+      case Softening::tailed:  // but for the tail
         break;
     }
     return 0.5;
@@ -62,6 +66,9 @@ struct MixedMode {
     Real mode_2_energy{};      ///< G_f2, J/m²
     Real dilatancy_angle{};    ///< psi, dilatancy angle of the first slip, rad
     Real fading_slip{};        ///< u_r, slip over which tan(psi) falls by the factor e, m
+    /// Share of G_f1 below the first line of softening in tension, drawn on to its end; above 1 it counts
+    /// as 1.
+    Real initial_share{1.0};
     Softening softening = Softening::bilinear;
     Compression compression = Compression::irreversible;
 
@@ -81,6 +88,12 @@ struct MixedMode {
       f(PropertyInfo{"u_r", "slip over which tan(psi) falls by the factor e", unit::length,
                      Range::positive()},
         p.fading_slip...);
+      f(PropertyInfo{"initial_share",
+                     "initial over whole mode I fracture energy: below the first line of softening, drawn on "
+                     "to its end; from 1 on there is no tail",
+                     unit::dimensionless, Range::positive().usually(0.1, 1.0), Role::first_softening,
+                     kWithTail},
+        p.initial_share...);
     }
     template <class F, class... P>
     static constexpr void each_choice(F&& f, P&... p) {
@@ -88,7 +101,8 @@ struct MixedMode {
                    "how the strength falls with the damage",
                    {{"bilinear", "Petersson's two lines"},
                     {"exponential", "e^(-7 D), less its last value"},
-                    {"linear", "one line"}}},
+                    {"linear", "one line"},
+                    {kWithTail, "one line; in tension a flatter one below a third of f_t"}}},
         p.softening...);
       f(info::compression, p.compression...);
     }
@@ -98,28 +112,35 @@ struct MixedMode {
     /// Returns u_0s = c_o / K_s, the tangential jump at which softening begins in shear without pressure, m.
     Real first_slip() const { return cohesion / shear_stiffness; }
     /// Returns u_fn, the opening at which no strength is left in tension, m.
-    Real last_opening() const { return end(first_opening(), tensile_strength, mode_1_energy); }
+    Real last_opening() const {
+      const Real first = first_opening(), way = way_to_end(first, tensile_strength, mode_1_energy);
+      return softening == Softening::tailed ? first + way * (3.0 - 2.0 * initial()) : first + way;
+    }
     /// Returns u_fs, the tangential jump at which no strength is left in shear without pressure, m.
-    Real last_slip() const { return end(first_slip(), cohesion, mode_2_energy); }
+    Real last_slip() const { return first_slip() + way_to_end(first_slip(), cohesion, mode_2_energy); }
+    /// Returns the share of G_f1 that counts.
+    Real initial() const { return initial_share < 1.0 ? initial_share : Real(1.0); }
 
    private:
-    /// Returns the jump at which softening ends: the area under the whole curve, the elastic branch included,
-    /// is the fracture energy.
-    Real end(Real first, Real strength, Real energy) const {
-      return first + (energy / strength - 0.5 * first) / area_of(softening);
+    /// Returns the jump from the beginning to the end of softening, without a tail: the area under the whole
+    /// curve, the elastic branch included, is the fracture energy.
+    Real way_to_end(Real first, Real strength, Real energy) const {
+      return (energy / strength - 0.5 * first) / area_of(softening);
     }
   };
 
   /// Constants that follow from the parameters.
   template <class Real>
   struct Constants {
-    Real normal_stiffness, shear_stiffness;     ///< Pa/m
-    Real compressive_limit;                     ///< Pa
-    Real closure_at_limit;                      ///< f_cm / K_n, m
-    Real share_left;                            ///< share of closure past the limit kept as u_p: 1 - beta
-    Real hardening_slope;                       ///< slope of the yield stress over u_p, Pa/m
-    Real over_first_opening, over_first_slip;   ///< 1 / u_0n, 1 / u_0s, 1/m
-    Real tension_range, shear_range;            ///< q = u_f / u_0 - 1 of the pure modes
+    Real normal_stiffness, shear_stiffness;    ///< Pa/m
+    Real compressive_limit;                    ///< Pa
+    Real closure_at_limit;                     ///< f_cm / K_n, m
+    Real share_left;                           ///< share of closure past the limit kept as u_p: 1 - beta
+    Real hardening_slope;                      ///< slope of the yield stress over u_p, Pa/m
+    Real over_first_opening, over_first_slip;  ///< 1 / u_0n, 1 / u_0s, 1/m
+    Real tension_range, shear_range;           ///< q = u_f / u_0 - 1 of the pure modes; of the first line
+    /// Slope of u_n / u_0n over D in the tail, less that before it; 0 without one.
+    Real tail_range;
     Real first_over_last_opening;               ///< u_0n / u_fn
     Real first_over_last_slip;                  ///< u_0s / u_fs
     Real first_tension_energy, tension_energy;  ///< f_t u_0n, f_t (u_fn - u_0n), J/m²
@@ -144,6 +165,7 @@ struct MixedMode {
       f(Nothing{}, c.over_first_slip...);
       f(Nothing{}, c.tension_range...);
       f(Nothing{}, c.shear_range...);
+      f(Nothing{}, c.tail_range...);
       f(Nothing{}, c.first_over_last_opening...);
       f(Nothing{}, c.first_over_last_slip...);
       f(Nothing{}, c.first_tension_energy...);
@@ -170,8 +192,15 @@ struct MixedMode {
     c.closure_at_limit = p.compressive_limit / p.normal_stiffness;
     c.share_left = 1.0 - p.hardening;
     c.hardening_slope = p.hardening * p.normal_stiffness / (1.0 - p.hardening);
-    const double opening = p.first_opening(), opening_range = p.last_opening() - opening;
+    const double opening = p.first_opening();
+    double opening_range = p.last_opening() - opening;
     const double slip = p.first_slip(), slip_range = p.last_slip() - slip;
+    c.tail_range = 0.0;
+    if (p.softening == Softening::tailed) {
+      const double share = p.initial(), without_tail = opening_range / (3.0 - 2.0 * share);
+      c.tail_range = kOfTail * (1.0 - share) * without_tail / opening;
+      opening_range = share * without_tail;
+    }
     c.over_first_opening = 1.0 / opening;
     c.over_first_slip = 1.0 / slip;
     c.tension_range = opening_range / opening;
@@ -227,8 +256,17 @@ struct MixedMode {
       first_energy *= left * left;
       energy = first_energy * range;
     };
+    const Real tension_range = w.tension_range, without_tail = tension_range + w.tail_range * (1.0 / kOfTail);
+    w.tension_range = without_tail;
     soften(w.over_first_opening, w.tension_range, w.first_over_last_opening, w.first_tension_energy,
            w.tension_energy);
+    if (c.softening == Softening::tailed) {
+      const Real longer = w.tension_range / without_tail;
+      w.tension_range = tension_range * longer;
+      w.tail_range *= longer;
+      w.first_over_last_opening = 1.0 / (1.0 + w.tension_range + w.tail_range * (1.0 - kTailBegins));
+      w.tension_energy = w.first_tension_energy * w.tension_range;
+    }
     soften(w.over_first_slip, w.shear_range, w.first_over_last_slip, w.first_shear_energy, w.shear_energy);
     return w;
   }
@@ -310,6 +348,12 @@ struct MixedMode {
   }
 
  private:
+  static constexpr const char* kWithTail = "linear with tail";
+  /// Damage at which a third of the strength is left, and the tail begins.
+  static constexpr double kTailBegins = 2.0 / 3.0;
+  /// Slope of u_n over D in a tail that has all of the energy, over that of a line that has it: the tail is a
+  /// triangle a third as high, over a third of D.
+  static constexpr double kOfTail = 9.0;
   static constexpr double kDecay = 7.0;
   static constexpr double kTail = 9.118819655545162e-4;  // e^-7
   /// Share of the jumps below which an excess over friction is round-off.
@@ -320,6 +364,7 @@ struct MixedMode {
   struct Bond {
     Real tension = 1.0, shear = 1.0;         ///< secants over K_n and K_s
     Real per_opening = 1.0, per_slip = 1.0;  ///< 1 / (1 + q D)
+    Real in_tail = 0.0;                      ///< damage beyond the beginning of the tail
     Real lost_first = 0.0, lost = 0.0;       ///< loss as a share of `first_..._energy` and of `..._energy`
   };
 
@@ -344,11 +389,17 @@ struct MixedMode {
         break;
       }
       case Softening::linear:
+      case Softening::tailed:  // but for the tail
         b.lost = 0.5 * damage;
         break;
     }
     b.lost_first = 0.5 * (1.0 - strength);
-    const Real opens = 1.0 + c.tension_range * damage, slips = 1.0 + c.shear_range * damage;
+    Real opens = 1.0 + c.tension_range * damage;
+    const Real slips = 1.0 + c.shear_range * damage;
+    if (c.softening == Softening::tailed) {
+      b.in_tail = larger(damage - kTailBegins, Real(0.0));
+      opens += c.tail_range * b.in_tail;
+    }
     const Real over = 1.0 / (opens * slips);
     b.per_opening = slips * over;
     b.per_slip = opens * over;
@@ -449,6 +500,20 @@ struct MixedMode {
     const Real& reach;       ///< jump that friction can hold, m
   };
 
+  /// Returns the damage where tension has a tail: the share that the jump has gone of the way to the
+  /// beginning of the tail, or from there to the end. \param first  jump over the jump at which softening
+  /// begins, at its ratio of u_n to u_s \param last   jump over the jump at which it ends
+  template <class Real, class Constants>
+  static Real way_with_tail(const Constants& c, const Growth<Real>& g, const Real& first, const Real& last) {
+    using std::sqrt;
+    const Real to_opening = g.in_tension / (1.0 + c.tension_range * kTailBegins);
+    const Real to_slip = g.in_shear / (1.0 + c.shear_range * kTailBegins);
+    const Real tail = sqrt(to_opening * to_opening + to_slip * to_slip);
+    const Real before = tail * (first - 1.0) / (first - tail), behind = last * (tail - 1.0) / (tail - last);
+    return select(tail < 1.0, kTailBegins * before,
+                  smaller(Real(1.0), 1.0 - (1.0 - kTailBegins) * (1.0 - behind)));
+  }
+
   /// Raises the damage to the share that the jump has gone of the way from the beginning to the end of
   /// softening, at its ratio of u_n to u_s, and adds the energy that is lost.
   template <int Dim, class Real, class Constants, class Losses>
@@ -460,7 +525,8 @@ struct MixedMode {
     const Real to_last_slip = g.in_shear * c.first_over_last_slip;
     const Real to_last = to_last_opening * to_last_opening + to_last_slip * to_last_slip;
     const Real first = sqrt(g.from_first), last = sqrt(to_last);
-    const Real way = smaller(Real(1.0), last * (first - 1.0) / (first - last));
+    Real way = smaller(Real(1.0), last * (first - 1.0) / (first - last));
+    if (c.softening == Softening::tailed) way = way_with_tail(c, g, first, last);
     const auto grows = (g.from_first > 1.0) & (way > h.damage);
     if (!any(grows)) return;
     const Bond<Real> left = bond_at(c, way);
@@ -475,6 +541,12 @@ struct MixedMode {
     };
     losses.tension += spent(opened, c.tension_energy, c.first_tension_energy);
     losses.shear += spent(sheared, c.shear_energy, c.first_shear_energy);
+    if (c.softening == Softening::tailed) {
+      // what G_f1 has more than a line as steep as the first one, by the damage in the tail
+      const Real of_tail = c.first_tension_energy * c.tail_range * (0.5 * (1.0 - kTailBegins));
+      losses.tension +=
+          select(grows, opened * opened * scale * of_tail * (left.in_tail - bond.in_tail), Real(0.0));
+    }
     // The share that breaks under pressure rubs from then on: at first with all the friction that there is.
     const auto begins = grows & !(h.damage > 0.0);
     held = select(begins, g.reach, held);

@@ -107,7 +107,19 @@ ContactMaterial::ContactMaterial(const LawTable& of)
     : law(&of),
       numbers(of.properties.size(), Curve::constant(0.0)),
       residual_ratios(of.properties.size()),
-      choices(of.choices.size()) {}
+      choices(of.choices.size()) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (of.properties[i].of_option) numbers[i] = Curve::constant(1.0);
+}
+
+bool ContactMaterial::has(const PropertyInfo& info) const {
+  if (!info.of_option) return true;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (const char* chosen = law->choices[i].options[choices[i]].name;
+        chosen && std::string_view(chosen) == info.of_option)
+      return true;
+  return false;
+}
 
 Curve& ContactMaterial::operator[](std::string_view key) {
   return numbers[place_of(*law, key)];

@@ -84,9 +84,12 @@ struct ContactMaterial {
   std::vector<Role> with_size;
 
   ContactMaterial() = default;
-  /// Makes a contact whose numbers are all zero, with the first option of each choice.
+  /// Makes a contact whose numbers are all zero, those of single options one, with the first option of each
+  /// choice.
   explicit ContactMaterial(const LawTable& of);
 
+  /// Tells whether the contact has a property of its law: true but for one of an option that is not chosen.
+  bool has(const PropertyInfo& info) const;
   /// Returns the property of a key. Throws Error when the law has none of this key.
   Curve& operator[](std::string_view key);
   const Curve& operator[](std::string_view key) const;

@@ -111,7 +111,7 @@ inline std::uint64_t layout_hash() {
            offsetof(Range, upper_inclusive));
   hash.add(sizeof(PropertyInfo), offsetof(PropertyInfo, key), offsetof(PropertyInfo, meaning),
            offsetof(PropertyInfo, unit), offsetof(PropertyInfo, range), offsetof(PropertyInfo, role),
-           static_cast<int>(Role::hidden_cracks));
+           offsetof(PropertyInfo, of_option), static_cast<int>(Role::hidden_cracks));
   hash.add(sizeof(ChoiceInfo), offsetof(ChoiceInfo, key), offsetof(ChoiceInfo, meaning),
            offsetof(ChoiceInfo, options), sizeof(OptionInfo), ChoiceInfo::kMostOptions);
   hash.add(sizeof(InternalInfo), offsetof(InternalInfo, name), offsetof(InternalInfo, meaning),

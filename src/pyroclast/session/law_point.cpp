@@ -62,10 +62,12 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
   for (std::size_t i = 0; i < given.size(); ++i)
     if (!given[i] && law.properties[i].role == Role::cold_strength)
       material.numbers[i] = material.of(Role::strength);
-    else if (!given[i])
-      throw Error(fmt::format("the contact law \"{}\" needs {}: {}; say for example --set {}='{}'", law.name,
-                              law.properties[i].key, law.properties[i].meaning, law.properties[i].key,
-                              law.properties[i].unit.example));
+    else if (given[i] != material.has(law.properties[i]))
+      throw given[i] ? Error(fmt::format("the contact law \"{}\" has {} with \"{}\" alone", law.name,
+                                         law.properties[i].key, law.properties[i].of_option))
+                     : Error(fmt::format("the contact law \"{}\" needs {}: {}; say for example --set {}='{}'",
+                                         law.name, law.properties[i].key, law.properties[i].meaning,
+                                         law.properties[i].key, law.properties[i].unit.example));
   try {
     validate(material.at(kReferenceTemperature), law.name);
   } catch (const PropertyError& e) {

@@ -318,7 +318,7 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
   ContactMaterial m = like.value_or(ContactMaterial(law));
   for (std::size_t i = 0; i < law.properties.size(); ++i) {
     const PropertyInfo& info = law.properties[i];
-    if (is_stiffness(info)) continue;
+    if (is_stiffness(info) || info.of_option) continue;
     const bool may_lack = like || info.role == Role::cold_strength;
     if (!may_lack || s.has(info.key)) {
       m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
@@ -338,6 +338,18 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
       m.choices[i] = read_choice(s, law.choices[i]);
     else if (!like)
       m.choices[i] = read_choice(shared, law.choices[i]);
+  }
+  for (std::size_t i = 0; i < law.properties.size(); ++i) {
+    const PropertyInfo& info = law.properties[i];
+    if (!info.of_option) continue;
+    if (!m.has(info)) {
+      s.know({info.key});
+      if (s.has(info.key))
+        s.error(info.key, fmt::format("has no meaning here: it belongs to \"{}\"", info.of_option));
+      m.numbers[i] = Curve::constant(1.0);
+    } else if (s.has(info.key) || !like || !like->has(info)) {
+      m.numbers[i] = read_property(s, info, {}, ratio_has_effect, curves);
+    }
   }
   return m;
 }
@@ -726,7 +738,16 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
             "G_f2 holds at t_b_block_size and goes with the block size, so that sliding loses as much per "
             "volume, see [One concrete](../validation/one_concrete.md)"}},
           false, "whether the mode II fracture energy of contacts depends on the block size");
-  if (!scales) s.know({"second_slope", "mode_2_energy"});
+  const bool tears_by_volume =
+      scales &&
+      s.choice<bool>("mode_1_slope",
+                     {{"as stated", false, "softening in tension is the same at any block size"},
+                      {"block size", true,
+                       "initial_share holds at t_b_block_size and goes with the block size: contacts begin "
+                       "to soften over "
+                       "a strain, and a tail keeps G_f1, see [One concrete](../validation/one_concrete.md)"}},
+                     false, "whether the first slope of softening in tension depends on the block size");
+  if (!scales) s.know({"second_slope", "mode_2_energy", "mode_1_slope"});
   if (has_platens)
     c.bearings.push_back({.name = "platen",
                           .friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
@@ -739,8 +760,10 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   const auto go_with_size = [&](bool stated, const char* key, Role role, const char* lacking) {
     if (!stated) return;
     const auto has_one = [role](const InterfaceParameters& interface) {
-      return std::ranges::any_of(interface.contact.law->properties,
-                                 [role](const PropertyInfo& info) { return info.role == role; });
+      const ContactMaterial& contact = interface.contact;
+      return std::ranges::any_of(contact.law->properties, [&](const PropertyInfo& info) {
+        return info.role == role && contact.has(info);
+      });
     };
     if (std::ranges::none_of(c.interfaces, has_one))
       s.error(key, fmt::format("has no meaning here: no contact law of these interfaces has {}", lacking));
@@ -748,6 +771,7 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   };
   go_with_size(keeps_slope, "second_slope", Role::second_slope, "a second slope");
   go_with_size(slides_by_volume, "mode_2_energy", Role::sliding_energy, "an energy of sliding");
+  go_with_size(tears_by_volume, "mode_1_slope", Role::first_softening, "softening with a tail");
   check_pairs(reader.sections(), c.interfaces);
   check_complete(s, c.interfaces, phases, matrix);
   return c;
