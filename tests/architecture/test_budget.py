@@ -4,9 +4,9 @@ import pathlib
 import unittest
 
 SOURCE = pathlib.Path(__file__).parents[2] / "src" / "pyroclast"
-BUDGET = {"app": 4375, "base": 3650, "deck": 3510, "laws": 3100, "material": 3535, "mechanics": 11720, "model":
-          2700, "moisture": 1450, "parallel": 250, "plugin": 1450, "python": 1750, "results": 4875, "session": 1400, "setup":
-          6000, "simulation": 8625, "specimen": 11420, "stages": 4920, "tables": 2800, "thermal":
+BUDGET = {"app": 4375, "base": 3650, "deck": 3510, "laws": 3160, "material": 3535, "mechanics": 11720, "model":
+          2700, "moisture": 1450, "parallel": 250, "plugin": 1450, "python": 1750, "results": 4875, "session": 1410, "setup":
+          6030, "simulation": 8625, "specimen": 11420, "stages": 4920, "tables": 2800, "thermal":
           3700, "units": 1200}
 SPARE = 100  # lines: a module that shrinks by more hands them back
 
