@@ -364,9 +364,9 @@ class SpecimenFolder:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Share of the area, of a solid of the volume, by material."""
+        """Share of the area, of a solid of the volume, by material; a sum of blocks may round to more than 1."""
         shares = self.facts.get("fraction")
-        if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
+        if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0 + 1e-9
                                                    for v in shares.values()):
             raise Error(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
         return shares

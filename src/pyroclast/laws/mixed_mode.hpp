@@ -501,8 +501,10 @@ struct MixedMode {
   };
 
   /// Returns the damage where tension has a tail: the share that the jump has gone of the way to the
-  /// beginning of the tail, or from there to the end. \param first  jump over the jump at which softening
-  /// begins, at its ratio of u_n to u_s \param last   jump over the jump at which it ends
+  /// beginning of the tail, or from there to the end.
+  ///
+  /// \param first  jump over the jump at which softening begins, at its ratio of u_n to u_s
+  /// \param last   jump over the jump at which it ends
   template <class Real, class Constants>
   static Real way_with_tail(const Constants& c, const Growth<Real>& g, const Real& first, const Real& last) {
     using std::sqrt;

@@ -743,9 +743,9 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
       s.choice<bool>("mode_1_slope",
                      {{"as stated", false, "softening in tension is the same at any block size"},
                       {"block size", true,
-                       "initial_share holds at t_b_block_size and goes with the block size: contacts begin "
-                       "to soften over "
-                       "a strain, and a tail keeps G_f1, see [One concrete](../validation/one_concrete.md)"}},
+                       "initial_share holds at t_b_block_size and goes with the block size, at most 1: "
+                       "contacts begin to soften over a strain, and a tail keeps G_f1, see [One "
+                       "concrete](../validation/one_concrete.md)"}},
                      false, "whether the first slope of softening in tension depends on the block size");
   if (!scales) s.know({"second_slope", "mode_2_energy", "mode_1_slope"});
   if (has_platens)

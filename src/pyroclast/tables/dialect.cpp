@@ -379,7 +379,7 @@ class GridReader {
             *plain_number(number.number, DecimalSign::point),
             delimiter_ == ','
                 ? ""
-                : fmt::format(", such as by `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g' {} > points_{}` for "
+                : fmt::format(", such as by `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g' {} > {}` for "
                               "decimal commas",
                               shell_path(name), shell_word("points_" + name))));
   }
