@@ -182,6 +182,9 @@ class Cylinder(unittest.TestCase):
         sets = re.findall(r"\w+", pyroclast.instruction_sets)
         for name in [name for name in sets if name != used] or [used]:
             done = self.run_deck(name, "--no-figures", "--threads", "1", "--instructions", name)
+            if f'"{name}" is not one that this program and processor have' in done.stderr:
+                self.assertNotEqual(name, "portable")
+                continue
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual((self.place / name / "history.csv").read_text(), want, name)
 
