@@ -75,7 +75,7 @@ class Runs(unittest.TestCase):
         self.deck.write_text('[specimen]\nshape = "cylinder"\n[superposition]\nrule = "each"\n')
         self.assertEqual(runs.kinds(self.deck), frozenset())
         self.assertEqual(runs.kinds(self.deck, ["superposition.rule=follow", "mechanics.kinematics=finite"]),
-                         {"followed", "finite"})
+                         {"followed", "finite", "finite, first"})
         self.deck.write_text('[superposition]\nrule = "follow"\n')
         self.assertEqual(runs.kinds(self.deck), frozenset())  # of the plane
 
