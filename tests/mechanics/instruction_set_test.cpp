@@ -148,7 +148,7 @@ TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
       contact.softening = softening;
       const auto run = [&](InstructionSet set, int threads) {
         const auto m = cracked(model, quasi_static<2>(), set, own_temperatures, threads, contact);
-        EXPECT_GT(damaged_share(m), 0.15);
+        EXPECT_GT(damaged_share(m), softening == MixedMode::Softening::tailed ? 0.15 : 0.25);
         return outcome(m);
       };
       const auto expected = run(InstructionSet::portable, 1);

@@ -527,8 +527,9 @@ struct MixedMode {
     const Real to_last_slip = g.in_shear * c.first_over_last_slip;
     const Real to_last = to_last_opening * to_last_opening + to_last_slip * to_last_slip;
     const Real first = sqrt(g.from_first), last = sqrt(to_last);
-    Real way = smaller(Real(1.0), last * (first - 1.0) / (first - last));
-    if (c.softening == Softening::tailed) way = way_with_tail(c, g, first, last);
+    const Real way = c.softening == Softening::tailed
+                         ? way_with_tail(c, g, first, last)
+                         : smaller(Real(1.0), last * (first - 1.0) / (first - last));
     const auto grows = (g.from_first > 1.0) & (way > h.damage);
     if (!any(grows)) return;
     const Bond<Real> left = bond_at(c, way);
