@@ -161,7 +161,7 @@ class Values(InAFolder):
                     break
                 time.sleep(0.005)
             process.send_signal(signal.SIGTERM)
-            process.wait(timeout=30)
+            process.wait(timeout=120)
         return out
 
     @staticmethod
@@ -187,7 +187,7 @@ class Values(InAFolder):
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGTERM)
                 try:
-                    process.communicate(timeout=15)
+                    process.communicate(timeout=120)
                 except subprocess.TimeoutExpired:
                     process.kill()
                     process.communicate()

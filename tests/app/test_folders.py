@@ -315,8 +315,8 @@ class CurrentFolder(FolderTest):
         os.mkfifo(self.folder / "pipe")
         for file in ("/dev/zero", "pipe"):
             deck = self.write(small_deck().replace('E = "29.4 GPa"', f'E = {{ csv = "{file}" }}'))
-            done = subprocess.run([PROGRAM, "check", deck], cwd=self.folder, capture_output=True, text=True, timeout=20,
-                                  check=False)
+            done = subprocess.run([PROGRAM, "check", deck], cwd=self.folder, capture_output=True, text=True,
+                                  timeout=120, check=False)
             self.assert_says(done, 1, f"{file}: is no regular file")
 
 
@@ -361,7 +361,7 @@ class Interrupted(FolderTest):
                               text=True, start_new_session=True) as process:
             end = self.write_end(self.folder / pipe)
             os.killpg(process.pid, by)
-            _, said = process.communicate(timeout=20)
+            _, said = process.communicate(timeout=120)
             os.close(end)
         self.assertEqual(process.returncode, 130, said)
         self.assertNotIn("Traceback", said)

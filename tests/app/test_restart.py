@@ -37,7 +37,7 @@ class RestartTest(InAFolder):
         with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             self.wait_for(out, rows)
             process.send_signal(by)
-            process.wait(timeout=20)
+            process.wait(timeout=120)
 
     def wait_for(self, out: str, rows: int) -> None:
         history = self.folder / out / "history.csv"

@@ -85,7 +85,7 @@ class UserTest(InAFolder):
             while by == signal.SIGUSR1 and process.poll() is None:
                 time.sleep(0.01)
                 process.send_signal(by)
-            output, _ = process.communicate(timeout=20)
+            output, _ = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130)
         self.assertIn("stopped", output)
         return json.loads((self.folder / "out/summary.json").read_text())
@@ -1002,7 +1002,7 @@ class Running(UserTest):
                         break
                     time.sleep(0.1)
                 process.send_signal(signal.SIGTERM)
-            _, errors = process.communicate(timeout=20)
+            _, errors = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130)
         self.assertIn("no figures were drawn", errors)
         self.assertTrue((self.folder / "out/summary.json").exists())
@@ -1307,7 +1307,7 @@ class LawInAHeader(UserTest):
             compiler = pathlib.Path("/proc") / (self.folder / "pid").read_text().strip() / "stat"
             run.send_signal(signal_sent)
             self.assertEqual(run.wait(60), -signal_sent)
-            deadline = time.monotonic() + 60
+            deadline = time.monotonic() + 120
             while compiler.exists() and ") Z " not in compiler.read_text() and time.monotonic() < deadline:
                 time.sleep(0.01)
             self.assertLess(time.monotonic(), deadline, signal_sent)

@@ -50,7 +50,7 @@ class Terminal:
     def end(self) -> int:
         """The exit code, when all that was started has ended."""
         code = self.process.wait(timeout=600)
-        self._reader.join(timeout=20)
+        self._reader.join(timeout=120)
         assert not self._reader.is_alive(), "something still has the terminal"
         return code
 

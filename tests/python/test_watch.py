@@ -360,7 +360,7 @@ class Command(WatchTest):
             shown = b""
             while chunk := self.read(reading):
                 shown += chunk
-            self.assertEqual(process.wait(timeout=30), 0)
+            self.assertEqual(process.wait(timeout=120), 0)
         os.close(reading)
         text = shown.decode()
         self.assertGreaterEqual(text.count("Axial stress"), 2)
@@ -496,14 +496,20 @@ class Long(WatchTest):
         seconds, megabytes = map(float, done.stdout.splitlines()[-1].split())
         return seconds, megabytes
 
-    def test_it_is_watched_and_drawn_in_seconds(self):
-        million = self.ROWS / 1e6
-        for module, *words in (("watch", self.folder, "--once"),
-                               ("figures", "run", self.folder, "--out", self.root / "drawn")):
-            with self.subTest(module):
-                seconds, megabytes = self.used(module, *words)
-                self.assertLess(seconds, 4.0 + 20.0 * million)  # without the compiled part
-                self.assertLess(megabytes, 300.0 + 700.0 * million)
+    def test_its_rows_cost_little_more_than_to_read_them(self):
+        """The rows' own time is compared with that of NumPy's reader (in C) of this moment: 2.4 to 3.2 times that."""
+        def commands(folder):
+            return ("watch", folder, "--once"), ("figures", "run", folder, "--out", self.root / "drawn")
+
+        begun = time.process_time()
+        np.loadtxt(self.folder / "history.csv", delimiter=",", skiprows=1)
+        reading = time.process_time() - begun
+        for long, short in zip(commands(self.folder), commands(self.whole), strict=True):
+            with self.subTest(long[0]):
+                base, _ = self.used(*short)
+                seconds, megabytes = self.used(*long)
+                self.assertLess(seconds - base, 8.0 * reading)
+                self.assertLess(megabytes, 300.0 + 700.0 * self.ROWS / 1e6)  # without the compiled part
 
 
 class Thinned(unittest.TestCase):

@@ -34,7 +34,7 @@ def answers() -> bool:
     if shutil.which("sinfo") is None:
         return False
     try:
-        said = subprocess.run(["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, timeout=20.0)
+        said = subprocess.run(["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, timeout=120.0)
     except subprocess.TimeoutExpired:
         return False
     return said.returncode == 0 and any(word in said.stdout for word in ("idle", "mixed", "allocated"))

@@ -464,7 +464,7 @@ class Kills(StudyTest):
         killed: list[int] = []
 
         def kill() -> None:
-            until = time.monotonic() + 30.0
+            until = time.monotonic() + 120.0
             while len(killed) < 5 and time.monotonic() < until:
                 for pid in alive(str(self.model))[:1]:
                     os.kill(int(pid), signal.SIGKILL)
@@ -489,13 +489,13 @@ class Kills(StudyTest):
         text = self.file(self.of_command("slow"))
         driver = subprocess.Popen([sys.executable, "-m", "pyroclast.study", "run", str(text), "--jobs", "2"],
                                   stdout=subprocess.DEVNULL)
-        until = time.monotonic() + 20.0
+        until = time.monotonic() + 120.0
         while len(alive(str(self.model))) < 2 and time.monotonic() < until:
             time.sleep(0.05)
         self.assertEqual(len(alive(str(self.model))), 2)
         driver.kill()
         driver.wait()
-        until = time.monotonic() + 10.0
+        until = time.monotonic() + 30.0  # half of how long its runs sleep
         while alive(str(self.model)) and time.monotonic() < until:
             time.sleep(0.05)
         self.assertEqual(alive(str(self.model)), [])
@@ -520,11 +520,11 @@ class Kills(StudyTest):
         words = [sys.executable, "-m", "pyroclast.study", "run", str(text), "--jobs", "2"]
         driver = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
         study = Study(text)
-        until = time.monotonic() + 20.0
+        until = time.monotonic() + 120.0
         while len(self.made(study)) < 3 and time.monotonic() < until:
             time.sleep(0.02)
         driver.send_signal(signal.SIGINT)
-        said, _ = driver.communicate(timeout=20)
+        said, _ = driver.communicate(timeout=120)
         self.assertEqual(driver.returncode, 130)
         self.assertIn("to go on", said)
         self.assertEqual(subprocess.run(words, stdout=subprocess.DEVNULL).returncode, 0)
@@ -541,7 +541,7 @@ class Kills(StudyTest):
             def run(self, jobs, runs, finished, stopped) -> None:
                 for job in jobs:
                     finished(RunResult(job.id, job.seed, DONE, outputs={"z": (1.0, "")}))
-                until = time.monotonic() + 10.0
+                until = time.monotonic() + 120.0
                 while len(known) < 2 and time.monotonic() < until:
                     stopped()
                     known[:] = list(Store(study.setup.folder))
@@ -584,7 +584,7 @@ class Kills(StudyTest):
         called, words = self.folder / "called", [sys.executable, "-m", "pyroclast.study", "run", str(text), "-j", "2"]
         for kill_at in (15, 30, 45):
             driver = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL)
-            until = time.monotonic() + 20.0
+            until = time.monotonic() + 120.0
             while time.monotonic() < until and (not called.exists() or called.read_text().count("\n") < kill_at):
                 time.sleep(0.005)
             driver.kill()

@@ -89,7 +89,7 @@ class SlurmTest(unittest.TestCase):
             self.assertNotIn(result.id, self.results)
             self.results[result.id] = result
 
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + 120.0
         self.executor(**settings).run(jobs, self.runs, finished, lambda: stopped() or time.monotonic() > deadline)
 
     def made(self) -> list[int]:
@@ -107,7 +107,7 @@ class SlurmTest(unittest.TestCase):
         self.addCleanup(thread.join)
 
     def await_(self, holds: Callable[[], object]) -> None:
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + 120.0
         while not holds():
             if time.monotonic() > deadline:
                 raise TimeoutError
